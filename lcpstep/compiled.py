@@ -1,0 +1,145 @@
+"""From plain Python to machine code: kernels, and the user's functions that they call.
+
+A kernel is an ordinary Python function on arrays, floats and named tuples of these. `compiled(f)` is its
+numba twin, the functions that f calls included; both are made from the one source, so the plain one stands
+in for debugging (`NUMBA_DISABLE_JIT=1`) and for user functions that numba cannot compile.
+
+User functions ("callbacks") all have the signature
+
+    f(t, q, v, p, out)      t: time; q, v: (n_q,); p: (n_p,) parameters; out: filled in by f
+
+and enter a kernel as the address of a C function, so that a kernel is compiled once, kept on disk, and
+serves every scene. Nothing here imports numba before something is compiled.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+from collections.abc import Callable, Iterator
+from types import FunctionType
+from typing import Any, cast
+
+Callback = Callable[..., None]
+PLAIN = (int, float, str, tuple)  # constants that numba freezes into the machine code
+
+
+def call(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Evaluate a callback from within a kernel; f is a function here, an address once compiled."""
+    f(t, q, v, p, out)
+
+
+def jit_disabled() -> bool:
+    """Whether the environment asks for plain Python (`NUMBA_DISABLE_JIT=1`)."""
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+
+
+def compiled(f: Callable[..., Any]) -> Callable[..., Any]:
+    """Numba twin of kernel f, compiled for the argument types of its first call and cached on disk."""
+    return f if jit_disabled() else _twin(cast(FunctionType, f))
+
+
+@functools.cache
+def address(f: Callback, ndim: int) -> int:
+    """Address of callback f compiled to machine code, for an `out` of ndim dimensions.
+
+    Raises whatever numba raises when f cannot be compiled.
+    """
+    return cast(int, _cfunc(f, ndim).address)
+
+
+@functools.cache
+def _twin(f: FunctionType) -> Any:
+    if f is call:
+        return _call_intrinsic()
+    import numba
+
+    dispatcher = numba.njit(nogil=True, error_model="numpy")(_with_compiled_callees(f))
+    _keep_on_disk(dispatcher, f)
+    return dispatcher
+
+
+@functools.cache
+def _cfunc(f: Callback, ndim: int) -> Any:
+    from numba import types
+    from numba.core.ccallback import CFunc
+
+    vector = types.float64[::1]
+    out = vector if ndim == 1 else types.float64[:, ::1]
+    signature = types.void(types.float64, vector, vector, vector, out)
+    function = cast(FunctionType, f)
+    c_function = CFunc(_with_compiled_callees(function), signature, {}, {"error_model": "numpy"})
+    _keep_on_disk(c_function, function)
+    c_function.compile()
+    return c_function
+
+
+def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
+    """Cache the machine code of f beside its source.
+
+    numba judges a cached entry by the age of f's own file; its callees may live in others, so the entry is
+    stamped with a fingerprint of all of them. A function without a file (typed into a terminal, made by
+    exec) is compiled afresh in each process.
+    """
+    if not os.path.exists(f.__code__.co_filename):
+        return
+    compilable.enable_caching()
+    cache_file = compilable._cache._cache_file
+    cache_file._source_stamp = (cache_file._source_stamp, _digest(f))
+
+
+def _with_compiled_callees(f: FunctionType) -> FunctionType:
+    """A copy of f in which every plain function that it names is replaced by its compiled twin."""
+    scope = {**f.__globals__, **{name: _twin(g) for name, g in _callees(f)}}
+    copy = FunctionType(f.__code__, scope, f.__name__, f.__defaults__, f.__closure__)
+    copy.__kwdefaults__ = f.__kwdefaults__
+    copy.__module__, copy.__qualname__ = f.__module__, f.__qualname__
+    return copy
+
+
+def _callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
+    for name in f.__code__.co_names:
+        g = f.__globals__.get(name)
+        if isinstance(g, FunctionType):
+            yield name, g
+
+
+@functools.cache
+def _digest(f: FunctionType) -> str:
+    """Fingerprint of the code that f's machine code depends on."""
+    seen: dict[FunctionType, None] = {}
+    todo = [f]
+    while todo:
+        g = todo.pop()
+        if g not in seen:
+            seen[g] = None
+            todo += [callee for _, callee in _callees(g)]
+    return hashlib.sha256("\n".join(sorted(map(_code_text, seen))).encode()).hexdigest()
+
+
+def _code_text(f: FunctionType) -> str:
+    code = f.__code__
+    literals = [c for c in code.co_consts if not hasattr(c, "co_code")]
+    named = [(n, f.__globals__[n]) for n in code.co_names if isinstance(f.__globals__.get(n), PLAIN)]
+    return f"{f.__module__}.{f.__qualname__} {code.co_code.hex()} {code.co_names} {literals} {named}"
+
+
+@functools.cache
+def _call_intrinsic() -> Any:
+    """`call` as machine code: a jump to the address, arguments passed as numba's @cfunc takes them."""
+    from llvmlite import ir
+    from numba import types
+    from numba.extending import intrinsic
+
+    @intrinsic
+    def call_address(typingctx: Any, f: Any, t: Any, q: Any, v: Any, p: Any, out: Any) -> Any:
+        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
+            c_function = ir.FunctionType(context.get_value_type(types.void), kinds)
+            builder.call(builder.inttoptr(args[0], c_function.as_pointer()), args[1:])
+            return context.get_dummy_value()
+
+        return types.void(types.int64, types.float64, q, v, p, out), codegen
+
+    return call_address

@@ -1,0 +1,46 @@
+"""What can go wrong, by name. A wrong question raises; an honest "no" of a method is a status."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import Any
+
+
+class LcpStepError(Exception):
+    """Base class of the library's errors."""
+
+
+class UnknownName(LcpStepError, ValueError):
+    """A scene, method or solver that does not exist; the near ones are suggested."""
+
+    def __init__(self, what: str, name: object, known: Iterable[str]) -> None:
+        known = sorted(known)
+        near = difflib.get_close_matches(str(name), known, n=3, cutoff=0.5)
+        hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
+        super().__init__(f"unknown {what} {name!r}; {hint}")
+
+
+class MissingSolver(LcpStepError, ImportError):
+    """A solver that exists but is not installed; the message carries the command that installs it."""
+
+
+class SimulationError(LcpStepError):
+    """A run that had to stop, with the part of the motion that was computed before.
+
+    Attributes
+    ----------
+    trajectory : Trajectory   everything up to the failure
+    """
+
+    def __init__(self, message: str, trajectory: Any) -> None:
+        super().__init__(message)
+        self.trajectory = trajectory
+
+
+class SimulationInterrupted(KeyboardInterrupt):
+    """The user's interrupt, with the part of the motion that was computed before in `trajectory`."""
+
+    def __init__(self, trajectory: Any) -> None:
+        super().__init__("interrupted; the motion so far is in the attribute `trajectory`")
+        self.trajectory = trajectory
