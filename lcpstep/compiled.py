@@ -67,9 +67,11 @@ def _cfunc(f: Callback, ndim: int) -> Any:
 
     vector = types.float64[::1]
     out = vector if ndim == 1 else types.float64[:, ::1]
-    signature = types.void(types.float64, vector, vector, vector, out)
+    arguments = (types.float64, vector, vector, vector, out)
     function = cast(FunctionType, f)
-    c_function = CFunc(_with_compiled_callees(function), signature, {}, {"error_model": "numpy"})
+    c_function = CFunc(
+        _with_compiled_callees(function), (arguments, types.void), {}, {"error_model": "numpy"}
+    )
     _keep_on_disk(c_function, function)
     c_function.compile()
     return c_function
