@@ -1,0 +1,84 @@
+"""Checks of what a user hands in; each error names the argument and says what was expected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
+
+
+def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Own, read-only, contiguous copy of a real, finite array of the given shape (a scalar fits size one)."""
+    try:
+        given = np.array(value)
+        if np.iscomplexobj(given):
+            raise TypeError
+        result = np.ascontiguousarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected real numbers of shape {shape}, got {value!r}") from None
+    if result.ndim < len(shape) and result.size == 1:
+        result = result.reshape((1,) * len(shape))
+    if result.shape != shape:
+        raise ValueError(f"{name}: expected shape {shape}, got {np.shape(given)}")
+    if not np.all(np.isfinite(result)):
+        raise ValueError(f"{name}: expected finite numbers, got {value!r}")
+    result.flags.writeable = False
+    return result
+
+
+def number(name: str, value: Any, *, least: float = -np.inf, most: float = np.inf) -> float:
+    """A finite real number within [least, most]."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected a number, got {value!r}") from None
+    if not np.isfinite(result):
+        raise ValueError(f"{name}: expected a finite number, got {value!r}")
+    if not least <= result <= most:
+        raise ValueError(f"{name}: expected a value in [{least:g}, {most:g}], got {value!r}")
+    return result
+
+
+def positive(name: str, value: Any) -> float:
+    """A finite real number greater than zero."""
+    result = number(name, value)
+    if result <= 0.0:
+        raise ValueError(f"{name}: expected a positive number, got {value!r}")
+    return result
+
+
+def mass_matrix(name: str, value: Array) -> Array:
+    """A symmetric positive definite matrix, or an error that says which of the two it is not."""
+    scale = np.max(np.abs(value), initial=0.0)
+    if not np.allclose(value, value.T, rtol=0.0, atol=1e-12 * scale):
+        raise ValueError(f"{name}: the mass matrix must be symmetric, got\n{value}")
+    lowest = float(np.linalg.eigvalsh(value)[0])
+    if lowest <= 0.0:
+        raise ValueError(
+            f"{name}: the mass matrix must be positive definite, its lowest eigenvalue is {lowest:g}"
+        )
+    return value
+
+
+def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shape: tuple[int, ...]) -> Array:
+    """Value of a callback in plain Python; an error if it does not fill `out` of the given shape."""
+    out = np.full(shape, np.nan)
+    t, q, v, p = at
+    where = f"at t = {t:g}, q = {q.tolist()}, v = {v.tolist()}"
+    try:
+        returned = f(t, q.copy(), v.copy(), p.copy(), out)
+    except (IndexError, ValueError, TypeError) as error:
+        raise ValueError(
+            f"{name}: f(t, q, v, p, out) with q, v of shape {q.shape}, p of shape {p.shape} and out of "
+            f"shape {shape} failed {where}: {error}"
+        ) from error
+    if returned is not None:
+        raise ValueError(f"{name}: expected f(t, q, v, p, out) to fill `out`, but it returned {returned!r}")
+    if not np.all(np.isfinite(out)):
+        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {out.tolist()}")
+    return out

@@ -1,0 +1,114 @@
+"""Unilateral constraints: gap functions g(t, q) >= 0 with their derivatives and restitution.
+
+    u = dg/dt = G v + g_t,      G = dg/dq,  g_t = partial g / partial t
+    u'        = G v' + bias,    bias = (dG/dt) v + d(g_t)/dt along the motion
+
+Impact (Newton): u+ = -r u-.  Source: G. Osorio, Complex Behavior in Impacting Systems, eqs. 3.14-3.15.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lagrangian import checks
+from lagrangian.checks import Array, Callback
+
+
+def _restitution(value: ArrayLike, n_c: int) -> Array:
+    r = checks.array("restitution", np.broadcast_to(value, (n_c,)) if np.ndim(value) == 0 else value, (n_c,))
+    if np.any((r < 0.0) | (r > 1.0)):
+        raise ValueError(f"restitution: expected values in [0, 1], got {value!r}")
+    return r
+
+
+@dataclass(frozen=True, eq=False)
+class LinearContacts:
+    """Gaps g = G q + offset - s(t): flat obstacles, at rest or moving with s(t).
+
+    Parameters
+    ----------
+    G : (n_c, n_q)   gap Jacobian, constant [-]
+    offset : (n_c,)   gap at q = 0, s = 0 [m]
+    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
+    motion : callback filling out (n_c, 3), or None
+        out[i] = (s_i, s_i', s_i'') at time t: the obstacle's position, velocity and acceleration.
+
+    Raises
+    ------
+    ValueError   a shape does not fit, a number is not finite, or a restitution lies outside [0, 1]
+    """
+
+    G: ArrayLike
+    offset: ArrayLike = 0.0
+    restitution: ArrayLike = 0.0
+    motion: Callback | None = None
+
+    def __post_init__(self) -> None:
+        G = np.atleast_2d(np.array(self.G))
+        offset = np.broadcast_to(self.offset, (len(G),)) if np.ndim(self.offset) == 0 else self.offset
+        object.__setattr__(self, "G", checks.array("G", G, (len(G), G.shape[-1])))
+        object.__setattr__(self, "offset", checks.array("offset", offset, (len(G),)))
+        object.__setattr__(self, "restitution", _restitution(self.restitution, len(G)))
+
+    @property
+    def n_c(self) -> int:
+        """Number of contacts."""
+        return len(np.atleast_2d(self.G))
+
+    def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
+        """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""
+        s = np.zeros((self.n_c, 3))
+        if self.motion is not None:
+            s = checks.evaluate("contacts.motion", self.motion, (t, q, v, p), (self.n_c, 3))
+        G = np.asarray(self.G)
+        if G.shape[1] != len(q):
+            raise ValueError(
+                f"contacts.G: expected {len(q)} columns, one per coordinate, got shape {G.shape}"
+            )
+        return G @ q + np.asarray(self.offset) - s[:, 0], G @ v - s[:, 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Gaps g(t, q) of any form.
+
+    Parameters
+    ----------
+    n_c : number of contacts
+    gap : callback filling out (n_c,)   g [m]
+    jacobian : callback filling out (n_c, n_q)   G = dg/dq
+    gap_t : callback filling out (n_c,), or None for gaps that do not depend on time   partial g / partial t
+    bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;
+        differenced along the motion where not given (the event-driven integrator needs it)
+    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
+
+    Raises
+    ------
+    ValueError   a shape does not fit or a restitution lies outside [0, 1]
+    """
+
+    n_c: int
+    gap: Callback
+    jacobian: Callback
+    gap_t: Callback | None = None
+    bias: Callback | None = None
+    restitution: ArrayLike = 0.0
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.n_c, int) and self.n_c > 0):
+            raise ValueError(f"n_c: expected a positive integer, got {self.n_c!r}")
+        object.__setattr__(self, "restitution", _restitution(self.restitution, self.n_c))
+
+    def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
+        """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""
+        at = (t, q, v, p)
+        g = checks.evaluate("contacts.gap", self.gap, at, (self.n_c,))
+        u = checks.evaluate("contacts.jacobian", self.jacobian, at, (self.n_c, len(q))) @ v
+        if self.gap_t is not None:
+            u += checks.evaluate("contacts.gap_t", self.gap_t, at, (self.n_c,))
+        if self.bias is not None:
+            checks.evaluate("contacts.bias", self.bias, at, (self.n_c,))
+        return g, u

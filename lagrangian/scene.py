@@ -1,0 +1,106 @@
+"""A scene: a system, its contacts, an initial state and a time span. A question without a method."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lagrangian import checks
+from lagrangian.checks import Array
+from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.system import LinearSystem, System
+
+ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """System, contacts, initial state and time span.
+
+    Parameters
+    ----------
+    system : LinearSystem or System
+    q0, v0 : (n_q,)   state at the start of the span
+    t_span : (t_start, t_end) [s]
+    contacts : LinearContacts, Contacts, or None for a system that meets nothing
+    p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given
+    parameters : names and values of the scene's parameters, for reports
+    corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
+    period : period of the forcing [s], math.inf where nothing repeats
+    name : a short name, for reports
+
+    Raises
+    ------
+    ValueError   a shape does not fit, a callback fails, or the initial state lies inside an obstacle; the
+        message names the argument
+    """
+
+    system: LinearSystem | System
+    q0: ArrayLike
+    v0: ArrayLike
+    t_span: tuple[float, float]
+    contacts: LinearContacts | Contacts | None = None
+    p: ArrayLike | None = None
+    parameters: Mapping[str, float | str] = field(default_factory=dict)
+    corners: ArrayLike = ()
+    period: float = math.inf
+    name: str = "scene"
+
+    def __post_init__(self) -> None:
+        n_q = self.system.n_q
+        p = [x for x in self.parameters.values() if not isinstance(x, str)] if self.p is None else self.p
+        corners = np.atleast_1d(np.asarray(self.corners, dtype=float))
+        object.__setattr__(self, "q0", checks.array("q0", self.q0, (n_q,)))
+        object.__setattr__(self, "v0", checks.array("v0", self.v0, (n_q,)))
+        object.__setattr__(self, "p", checks.array("p", p, (len(np.atleast_1d(p)),)))
+        object.__setattr__(self, "corners", checks.array("corners", np.sort(corners), corners.shape))
+        self._check_times()
+        at = (self.t_span[0], np.array(self.q0), np.array(self.v0), np.array(self.p))
+        self.system.trial(*at)
+        if self.contacts is not None:
+            self._check_start(*self.contacts.state(*at))
+
+    @property
+    def n_q(self) -> int:
+        """Number of coordinates."""
+        return self.system.n_q
+
+    @property
+    def n_c(self) -> int:
+        """Number of contacts."""
+        return 0 if self.contacts is None else self.contacts.n_c
+
+    def gap(self, t: float, q: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
+        """Gaps g [m] and gap velocities u [m/s] at a state, each (n_c,)."""
+        if self.contacts is None:
+            return np.zeros(0), np.zeros(0)
+        state = checks.array("q", q, (self.n_q,)), checks.array("v", v, (self.n_q,))
+        return self.contacts.state(float(t), *state, np.array(self.p))
+
+    def _check_times(self) -> None:
+        try:
+            t_start, t_end = (checks.number("t_span", t) for t in self.t_span)
+        except TypeError:
+            raise ValueError(f"t_span: expected two times, got {self.t_span!r}") from None
+        if not t_start < t_end:
+            raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
+        object.__setattr__(self, "t_span", (t_start, t_end))
+        if not self.period > 0.0:
+            raise ValueError(f"period: expected a positive time or math.inf, got {self.period!r}")
+        corners = np.asarray(self.corners)
+        if math.isfinite(self.period) and np.any((corners < 0.0) | (corners >= self.period)):
+            raise ValueError(f"corners: expected times in [0, {self.period}), got {corners.tolist()}")
+
+    def _check_start(self, g: Array, u: Array) -> None:
+        t, q = self.t_span[0], np.asarray(self.q0)
+        scale = max(1.0, float(np.max(np.abs(q))))
+        inside = np.flatnonzero(g < -ROUNDING * scale)
+        if len(inside):
+            raise ValueError(
+                f"q0: the initial state lies inside the obstacle: the gap of contact {inside[0]} is "
+                f"{g[inside[0]]:.6g} m at t = {t:g}, q = {q.tolist()}"
+            )

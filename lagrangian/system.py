@@ -1,0 +1,140 @@
+"""Lagrangian systems without their contacts.
+
+Linear, time-invariant:   M v' + C v + K q = F(t) + G^T lambda            all matrices constant
+General:                  M(t, q) v' = f(t, q, v) + G^T lambda            f = F_ext - N - F_int
+
+Source: G. Osorio, Complex Behavior in Impacting Systems, eq. 3.6; V. Acary, B. Brogliato, Numerical Methods
+for Nonsmooth Dynamical Systems (Springer 2008).
+
+Functions of the user ("callbacks") have one signature, f(t, q, v, p, out): they fill the array `out` from the
+time t, coordinates q (n_q,), velocities v (n_q,) and the scene's parameters p (n_p,).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lagrangian import checks
+from lagrangian.checks import Array, Callback
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonic:
+    """Force F(t) = constant + cosine cos(omega t) + sine sin(omega t) [N], each term of shape (n_q,).
+
+    A linear system under such a force has its motion in closed form.
+    """
+
+    constant: ArrayLike = 0.0
+    cosine: ArrayLike = 0.0
+    sine: ArrayLike = 0.0
+    omega: float = 0.0
+
+    def terms(self, n_q: int) -> tuple[Array, Array, Array]:
+        """The three amplitudes as arrays of shape (n_q,); a scalar stands for all coordinates."""
+        named = {"constant": self.constant, "cosine": self.cosine, "sine": self.sine}
+        constant, cosine, sine = (
+            checks.array(
+                f"force.{name}", np.broadcast_to(value, (n_q,)) if np.ndim(value) == 0 else value, (n_q,)
+            )
+            for name, value in named.items()
+        )
+        checks.number("force.omega", self.omega)
+        return constant, cosine, sine
+
+
+@dataclass(frozen=True, eq=False)
+class LinearSystem:
+    """M v' + C v + K q = F(t), with constant matrices.
+
+    Parameters
+    ----------
+    M : (n_q, n_q)   symmetric positive definite mass matrix [kg]
+    C, K : (n_q, n_q)   damping [N s/m] and stiffness [N/m]; None for zero
+    force : Harmonic, (n_q,) constant force, callback filling out (n_q,), or None   F(t) [N]
+    frame : callback filling out (n_q, 3), or None
+        Moving frame: q is measured relative to c(t), and out[i] = (c_i, c_i', c_i''). The equation above then
+        holds for q + c, which puts the force F - M c'' - C c' - K c on q.
+
+    Raises
+    ------
+    ValueError   a shape does not fit, a number is not finite, or M is not symmetric positive definite
+    """
+
+    M: ArrayLike
+    C: ArrayLike | None = None
+    K: ArrayLike | None = None
+    force: Harmonic | ArrayLike | Callback | None = None
+    frame: Callback | None = None
+
+    def __post_init__(self) -> None:
+        M = np.atleast_2d(np.array(self.M))
+        square = (len(M), len(M))
+        zero = np.zeros(square)
+        object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
+        object.__setattr__(self, "C", checks.array("C", zero if self.C is None else self.C, square))
+        object.__setattr__(self, "K", checks.array("K", zero if self.K is None else self.K, square))
+        if not callable(self.force):
+            force = self.force if self.force is not None else 0.0
+            force = force if isinstance(force, Harmonic) else Harmonic(constant=force)
+            force.terms(self.n_q)
+            object.__setattr__(self, "force", force)
+
+    @property
+    def n_q(self) -> int:
+        """Number of coordinates."""
+        return len(np.atleast_2d(self.M))
+
+    def trial(self, t: float, q: Array, v: Array, p: Array) -> None:
+        """Evaluate every callback once in plain Python; raises ValueError where one does not fit."""
+        at = (t, q, v, p)
+        if callable(self.force):
+            checks.evaluate("system.force", self.force, at, (self.n_q,))
+        if self.frame is not None:
+            checks.evaluate("system.frame", self.frame, at, (self.n_q, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """M(t, q) v' = f(t, q, v): any Lagrangian system, its mass matrix and forces as functions.
+
+    Parameters
+    ----------
+    n_q : number of coordinates
+    mass : callback filling out (n_q, n_q), or a constant (n_q, n_q) matrix   M [kg]
+    force : callback filling out (n_q,)   f = F_ext - N - F_int [N]
+    force_q, force_v : callbacks filling out (n_q, n_q), or None
+        Jacobians df/dq and df/dv; differenced where not given.
+
+    Raises
+    ------
+    ValueError   a shape does not fit, or a constant mass matrix is not symmetric positive definite
+    """
+
+    n_q: int
+    mass: Callback | ArrayLike
+    force: Callback
+    force_q: Callback | None = None
+    force_v: Callback | None = None
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.n_q, int) and self.n_q > 0):
+            raise ValueError(f"n_q: expected a positive integer, got {self.n_q!r}")
+        if not callable(self.force):
+            raise ValueError(f"force: expected a function f(t, q, v, p, out), got {self.force!r}")
+        if not callable(self.mass):
+            M = checks.array("mass", self.mass, (self.n_q, self.n_q))
+            object.__setattr__(self, "mass", checks.mass_matrix("mass", M))
+
+    def trial(self, t: float, q: Array, v: Array, p: Array) -> None:
+        """Evaluate every callback once in plain Python; raises ValueError where one does not fit."""
+        at, square = (t, q, v, p), (self.n_q, self.n_q)
+        checks.evaluate("system.force", self.force, at, (self.n_q,))
+        if callable(self.mass):
+            checks.mass_matrix("system.mass", checks.evaluate("system.mass", self.mass, at, square))
+        for name, f in {"force_q": self.force_q, "force_v": self.force_v}.items():
+            if f is not None:
+                checks.evaluate(f"system.{name}", f, at, square)
