@@ -1,0 +1,123 @@
+"""The neutral judge: how well z solves 0 <= z, W z + b >= 0, z^T (W z + b) = 0, from W, b and z alone.
+
+The residual is the natural map, max_i |min(z_i, w_i)|, of two numbers without a unit,
+
+    w_i / s_i                    s_i = |b_i| + sum_j |W_ij z_j|   the size of the terms that w_i is a sum of
+    z_i max_k |W_ki| / s_k       the largest share that z_i has in any row
+
+so it is unchanged when rows and columns are scaled. It is a componentwise backward error in the sense of
+W. Oettli and W. Prager, Numer. Math. 6 (1964) 405: up to a factor n, z solves exactly a problem whose data
+differ from W and b by this relative amount.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lcpstep.compiled import compiled
+
+EPSILON = 2.220446049250313e-16
+
+
+def judge(W: Any, b: Any, z: Any, w: Any, s: Any) -> float:
+    """Residual of z for a dense W; fills w = W z + b and the sizes s."""
+    n = b.shape[0]
+    for i in range(n):
+        w[i], s[i] = b[i], abs(b[i])
+        for j in range(n):
+            if z[j] != 0.0:
+                term = W[i, j] * z[j]
+                w[i] += term
+                s[i] += abs(term)
+    worst = 0.0
+    for i in range(n):
+        if not s[i] < np.inf:
+            return np.inf
+        relative = w[i] / s[i] if s[i] > 0.0 else 0.0
+        if z[i] < 0.0 or (z[i] > 0.0 and relative > worst):
+            worst = max(worst, violation(z[i], relative, share(W, z, s, i)))
+        else:
+            worst = max(worst, -relative)
+    return worst
+
+
+def violation(z: float, relative: float, part: float) -> float:
+    """|min(z, w)| in relative terms: part is the share of |z|, relative is w / s."""
+    return max(part, -relative) if z < 0.0 else max(min(part, relative), -relative)
+
+
+def share(W: Any, z: Any, s: Any, i: int) -> float:
+    """Largest relative contribution of z_i to a row; one if no row feels it, for then only zero is right."""
+    largest, felt = 0.0, False
+    for k in range(z.shape[0]):
+        if W[k, i] != 0.0 and s[k] > 0.0:
+            felt = True
+            largest = max(largest, abs(W[k, i] * z[i]) / s[k])
+    return largest if felt else 1.0
+
+
+def proves_infeasible(W: Any, b: Any, y: Any) -> bool:
+    """Whether y >= 0, W^T y <= 0 and b^T y < 0 hold up to rounding, so that W z + b >= 0, z >= 0 cannot.
+
+    For then 0 <= y^T (W z + b) = (W^T y)^T z + b^T y < 0 (Farkas).
+    """
+    n = b.shape[0]
+    slack = 4.0 * n * EPSILON
+    for j in range(n + 1):
+        total, size = 0.0, 0.0
+        for i in range(n):
+            term = y[i] * (W[i, j] if j < n else b[i])
+            total += term
+            size += abs(term)
+            if not y[i] >= 0.0:
+                return False
+        if (j < n and total > slack * size) or (j == n and not total < -slack * size):
+            return False
+    return True
+
+
+def residual(W: Any, b: Any, z: Any) -> float:
+    """Judged residual of z, dense or sparse W.
+
+    Parameters
+    ----------
+    W : (n, n) array or scipy.sparse matrix
+    b, z : (n,)
+
+    Returns
+    -------
+    The relative natural-map residual of this module: zero exactly at a solution, about 1e-16 for an answer
+    as good as rounding allows, infinite where W z + b overflows or is not a number.
+    """
+    if hasattr(W, "tocsc"):
+        return _sparse(W, b, z)
+    W, b, z = (np.array(a, dtype=float, order="C") for a in (W, b, z))
+    return float(compiled(judge)(W, b, z, np.empty_like(b), np.empty_like(b)))
+
+
+def _sparse(W: Any, b: Any, z: Any) -> float:
+    W = W.tocsc()
+    size = abs(W)
+    with np.errstate(over="ignore", invalid="ignore"):
+        w = W @ z + b
+        s = size @ np.abs(z) + np.abs(b)
+    if not np.all(s < np.inf):
+        return float("inf")
+    felt_rows = s > 0.0
+    inverse = np.divide(1.0, s, out=np.zeros_like(s), where=felt_rows)
+    relative = w * inverse
+    column = np.repeat(np.arange(len(b)), np.diff(W.indptr))
+    parts, felt = np.zeros_like(s), np.zeros(len(b), dtype=bool)
+    np.maximum.at(parts, column, size.data * inverse[W.indices] * np.abs(z)[column])
+    np.logical_or.at(felt, column, (W.data != 0.0) & felt_rows[W.indices])
+    parts[~felt] = 1.0
+    return float(compiled(_worst)(z, relative, parts))
+
+
+def _worst(z: Any, relative: Any, parts: Any) -> float:
+    worst = 0.0
+    for i in range(z.shape[0]):
+        worst = max(worst, violation(z[i], relative[i], parts[i] if z[i] != 0.0 else 0.0))
+    return worst

@@ -1,0 +1,110 @@
+"""Small dense problems, from within compiled code: one status out, nothing allocated.
+
+    status = solve_small(W, b, z, work)
+
+z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
+beyond, the set of positive z of the guess is tried, then Lemke's method finds a basis, whose answer is
+computed afresh from W and b. Every answer is judged; after a refused one, indices are exchanged until the
+judge agrees, and a small problem is enumerated.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.lcp.enumeration import enumerate_bases
+from lcpstep.lcp.judge import judge, proves_infeasible
+from lcpstep.lcp.lemke import lemke
+from lcpstep.lcp.principal import exchange_indices
+from lcpstep.lcp.scaling import equilibrate
+from lcpstep.lcp.small import solve_one, solve_two
+from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, TOLERANCE
+from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, RAY_START, SIZE, SLACK, Workspace, workspace
+
+__all__ = ["Workspace", "solve_small", "workspace"]
+
+WARM = 3  # exchanges of indices granted to a guess
+RESCUE = 20  # exchanges granted to a basis that the judge refused
+TINY = 8  # up to this size every basis is tried at last
+ENOUGH = 1000  # pivots granted at least, and per unknown
+PER_UNKNOWN = 20
+
+
+def solve_small(W: Any, b: Any, z: Any, work: Any) -> int:
+    """Solve 0 <= z, W z + b >= 0, z^T (W z + b) = 0 for a small dense W.
+
+    Parameters
+    ----------
+    W : (n, n), b : (n,) float arrays, C-contiguous; not modified
+    z : (n,) in: a guess, zeros if there is none; out: the solution, or the last attempt
+    work : Workspace for n unknowns or more; its report holds the residual and the number of iterations
+
+    Returns
+    -------
+    A Status as an int, SOLVED = 0.
+    """
+    n = b.shape[0]
+    return solve_dense(W, b, z, TOLERANCE, max(ENOUGH, PER_UNKNOWN * n), work)
+
+
+def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
+    """`solve_small` with the judge's tolerance and the limit on pivots."""
+    n = b.shape[0]
+    work.report[:] = 0.0
+    if n == 1:
+        return solve_one(W, b, z, tolerance, work)
+    if n == 2 and solve_two(W, b, z, tolerance, work):
+        return SOLVED
+    guessed = choose_positive(z, work)
+    if not guessed and nonnegative(b):
+        z[:] = 0.0
+        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+        return SOLVED
+    equilibrate(W, b, work)
+    if guessed and exchange_indices(W, b, z, tolerance, WARM, work) == SOLVED:
+        return SOLVED
+    status = lemke(n, max_pivots, work)
+    if status == RAY and proves_infeasible(W, b, work.vectors[RAY_DIRECTION, :n]):
+        z[:] = work.vectors[RAY_START, :n]
+        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+        return INFEASIBLE
+    return rescue(W, b, z, tolerance, status, work)
+
+
+def rescue(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -> int:
+    """Compute the answer of the basis found; where the judge refuses it, look further."""
+    n = b.shape[0]
+    if status != SOLVED:
+        choose_negative(b, work)
+    found = exchange_indices(W, b, z, tolerance, RESCUE, work)
+    if found != SOLVED and n <= TINY:
+        found = enumerate_bases(W, b, z, tolerance, 2**n, work)
+    if found == SOLVED:
+        return SOLVED
+    for i in range(n):
+        z[i] = work.vectors[RAY_START, i] if status == RAY else max(z[i], 0.0)
+    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return FAILED if status == SOLVED else status
+
+
+def choose_positive(z: Any, work: Any) -> bool:
+    """Mark the positive z of a guess; False if there is none."""
+    some = False
+    for i in range(z.shape[0]):
+        work.indices[CHOSEN, i] = 1 if z[i] > 0.0 else 0
+        some = some or z[i] > 0.0
+    return some
+
+
+def choose_negative(b: Any, work: Any) -> None:
+    """Mark the indices with b < 0, where w would be negative without z."""
+    for i in range(b.shape[0]):
+        work.indices[CHOSEN, i] = 1 if b[i] < 0.0 else 0
+
+
+def nonnegative(b: Any) -> bool:
+    """Whether z = 0 is the solution."""
+    for i in range(b.shape[0]):
+        if not b[i] >= 0.0:
+            return False
+    return True

@@ -1,0 +1,198 @@
+"""Lemke's complementary pivoting on the scaled problem, with lexicographic anti-cycling.
+
+The problem is widened by a covering variable z_0 >= 0,
+
+    w = W z + b + d z_0,    d > 0,
+
+so that z = 0 with z_0 large is feasible; z_0 is driven out while z_i w_i = 0 stays true for every i: the
+complement of the variable that left enters next. Ties are broken as if b were b + (e, e^2, ..., e^n) for an
+infinitesimal e, so no basis comes twice. It ends when z_0 leaves (solved) or when nothing bounds the entering
+variable (a ray). C. E. Lemke, Management Sci. 11 (1965) 681; R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear
+Complementarity Problem (1992), section 4.4.
+
+Variables are numbered z_0..z_(n-1) = 0..n-1, the covering variable n, w_i = n + 1 + i.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lcpstep.lcp.basis import pivot, set_direction
+from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
+from lcpstep.lcp.workspace import (
+    BASIC,
+    CHOSEN,
+    COLUMN_SCALE,
+    DSLACK,
+    DX,
+    RAY_DIRECTION,
+    RAY_START,
+    SCALED_B,
+    SLACK,
+    TIED,
+    W_PLACE,
+    Z_PLACE,
+    X,
+)
+
+PIVOT = 1e-11  # smallest pivot, relative to the largest entry of its direction
+TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
+NOTHING = -1
+
+
+def lemke(n: int, max_pivots: int, work: Any) -> int:
+    """Pivot from z = 0 to a complementary basis, which is marked in CHOSEN; returns a status."""
+    start(n, work)
+    m, entering = 0, n
+    while work.report[1] < max_pivots:
+        set_direction(entering, m, n, work)
+        leaving = first_leaving(n, work) if m == 0 else ratio_test(m, n, work)
+        if leaving == NOTHING:
+            keep_ray(entering, m, n, work)
+            return RAY
+        m = advance(entering, leaving, m, n, work)
+        work.report[1] += 1.0
+        if leaving == n:
+            for j in range(n):
+                work.indices[CHOSEN, j] = 1 if work.indices[Z_PLACE, j] >= 0 else 0
+            return SOLVED
+        entering = leaving + n + 1 if leaving < n else leaving - n - 1
+    return MAX_ITERATIONS
+
+
+def start(n: int, work: Any) -> None:
+    """The basis of all w, and the covering vector."""
+    for i in range(n):
+        work.columns[n, i] = 1.0
+        work.vectors[SLACK, i] = work.vectors[SCALED_B, i]
+        work.indices[Z_PLACE, i] = work.indices[W_PLACE, i] = -1
+    work.indices[Z_PLACE, n] = -1
+
+
+def first_leaving(n: int, work: Any) -> int:
+    """The w that the covering variable, falling from infinity, reaches first; the last of equal ones."""
+    w, d = work.vectors[SLACK], work.columns[n]
+    lowest = 0
+    for i in range(1, n):
+        if w[i] / d[i] <= w[lowest] / d[lowest]:
+            lowest = i
+    return n + 1 + lowest
+
+
+def ratio_test(m: int, n: int, work: Any) -> int:
+    """The basic variable that bounds the entering one, lexicographically; the covering variable if it can."""
+    bound = first_zero(m, n, work)
+    if bound == np.inf:
+        return NOTHING
+    tied = list_ties(bound, m, n, work)
+    for t in range(tied):
+        if work.indices[TIED, t] == n:
+            return n
+    j = 0
+    while tied > 1 and j < n:
+        tied = keep_lowest(j, tied, m, n, work)
+        j += 1
+    return work.indices[TIED, 0]
+
+
+def first_zero(m: int, n: int, work: Any) -> float:
+    """Growth of the entering variable at which a basic one is surely zero; infinite if none falls.
+
+    Leaves in report[2] the size above which a component of the direction counts.
+    """
+    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    steepest, largest = 1.0, 0.0
+    for q in range(m):
+        steepest, largest = max(steepest, abs(dx[q])), max(largest, abs(x[q]))
+    for i in range(n):
+        steepest, largest = max(steepest, abs(dw[i])), max(largest, abs(w[i]))
+    smallest, slack, bound = PIVOT * steepest, TIE * largest, np.inf
+    for q in range(m):
+        if dx[q] < -smallest:
+            bound = min(bound, (max(x[q], 0.0) + slack) / -dx[q])
+    for i in range(n):
+        if dw[i] < -smallest and work.indices[W_PLACE, i] < 0:
+            bound = min(bound, (max(w[i], 0.0) + slack) / -dw[i])
+    work.report[2] = smallest
+    return bound
+
+
+def list_ties(bound: float, m: int, n: int, work: Any) -> int:
+    """List in TIED the variables that reach zero within the bound; returns how many."""
+    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    listed, smallest, tied = work.indices[TIED], work.report[2], 0
+    for q in range(m):
+        if dx[q] < -smallest and x[q] <= -bound * dx[q]:
+            listed[tied] = work.indices[BASIC, q]
+            tied += 1
+    for i in range(n):
+        if dw[i] < -smallest and w[i] <= -bound * dw[i] and work.indices[W_PLACE, i] < 0:
+            listed[tied] = n + 1 + i
+            tied += 1
+    return tied
+
+
+def keep_lowest(j: int, tied: int, m: int, n: int, work: Any) -> int:
+    """Of the tied variables keep those whose coefficient of e^(j+1), over the pivot, is lowest."""
+    listed, lowest, kept = work.indices[TIED], np.inf, 0
+    for t in range(tied):
+        lowest = min(lowest, perturbation(listed[t], j, m, n, work))
+    for t in range(tied):
+        if perturbation(listed[t], j, m, n, work) <= lowest + TIE * max(1.0, abs(lowest)):
+            listed[kept] = listed[t]
+            kept += 1
+    return kept
+
+
+def perturbation(variable: int, j: int, m: int, n: int, work: Any) -> float:
+    """Coefficient of e^(j+1) in the ratio of a basic variable: how b_j moves it, over its pivot."""
+    place = work.indices[W_PLACE, j]
+    if variable <= n:
+        q = work.indices[Z_PLACE, variable]
+        return work.inverse[q, place] / work.vectors[DX, q] if place >= 0 else 0.0
+    i = variable - n - 1
+    if place < 0:
+        return -1.0 / work.vectors[DSLACK, i] if i == j else 0.0
+    moved = 0.0
+    for q in range(m):
+        moved += work.columns[work.indices[BASIC, q], i] * work.inverse[q, place]
+    return moved / work.vectors[DSLACK, i]
+
+
+def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
+    """Let the entering variable grow until the leaving one is zero, and exchange them."""
+    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    if leaving <= n:
+        q = work.indices[Z_PLACE, leaving]
+        theta = max(x[q], 0.0) / -dx[q]
+    else:
+        i = leaving - n - 1
+        theta = -w[i] / dw[i] if m == 0 else max(w[i], 0.0) / -dw[i]
+    for q in range(m):
+        x[q] += theta * dx[q]
+    for i in range(n):
+        w[i] += theta * dw[i]
+    m = pivot(entering, leaving, m, n, work)
+    if entering <= n:
+        x[work.indices[Z_PLACE, entering]] = theta
+    else:
+        w[entering - n - 1] = theta
+    if leaving > n:
+        w[leaving - n - 1] = 0.0
+    return m
+
+
+def keep_ray(entering: int, m: int, n: int, work: Any) -> None:
+    """Store the ray, in the units of W and b: z + t dz and z_0 + t dz_0 for t >= 0."""
+    direction, begin = work.vectors[RAY_DIRECTION], work.vectors[RAY_START]
+    direction[:n], begin[:n], work.report[2:] = 0.0, 0.0, 0.0
+    for q in range(m):
+        j, dx, x = work.indices[BASIC, q], max(work.vectors[DX, q], 0.0), max(work.vectors[X, q], 0.0)
+        if j < n:
+            direction[j], begin[j] = dx * work.vectors[COLUMN_SCALE, j], x * work.vectors[COLUMN_SCALE, j]
+        else:
+            work.report[2], work.report[3] = dx, x
+    if entering < n:
+        direction[entering] = work.vectors[COLUMN_SCALE, entering]

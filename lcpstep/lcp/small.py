@@ -1,0 +1,65 @@
+"""Closed forms for one and two unknowns, each answer judged.
+
+One unknown: z = max(0, -b / W). Two: the four complementary bases, solved by Cramer's rule, in the order of
+their size.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.lcp.judge import judge
+from lcpstep.lcp.status import FAILED, INFEASIBLE, SOLVED
+from lcpstep.lcp.workspace import RAY_DIRECTION, SIZE, SLACK
+
+ROUNDING = 1e-14  # a basis this good is taken without looking at the others
+
+
+def solve_one(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
+    """0 <= z complementary to W z + b >= 0 for numbers W and b."""
+    if b[0] >= 0.0:
+        z[0] = 0.0
+    elif W[0, 0] > 0.0:
+        z[0] = -b[0] / W[0, 0]
+    else:
+        z[0] = 0.0
+        work.vectors[RAY_DIRECTION, 0] = 1.0
+        work.report[0] = 1.0
+        return INFEASIBLE if b[0] < 0.0 else FAILED
+    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return SOLVED if work.report[0] <= tolerance else FAILED
+
+
+def solve_two(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
+    """Whether one of the four bases passes the judge; z is then its answer."""
+    best, best_0, best_1 = tolerance, -1.0, -1.0
+    for basis in range(4):
+        if cramer(W, b, z, basis):
+            found = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+            work.report[0] = found
+            if found <= ROUNDING:
+                return found <= tolerance
+            if found <= best:
+                best, best_0, best_1 = found, z[0], z[1]
+    z[0], z[1] = max(best_0, 0.0), max(best_1, 0.0)
+    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return best_0 >= 0.0
+
+
+def cramer(W: Any, b: Any, z: Any, basis: int) -> bool:
+    """Fill z with the answer of one basis: 0 none, 1 the first, 2 the second, 3 both positive."""
+    z[0], z[1] = 0.0, 0.0
+    if basis == 0:
+        return bool(b[0] >= 0.0 and b[1] >= 0.0)
+    if basis < 3:
+        i = basis - 1
+        if W[i, i] == 0.0:
+            return False
+        z[i] = -b[i] / W[i, i]
+        return bool(z[i] >= 0.0)
+    determinant = W[0, 0] * W[1, 1] - W[0, 1] * W[1, 0]
+    if determinant == 0.0:
+        return False
+    z[0] = (W[0, 1] * b[1] - W[1, 1] * b[0]) / determinant
+    z[1] = (W[1, 0] * b[0] - W[0, 0] * b[1]) / determinant
+    return bool(z[0] >= 0.0 and z[1] >= 0.0)

@@ -1,0 +1,25 @@
+"""How the search for a solution of a complementarity problem ended: one number for kernels, one name for people."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+SOLVED, RAY, INFEASIBLE, MAX_ITERATIONS, FAILED = range(5)  # kernels return these
+TOLERANCE = 1e-10  # residual below which an answer is called solved, unless asked otherwise
+
+
+class Status(IntEnum):
+    """How a solver ended.
+
+    SOLVED          the judged residual is at most the tolerance asked for
+    RAY             no solution found: the pivots left along a ray, which is the certificate
+    INFEASIBLE      no z >= 0 has W z + b >= 0; the certificate proves it
+    MAX_ITERATIONS  the iteration limit came first
+    FAILED          an answer was found, but the judge refused it
+    """
+
+    SOLVED = SOLVED
+    RAY = RAY
+    INFEASIBLE = INFEASIBLE
+    MAX_ITERATIONS = MAX_ITERATIONS
+    FAILED = FAILED

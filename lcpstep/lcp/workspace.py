@@ -1,0 +1,65 @@
+"""The arrays that the pivoting kernels work in, made once for the largest problem and used for every smaller one.
+
+They are few, so that handing them from kernel to kernel costs little; their rows have names.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+# rows of Workspace.vectors
+SCALED_B = 0  # b of the scaled problem
+ROW_SCALE = 1  # powers of two that the rows were multiplied by
+COLUMN_SCALE = 2  # the same for columns: z = column scale * scaled z
+X, DX = 3, 4  # basic z by position, and its change with the entering variable
+SLACK, DSLACK = 5, 6  # w by index, and its change
+LEFT = 7  # a left product with the inverse
+TRIAL = 8  # a solution on trial, or marks
+SIZE = 9  # sizes of the terms of w, the judge's scale
+RAY_DIRECTION, RAY_START = (
+    10,
+    11,
+)  # the ray that pivoting left along: its direction and its start, in the units of z
+VECTORS = 12
+
+# rows of Workspace.indices
+BASIC, TIGHT = 0, 1  # by position: index of the basic z; index of the row whose w is not basic
+Z_PLACE, W_PLACE = 2, 3  # position of z_j in BASIC, of w_i in TIGHT; -1 where there is none
+TIED = 4  # variables that reach zero together
+ORDER = 5  # row interchanges of an elimination
+ACTIVE, CHOSEN = 6, 7  # indices of a principal submatrix, and 1 for each of them, else 0
+INDICES = 8
+
+
+class Workspace(NamedTuple):
+    """Work arrays for problems of up to n unknowns.
+
+    columns : (n+1, n)   columns of the scaled W, each in one piece; the last is Lemke's covering vector
+    inverse : (n, n)     inverse of the basis matrix
+    factor : (n, n)      LU factors of a principal submatrix
+    vectors : (12, n+1)  see the names of its rows in this module
+    indices : (8, 2n+1)  likewise
+    report : (4,)        of the last problem: residual, number of iterations, and the covering variable's
+                         share in a ray, direction and start
+    """
+
+    columns: Any
+    inverse: Any
+    factor: Any
+    vectors: Any
+    indices: Any
+    report: Any
+
+
+def workspace(n_max: int) -> Workspace:
+    """Work arrays for problems of up to n_max unknowns; every thread needs its own."""
+    return Workspace(
+        np.empty((n_max + 1, n_max)),
+        np.empty((n_max, n_max)),
+        np.empty((n_max, n_max)),
+        np.empty((VECTORS, n_max + 1)),
+        np.empty((INDICES, 2 * n_max + 1), np.int64),
+        np.zeros(4),
+    )
