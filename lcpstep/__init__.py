@@ -1,0 +1,28 @@
+"""Simulation of Lagrangian systems with unilateral constraints.
+
+Time-stepping by complementarity problems (`Moreau`) and event by event (`EventDriven`), on scenes made with the
+package `lagrangian`; and `solve_lcp`, the solver underneath. Importing this loads numpy only.
+"""
+
+from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, SimulationInterrupted, UnknownName
+from lcpstep.events import EventDriven
+from lcpstep.lcp import solve_lcp
+from lcpstep.simulate import simulate
+from lcpstep.stepping.moreau import Moreau
+from lcpstep.trajectory import Kind, Status, Trajectory
+
+__version__ = "0.1.0"
+__all__ = [
+    "EventDriven",
+    "Kind",
+    "LcpStepError",
+    "MissingSolver",
+    "Moreau",
+    "SimulationError",
+    "SimulationInterrupted",
+    "Status",
+    "Trajectory",
+    "UnknownName",
+    "simulate",
+    "solve_lcp",
+]

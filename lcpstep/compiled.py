@@ -14,20 +14,37 @@ serves every scene. Nothing here imports numba before something is compiled.
 
 from __future__ import annotations
 
+import dis
 import functools
 import hashlib
 import os
 from collections.abc import Callable, Iterator
 from types import FunctionType
-from typing import Any, cast
+from typing import Any, TypeVar, cast
+
+import numpy as np
 
 Callback = Callable[..., None]
+F = TypeVar("F", bound=Callable[..., Any])
+# Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
+OPTIONS = {"error_model": "numpy", "_nrt": False}
 PLAIN = (int, float, str, tuple)  # constants that numba freezes into the machine code
 
 
 def call(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
     """Evaluate a callback from within a kernel; f is a function here, an address once compiled."""
     f(t, q, v, p, out)
+
+
+def call_solver(f: Any, W: Any, b: Any, z: Any, work: Any) -> int:
+    """Call a complementarity solver from within a kernel; f is a function here, an address once compiled."""
+    return int(f(W, b, z, work))
+
+
+def inline(f: F) -> F:
+    """Mark a kernel to be merged into its callers, so that the tuples it takes are not copied at every call."""
+    f.inline = True  # type: ignore[attr-defined]
+    return f
 
 
 def jit_disabled() -> bool:
@@ -37,42 +54,58 @@ def jit_disabled() -> bool:
 
 def compiled(f: Callable[..., Any]) -> Callable[..., Any]:
     """Numba twin of kernel f, compiled for the argument types of its first call and cached on disk."""
-    return f if jit_disabled() else _twin(cast(FunctionType, f))
+    return f if jit_disabled() else _entry(cast(FunctionType, f))
 
 
-@functools.cache
 def address(f: Callback, ndim: int) -> int:
     """Address of callback f compiled to machine code, for an `out` of ndim dimensions.
 
     Raises whatever numba raises when f cannot be compiled.
     """
-    return cast(int, _cfunc(f, ndim).address)
+    vector, matrix = np.zeros(1), np.zeros((1, 1))
+    return _address(f, None, 0.0, vector, vector, vector, vector if ndim == 1 else matrix)
+
+
+def solver_address(f: Callable[..., int], work: Any) -> int:
+    """Address of a complementarity solver f(W, b, z, work) -> status compiled to machine code."""
+    return _address(f, 0, np.zeros((1, 1)), np.zeros(1), np.zeros(1), work)
+
+
+def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
+    """Address of f compiled for the types of the given arguments and of the value returned."""
+    from numba import typeof
+
+    types = tuple(typeof(x) for x in arguments)
+    return cast(int, _cfunc(cast(FunctionType, f), types, typeof(returned)).address)
 
 
 @functools.cache
-def _twin(f: FunctionType) -> Any:
-    if f is call:
-        return _call_intrinsic()
+def _entry(f: FunctionType) -> Any:
     import numba
 
-    dispatcher = numba.njit(nogil=True, error_model="numpy")(_with_compiled_callees(f))
+    dispatcher = numba.njit(nogil=True, **OPTIONS)(_with_compiled_callees(f))
     _keep_on_disk(dispatcher, f)
     return dispatcher
 
 
 @functools.cache
-def _cfunc(f: Callback, ndim: int) -> Any:
-    from numba import types
+def _callee(f: FunctionType) -> Any:
+    """F as other kernels call it: never from Python, so without the wrappers that take most of the compiling."""
+    if f is call or f is call_solver:
+        return _intrinsics()[f is call_solver]
+    import numba
+
+    inlined = hasattr(f, "inline")
+    wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return numba.njit(nogil=True, forceinline=inlined, **wrappers, **OPTIONS)(_with_compiled_callees(f))
+
+
+@functools.cache
+def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any) -> Any:
     from numba.core.ccallback import CFunc
 
-    vector = types.float64[::1]
-    out = vector if ndim == 1 else types.float64[:, ::1]
-    arguments = (types.float64, vector, vector, vector, out)
-    function = cast(FunctionType, f)
-    c_function = CFunc(
-        _with_compiled_callees(function), (arguments, types.void), {}, {"error_model": "numpy"}
-    )
-    _keep_on_disk(c_function, function)
+    c_function = CFunc(_with_compiled_callees(f), (arguments, returned), {}, OPTIONS)
+    _keep_on_disk(c_function, f)
     c_function.compile()
     return c_function
 
@@ -93,7 +126,7 @@ def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
 
 def _with_compiled_callees(f: FunctionType) -> FunctionType:
     """A copy of f in which every plain function that it names is replaced by its compiled twin."""
-    scope = {**f.__globals__, **{name: _twin(g) for name, g in _callees(f)}}
+    scope = {**f.__globals__, **{name: _callee(g) for name, g in _callees(f)}}
     copy = FunctionType(f.__code__, scope, f.__name__, f.__defaults__, f.__closure__)
     copy.__kwdefaults__ = f.__kwdefaults__
     copy.__module__, copy.__qualname__ = f.__module__, f.__qualname__
@@ -101,10 +134,16 @@ def _with_compiled_callees(f: FunctionType) -> FunctionType:
 
 
 def _callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
-    for name in f.__code__.co_names:
+    for name in _global_names(f):
         g = f.__globals__.get(name)
         if isinstance(g, FunctionType):
             yield name, g
+
+
+@functools.cache
+def _global_names(f: FunctionType) -> list[str]:
+    """Globals that f reads; its attribute names, which `co_names` mixes with these, left out."""
+    return sorted({i.argval for i in dis.get_instructions(f) if i.opname == "LOAD_GLOBAL"})
 
 
 @functools.cache
@@ -123,25 +162,32 @@ def _digest(f: FunctionType) -> str:
 def _code_text(f: FunctionType) -> str:
     code = f.__code__
     literals = [c for c in code.co_consts if not hasattr(c, "co_code")]
-    named = [(n, f.__globals__[n]) for n in code.co_names if isinstance(f.__globals__.get(n), PLAIN)]
+    named = [(n, f.__globals__[n]) for n in _global_names(f) if isinstance(f.__globals__.get(n), PLAIN)]
     return f"{f.__module__}.{f.__qualname__} {code.co_code.hex()} {code.co_names} {literals} {named}"
 
 
 @functools.cache
-def _call_intrinsic() -> Any:
-    """`call` as machine code: a jump to the address, arguments passed as numba's @cfunc takes them."""
+def _intrinsics() -> tuple[Any, Any]:
+    """`call` and `call_solver` as machine code: a jump to an address, with the arguments that a CFunc takes."""
     from llvmlite import ir
     from numba import types
     from numba.extending import intrinsic
 
+    def jump(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
+        c_function = ir.FunctionType(context.get_value_type(signature.return_type), kinds)
+        return builder.call(builder.inttoptr(args[0], c_function.as_pointer()), args[1:])
+
     @intrinsic
     def call_address(typingctx: Any, f: Any, t: Any, q: Any, v: Any, p: Any, out: Any) -> Any:
         def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
-            c_function = ir.FunctionType(context.get_value_type(types.void), kinds)
-            builder.call(builder.inttoptr(args[0], c_function.as_pointer()), args[1:])
+            jump(context, builder, signature, args)
             return context.get_dummy_value()
 
         return types.void(types.int64, types.float64, q, v, p, out), codegen
 
-    return call_address
+    @intrinsic
+    def call_solver_address(typingctx: Any, f: Any, W: Any, b: Any, z: Any, work: Any) -> Any:
+        return types.int64(types.int64, W, b, z, work), jump
+
+    return call_address, call_solver_address

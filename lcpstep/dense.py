@@ -1,0 +1,71 @@
+"""Small dense linear algebra inside kernels, without allocation: copies, and Gaussian elimination with pivoting.
+
+Source: G. Golub, C. Van Loan, Matrix Computations, algorithm 3.4.1. LAPACK pays off only beyond the sizes that
+mechanisms have, and cannot be called from here without allocating.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import inline
+
+
+@inline
+def assign(x: Any, y: Any) -> None:
+    """X <- y, for arrays of one shape that do not overlap."""
+    for i in range(x.size):
+        x.flat[i] = y.flat[i]
+
+
+def add(x: Any, factor: float, y: Any) -> None:
+    """X <- x + factor y."""
+    for i in range(x.size):
+        x.flat[i] += factor * y.flat[i]
+
+
+def join(x: Any, y: Any, z: Any) -> None:
+    """X <- (y, z)."""
+    for i in range(len(y)):
+        x[i], x[len(y) + i] = y[i], z[i]
+
+
+def split(x: Any, y: Any, z: Any) -> None:
+    """(y, z) <- x."""
+    for i in range(len(y)):
+        y[i], z[i] = x[i], x[len(y) + i]
+
+
+def factorise(A: Any, pivots: Any) -> bool:
+    """P A = L U in place; False where A is singular or not finite."""
+    n = len(A)
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[best, k]):
+                best = i
+        pivots[k] = best
+        if not abs(A[best, k]) > 0.0:
+            return False
+        if best != k:
+            for j in range(n):
+                A[k, j], A[best, j] = A[best, j], A[k, j]
+        for i in range(k + 1, n):
+            A[i, k] /= A[k, k]
+            for j in range(k + 1, n):
+                A[i, j] -= A[i, k] * A[k, j]
+    return True
+
+
+def solve(A: Any, pivots: Any, x: Any) -> None:
+    """x <- A^-1 x, with A from `factorise`."""
+    n = len(A)
+    for k in range(n):
+        x[k], x[pivots[k]] = x[pivots[k]], x[k]
+    for k in range(n):
+        for i in range(k + 1, n):
+            x[i] -= A[i, k] * x[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            x[k] -= A[k, j] * x[j]
+        x[k] /= A[k, k]

@@ -1,0 +1,101 @@
+"""The equations of a model, evaluated: forces, masses, gaps, gap velocities and accelerations.
+
+    M v' = f(t, q, v) + G^T lambda,    u = G v + g_t,    u' = G v' + bias
+
+Kernels in plain Python (see `lcpstep.compiled`); outputs are written into the arrays handed in.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lcpstep.compiled import call, inline
+from lcpstep.dense import assign
+from lcpstep.model import ABSENT
+
+
+@inline
+def external_force(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
+    """F(t) of a linear system, the forces of a moving frame included."""
+    n = len(out)
+    if model.force != ABSENT:
+        call(model.force, t, q, v, model.p, out)
+    else:
+        cosine, sine = 1.0, 0.0
+        if model.omega != 0.0:
+            cosine, sine = math.cos(model.omega * t), math.sin(model.omega * t)
+        for i in range(n):
+            out[i] = model.constant[i] + model.cosine[i] * cosine + model.sine[i] * sine
+    if model.frame != ABSENT:
+        c = model.frame_now
+        call(model.frame, t, q, v, model.p, c)
+        for i in range(n):
+            for j in range(n):
+                out[i] -= model.M[i, j] * c[j, 2] + model.C[i, j] * c[j, 1] + model.K[i, j] * c[j, 0]
+
+
+@inline
+def total_force(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
+    """f(t, q, v): all forces but those of the contacts."""
+    if not model.linear:
+        call(model.force, t, q, v, model.p, out)
+        return
+    external_force(model, t, q, v, out)
+    for i in range(len(out)):
+        for j in range(len(out)):
+            out[i] -= model.C[i, j] * v[j] + model.K[i, j] * q[j]
+
+
+def mass(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
+    """M(t, q)."""
+    if model.mass != ABSENT:
+        call(model.mass, t, q, v, model.p, out)
+    else:
+        assign(out, model.M)
+
+
+@inline
+def gaps(model: Any, t: float, q: Any, v: Any, g: Any) -> None:
+    """g(t, q)."""
+    if not model.flat:
+        call(model.gap, t, q, v, model.p, g)
+        return
+    obstacle(model, t, q, v)
+    for c in range(len(g)):
+        g[c] = model.offset[c] - model.motion_now[c, 0]
+        for j in range(len(q)):
+            g[c] += model.G[c, j] * q[j]
+
+
+@inline
+def gap_rates(model: Any, t: float, q: Any, v: Any, G: Any, g_t: Any) -> None:
+    """G(t, q) and g_t(t, q), so that u = G v + g_t."""
+    if model.flat:
+        obstacle(model, t, q, v)
+        for c in range(len(g_t)):
+            g_t[c] = -model.motion_now[c, 1]
+            for j in range(len(q)):
+                G[c, j] = model.G[c, j]
+        return
+    call(model.jacobian, t, q, v, model.p, G)
+    for c in range(len(g_t)):
+        g_t[c] = 0.0
+    if model.gap_t != ABSENT:
+        call(model.gap_t, t, q, v, model.p, g_t)
+
+
+@inline
+def obstacle(model: Any, t: float, q: Any, v: Any) -> None:
+    """Position, velocity and acceleration of the obstacles of flat contacts, into `model.motion_now`."""
+    if model.motion != ABSENT:
+        call(model.motion, t, q, v, model.p, model.motion_now)
+
+
+@inline
+def product(G: Any, v: Any, c: int) -> float:
+    """(G v)_c."""
+    total = 0.0
+    for j in range(len(v)):
+        total += G[c, j] * v[j]
+    return total

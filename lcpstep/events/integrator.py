@@ -1,0 +1,545 @@
+"""The event-driven loop, as kernels: smooth pieces, and what happens where they meet.
+
+Modes of the contact, with the gap velocity u and the gap acceleration alpha of the free motion:
+
+    free      g > 0, or g = 0 and u > 0, or g = u = 0 and alpha > 0
+    impact    g = 0, u < 0                     -> u+ = -r u-
+    closed    g = u = 0, alpha <= 0            -> the contact force keeps g = 0 until alpha turns positive
+
+A chattering sequence is carried to its accumulation point 2 u+ / (|alpha| (1 - r)) after the impact once the error
+of doing so is below the tolerance. Source: G. Osorio, Complex Behavior in Impacting Systems, eqs. 3.16 and 4.2;
+A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with complete chattering,
+Nonlinear Dynamics 58 (2009).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from lcpstep.compiled import call
+from lcpstep.dense import assign, join, split
+from lcpstep.dynamics import gap_rates, gaps, product
+from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor, interpolate
+from lcpstep.events.flow import (
+    CLOSED,
+    FREE,
+    GAUSS,
+    HIGH,
+    LENGTH,
+    LOW,
+    MODE,
+    NUDGE,
+    ON_SURFACE,
+    SCALE,
+    SPEED0,
+    T0,
+    W0,
+    Y0,
+    contact_at,
+    contact_response,
+    free_acceleration,
+    gap_acceleration,
+    gap_bias,
+    inside,
+    near_surface,
+    rk_dense,
+    rk_step,
+    state_at,
+)
+from lcpstep.events.locate import NONE, first_contact, first_release, short_hop
+from lcpstep.model import ABSENT
+
+# Why the loop returned
+FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL = range(5)
+# Places in the array of counters
+STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS = range(6)
+N_COUNTERS = 6
+# Places in the array of the loop's numbers
+NOW, NEXT_STEP, EDGE_G, EDGE_U, EDGE_ALPHA, IMPULSE = range(6)
+N_NUMBERS = 6
+# Kinds of events, the values of `trajectory.Kind`
+IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
+
+RESOLUTION = 2.0**-52
+JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
+SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
+PARTS = 4  # scan intervals of a Runge-Kutta step
+ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
+LONGER = 3.0  # how much longer than its guess a short hop may last
+SLACK = 4  # rows and events that one round of the loop may need
+REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
+
+
+class Flow(NamedTuple):
+    """How the smooth motion is computed, and to what tolerance."""
+
+    closed_form: bool
+    oscillator: Any
+    contact: bool  # whether the scene has a contact
+    scan: float  # longest interval of the scan for events
+    rtol: float
+    atol: float
+    corners: Any  # (m,) in [0, period)
+    period: float
+    t_end: float
+    max_events: int
+
+
+def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, t: float) -> int:
+    """The state at the start of the span, which may lie on the surface or strike it at once."""
+    x[NOW] = t
+    find_corners(flow, piece, t)
+    rebase(model, flow, piece, w, t)
+    if flow.contact:
+        g, u, alpha = contact_at(model, flow, piece, w, 0.0)
+        if not g - g + u - u + alpha - alpha == 0.0:
+            return NOT_FINITE
+        length = speed = 1.0
+        for i in range(len(piece.q)):
+            length, speed = max(length, abs(piece.q[i])), max(speed, abs(piece.v[i]))
+        x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = g, u, alpha
+        if g <= ON_THE_SURFACE * length:
+            if u < -ON_THE_SURFACE * speed:
+                impact(model, flow, piece, w, record, count, x, u)
+            else:
+                settle(model, flow, piece, w, record, count, x, u if u > ON_THE_SURFACE * speed else 0.0)
+    if count[ROW] == 0 and len(record.times) == 0:
+        keep(piece, record, count, x, t)
+    return FINISHED
+
+
+def run(
+    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any, goal: int
+) -> int:
+    """Go on from x[NOW] to the end of the span, or to step number `goal`; says why it returned."""
+    while x[NOW] < flow.t_end and count[STEP] < goal:
+        if count[EVENT] + SLACK > len(record.event_time) or count[ROW] + SLACK > len(record.t):
+            return BUFFER_FULL
+        if count[EVENTS] > flow.max_events:
+            return TOO_MANY_EVENTS
+        if x[NOW] >= piece.x[HIGH]:
+            turn_corner(model, flow, piece, w, x)
+        if piece.x[MODE] == CLOSED and x[EDGE_ALPHA] > 0.0:
+            release(model, flow, piece, w, record, count, x, x[EDGE_ALPHA])
+        if flow.closed_form:
+            code = closed_form_interval(model, flow, piece, tab, w, record, count, x)
+        else:
+            code = runge_kutta_interval(model, flow, piece, tab, w, record, count, x)
+        if code != FINISHED:
+            return code
+    return FINISHED
+
+
+# --- one interval ---------------------------------------------------------------------------------------------
+
+
+def closed_form_interval(
+    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any
+) -> int:
+    """Up to the next event or the end of the scan interval, of the one linear degree of freedom."""
+    a = x[NOW] - piece.x[T0]
+    end = min(flow.t_end, piece.x[HIGH], x[NOW] + flow.scan)
+    b = end - piece.x[T0]
+    tau, hop = NONE, False
+    if flow.contact and piece.x[MODE] == FREE:
+        guess = hop_time(piece, x)
+        if a == 0.0 and guess < SHORT * flow.scan:
+            tau = short_hop(model, flow, piece, w, guess, min(LONGER * guess, b))
+            hop = tau != NONE
+        at_b = (0.0, 0.0, 0.0)
+        if not hop:
+            at_b = contact_at(model, flow, piece, w, b)
+            if not at_b[0] - at_b[0] == 0.0:
+                return NOT_FINITE
+            tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
+        if tau == NONE:
+            x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_b
+    return finish_interval(model, flow, piece, tab, w, record, count, x, a, b, end, tau, hop)
+
+
+def runge_kutta_interval(
+    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any
+) -> int:
+    """One DOP853 step, up to the first event within it."""
+    longest = min(flow.t_end, piece.x[HIGH]) - x[NOW]
+    guess = hop_time(piece, x)
+    h = take_step(model, flow, piece, tab, w, count, x, min(longest, flow.scan, 4.0 * guess))
+    if h < 0.0:
+        return int(-h)
+    end = x[NOW] + h if h < longest else min(flow.t_end, piece.x[HIGH])
+    tau, hop = NONE, False
+    if flow.contact and piece.x[MODE] == FREE:
+        if guess < h:
+            tau = short_hop(model, flow, piece, w, guess, min(LONGER * guess, h))
+            hop = tau != NONE
+        a, at_a = 0.0, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA])
+        for part in range(1, PARTS + 1):
+            if tau == NONE:
+                b = h * part / PARTS
+                at_b = contact_at(model, flow, piece, w, b)
+                if not at_b[0] - at_b[0] == 0.0:
+                    return NOT_FINITE
+                tau = first_contact(model, flow, piece, w, a, at_a, b, at_b)
+                a, at_a = b, at_b
+        if tau == NONE:
+            x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_a
+        elif not hop:
+            tau = refine_contact(model, flow, piece, tab, w, tau)
+    return finish_interval(model, flow, piece, tab, w, record, count, x, 0.0, h, end, tau, hop)
+
+
+def hop_time(piece: Any, x: Any) -> float:
+    """Duration of the hop that has just begun, were its acceleration constant; infinite if none has."""
+    if piece.x[ON_SURFACE] == 1.0 and x[NOW] == piece.x[T0] and x[EDGE_ALPHA] < 0.0 and x[EDGE_U] > 0.0:
+        return 2.0 * x[EDGE_U] / -x[EDGE_ALPHA]
+    return math.inf
+
+
+def finish_interval(
+    model: Any,
+    flow: Any,
+    piece: Any,
+    tab: Any,
+    w: Any,
+    record: Any,
+    count: Any,
+    x: Any,
+    a: float,
+    b: float,
+    end: float,
+    tau: float,
+    hop: bool,
+) -> int:
+    """Take over the interval (a, b], which ends early at tau if there is an event."""
+    count[STEP] += 1
+    closed = flow.contact and piece.x[MODE] == CLOSED
+    if closed:
+        tau = first_release(model, flow, piece, w, a, min(x[EDGE_ALPHA], 0.0), b)
+    stop = b if tau == NONE else tau
+    t_stop = end if tau == NONE else min(piece.x[T0] + tau, end)
+    if tau != NONE and not flow.closed_form and (closed or hop):
+        shorten(model, piece, tab, w, tau)
+    if closed:
+        x[IMPULSE] += contact_impulse(model, flow, piece, w, a, stop)
+    keep_times(model, flow, piece, w, record, count, x, t_stop, tau == NONE and t_stop >= flow.t_end)
+    store_dense(piece, w, record, count)
+    g, u, alpha = x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]
+    if flow.contact:
+        g, u, alpha = contact_at(model, flow, piece, w, stop)
+        if not alpha - alpha + u - u == 0.0:
+            return NOT_FINITE
+        if hop:
+            _, u = near_surface(model, flow, piece, w, tau)
+    state_at(model, flow, piece, w, stop)
+    x[NOW] = t_stop
+    if tau == NONE:
+        if not flow.closed_form:
+            if closed:
+                project(model, piece, t_stop)
+            rebase(model, flow, piece, w, t_stop)
+        if closed:
+            x[EDGE_ALPHA] = min(alpha, 0.0)
+        keep_step(piece, record, count, x)
+    elif closed:
+        release(model, flow, piece, w, record, count, x, JUST_RELEASED)
+        keep_event(piece, record, count, x)
+    else:
+        impact(model, flow, piece, w, record, count, x, min(u, 0.0))
+    return FINISHED
+
+
+# --- Runge-Kutta pieces ---------------------------------------------------------------------------------------
+
+
+def take_step(
+    model: Any, flow: Any, piece: Any, tab: Any, w: Any, count: Any, x: Any, longest: float
+) -> float:
+    """DOP853 step no longer than `longest` that meets the tolerance; its size, or minus the reason of failure."""
+    h = min(x[NEXT_STEP], longest)
+    truncated = h < x[NEXT_STEP]
+    while True:
+        if not rk_step(model, piece, tab, w, x[NOW], h):
+            return -float(NOT_FINITE)
+        count[FORCES] += STAGES + 1
+        error = error_norm(tab, w, h, flow.rtol, flow.atol)
+        if not error - error == 0.0:
+            return -float(NOT_FINITE)
+        if error <= 1.0:
+            break
+        h *= max(LEAST, factor(error))
+        truncated = False
+        if h <= 4.0 * RESOLUTION * abs(x[NOW]):
+            return -float(STEP_TOO_SMALL)
+    x[NEXT_STEP] = max(h * factor(error), x[NEXT_STEP] if truncated else 0.0)
+    if not rk_dense(model, piece, tab, w, x[NOW], h):
+        return -float(NOT_FINITE)
+    count[FORCES] += EXTRA_STAGES
+    return h
+
+
+def shorten(model: Any, piece: Any, tab: Any, w: Any, tau: float) -> None:
+    """Repeat the step with the size tau, so that its end has the accuracy of a step and not of dense output."""
+    rk_step(model, piece, tab, w, piece.x[T0], tau)
+    rk_dense(model, piece, tab, w, piece.x[T0], tau)
+
+
+def refine_contact(model: Any, flow: Any, piece: Any, tab: Any, w: Any, tau: float) -> float:
+    """Time of the contact found on the dense output, corrected on steps that end there."""
+    for _ in range(REFINEMENTS):
+        shorten(model, piece, tab, w, tau)
+        g, u, _ = contact_at(model, flow, piece, w, tau)
+        correction = -g / u if u < 0.0 else 0.0
+        if abs(correction) <= 2.0 * RESOLUTION * (piece.x[T0] + tau) or abs(correction) > 1e-3 * tau:
+            break
+        tau += correction
+    return tau
+
+
+def project(model: Any, piece: Any, t: float) -> None:
+    """Put piece.q, piece.v onto the surface: g = 0, u = 0, against the drift of the integration."""
+    for _ in range(2):
+        W = contact_response(model, piece, t, piece.q, piece.v)
+        gaps(model, t, piece.q, piece.v, piece.g)
+        for i in range(len(piece.q)):
+            piece.q[i] -= piece.MG[i] * piece.g[0] / W
+    W = contact_response(model, piece, t, piece.q, piece.v)
+    u = product(piece.G, piece.v, 0) + piece.g_t[0]
+    for i in range(len(piece.v)):
+        piece.v[i] -= piece.MG[i] * u / W
+
+
+def rebase(model: Any, flow: Any, piece: Any, w: Any, t: float) -> None:
+    """Begin a new piece at time t with the state piece.q, piece.v."""
+    assign(piece.q0, piece.q)
+    assign(piece.v0, piece.v)
+    join(w.y, piece.q, piece.v)
+    piece.x[T0], piece.x[ON_SURFACE], piece.x[SPEED0] = t, 0.0, 0.0
+    if flow.closed_form:
+        piece.x[Y0], piece.x[W0] = piece.q[0], piece.v[0]
+        if model.frame != ABSENT:
+            call(model.frame, t, piece.q0, piece.v0, model.p, model.frame_now)
+            piece.x[Y0] += model.frame_now[0, 0]
+            piece.x[W0] += model.frame_now[0, 1]
+
+
+# --- events ---------------------------------------------------------------------------------------------------
+
+
+def impact(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, u: float) -> None:
+    """Newton's law u+ = -r u- at the state piece.q, piece.v; then free flight, chattering or lasting contact."""
+    t, r = x[NOW], model.restitution[0]
+    W = contact_response(model, piece, t, piece.q, piece.v)
+    p = -(1.0 + r) * u / W
+    for i in range(len(piece.v)):
+        piece.v[i] += piece.MG[i] * p
+    x[IMPULSE] += p
+    log(record, count, t, IMPACT, u, -r * u, p)
+    rebase(model, flow, piece, w, t)
+    settle(model, flow, piece, w, record, count, x, -r * u)
+    keep_event(piece, record, count, x)
+
+
+def settle(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, u: float) -> None:
+    """On the surface at the base of the piece, leaving it with gap velocity u >= 0: which mode comes next."""
+    t, r = x[NOW], model.restitution[0]
+    find_corners(flow, piece, t)
+    piece.x[SPEED0], piece.x[ON_SURFACE], piece.x[MODE] = u, 1.0, FREE
+    alpha = base_acceleration(model, flow, piece, w)
+    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, u, alpha
+    if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
+        return
+    if u == 0.0 or 2.0 * u <= -alpha * 4.0 * RESOLUTION * abs(t):
+        stick(model, flow, piece, w, record, count, x, t)
+    elif chatter_is_over(model, flow, piece, x, u, alpha, r):
+        T = 2.0 * u / (-alpha * (1.0 - r))
+        W = contact_response(model, piece, t, piece.q0, piece.v0)
+        log(record, count, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / W)
+        stick(model, flow, piece, w, record, count, x, t + T)
+
+
+def base_acceleration(model: Any, flow: Any, piece: Any, w: Any) -> float:
+    """alpha at the base of the piece."""
+    _, _, alpha = contact_at(model, flow, piece, w, 0.0)
+    return alpha
+
+
+def chatter_is_over(model: Any, flow: Any, piece: Any, x: Any, u: float, alpha: float, r: float) -> bool:
+    """Whether taking the remaining impacts as one is within the tolerance.
+
+    They accumulate at T = 2 u / (|alpha| (1-r)) but for T |change of alpha| / |alpha|, and the hops that are
+    left out rise no higher than u^2 / (2 |alpha|).
+    """
+    if r == 1.0:
+        return False
+    T = 2.0 * u / (-alpha * (1.0 - r))
+    if x[NOW] + T > min(piece.x[HIGH], flow.t_end):
+        return False
+    length, speed = 0.0, 1.0
+    for i in range(len(piece.q0)):
+        length, speed = max(length, abs(piece.q0[i])), max(speed, abs(piece.v0[i]))
+    tolerance = flow.atol + flow.rtol * length
+    if u * u / (-2.0 * alpha) > tolerance:
+        return False
+    # The hops are so low that the state moves along the surface, by its tangent up to O(T^2).
+    for i in range(len(piece.q0)):
+        piece.q[i], piece.v[i] = piece.q0[i] + T * piece.v0[i], piece.v0[i] + T * piece.a[i]
+    later = surface_acceleration(model, piece, x[NOW] + T)
+    return later < 0.0 and abs(later - alpha) * T * speed <= -alpha * tolerance
+
+
+def surface_acceleration(model: Any, piece: Any, t: float) -> float:
+    """alpha at the state t, piece.q, piece.v."""
+    side = inside(piece, t)
+    free_acceleration(model, piece, side, piece.q, piece.v, piece.a)
+    gap_rates(model, t, piece.q, piece.v, piece.G, piece.g_t)
+    return product(piece.G, piece.a, 0) + gap_bias(model, piece, side, piece.q, piece.v)
+
+
+def stick(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, t_log: float) -> None:
+    """From now on the contact is closed; t_log: when the log says so (the end of a chattering sequence)."""
+    piece.x[MODE] = CLOSED
+    if flow.closed_form:
+        state_at(model, flow, piece, w, 0.0)
+    else:
+        assign(piece.q, piece.q0)
+        assign(piece.v, piece.v0)
+        project(model, piece, x[NOW])
+    rebase(model, flow, piece, w, x[NOW])
+    log(record, count, t_log, STICK, 0.0, 0.0, 0.0)
+
+
+def release(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, alpha: float) -> None:
+    """The closed contact opens now, with the gap acceleration alpha."""
+    if flow.closed_form:
+        state_at(model, flow, piece, w, x[NOW] - piece.x[T0])
+    else:
+        project(model, piece, x[NOW])
+    rebase(model, flow, piece, w, x[NOW])
+    log(record, count, x[NOW], RELEASE, 0.0, 0.0, 0.0)
+    piece.x[MODE], piece.x[ON_SURFACE] = FREE, 1.0
+    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, alpha
+
+
+def turn_corner(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> None:
+    """Enter the next smooth interval, with the accelerations of its side."""
+    find_corners(flow, piece, x[NOW])
+    if flow.contact:
+        _, _, x[EDGE_ALPHA] = contact_at(model, flow, piece, w, x[NOW] - piece.x[T0])
+
+
+def find_corners(flow: Any, piece: Any, t: float) -> None:
+    """The smooth interval that begins at t or contains it."""
+    piece.x[LOW], piece.x[HIGH] = -math.inf, math.inf
+    near = t + 0.5 * NUDGE * max(abs(t), piece.x[SCALE])
+    if len(flow.corners) == 0:
+        return
+    turn = math.floor(near / flow.period) if flow.period < math.inf else 0.0
+    for k in range(-1, 2):
+        start = (turn + k) * flow.period if flow.period < math.inf else 0.0
+        for corner in flow.corners:
+            if start + corner <= near:
+                piece.x[LOW] = max(piece.x[LOW], start + corner)
+            else:
+                piece.x[HIGH] = min(piece.x[HIGH], start + corner)
+
+
+def contact_impulse(model: Any, flow: Any, piece: Any, w: Any, a: float, b: float) -> float:
+    """Impulse of the contact force lambda = -alpha / (G M^-1 G^T) over (a, b) of a closed piece [N s]."""
+    total = 0.0
+    for node, weight in GAUSS:
+        tau = a + node * (b - a)
+        alpha = gap_acceleration(model, flow, piece, w, tau)
+        total -= weight * alpha / contact_response(model, piece, piece.x[T0] + tau, piece.q, piece.v)
+    return total * (b - a)
+
+
+# --- what is kept ---------------------------------------------------------------------------------------------
+
+
+def log(record: Any, count: Any, t: float, kind: int, before: float, after: float, p: float) -> None:
+    """Note an event."""
+    k = count[EVENT]
+    record.event_time[k] = t
+    record.event_kind[k] = kind
+    record.event_contact[k] = 0
+    record.event[k, 0], record.event[k, 1], record.event[k, 2] = before, after, p
+    count[EVENT] += 1
+    count[EVENTS] += 1
+
+
+def keep_times(
+    model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, stop: float, last: bool
+) -> None:
+    """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
+    while count[NEXT_TIME] < len(record.times) and count[ROW] < len(record.t):
+        t = record.times[count[NEXT_TIME]]
+        if t > stop or (t == stop and not last):
+            return
+        state_at(model, flow, piece, w, t - piece.x[T0])
+        keep(piece, record, count, x, t)
+        count[NEXT_TIME] += 1
+
+
+def keep_step(piece: Any, record: Any, count: Any, x: Any) -> None:
+    """Keep the state at the end of a step, if steps are kept."""
+    if record.every > 0 and count[STEP] % record.every == 0:
+        keep(piece, record, count, x, x[NOW])
+
+
+def keep_event(piece: Any, record: Any, count: Any, x: Any) -> None:
+    """Keep the state after an event, if these are kept."""
+    if record.on_events or record.every == 1:
+        assign(piece.q, piece.q0)
+        assign(piece.v, piece.v0)
+        keep(piece, record, count, x, x[NOW])
+
+
+def keep(piece: Any, record: Any, count: Any, x: Any, t: float) -> None:
+    """Keep the state piece.q, piece.v at time t, and the impulse since the one before."""
+    row = count[ROW]
+    record.t[row] = t
+    assign(record.q[row], piece.q)
+    assign(record.v[row], piece.v)
+    record.mode[row] = piece.x[MODE]
+    if record.impulse.shape[1] > 0:
+        record.impulse[row, 0] = x[IMPULSE]
+        x[IMPULSE] = 0.0
+    count[ROW] += 1
+
+
+def store_dense(piece: Any, w: Any, record: Any, count: Any) -> None:
+    """Keep the dense output of the step that began at the last kept state."""
+    if len(record.dense) > 0:
+        assign(record.dense[count[ROW] - 1], w.F)
+        record.length[count[ROW] - 1] = piece.x[LENGTH]
+
+
+def evaluate(
+    model: Any, flow: Any, piece: Any, w: Any, t: Any, q: Any, v: Any, mode: Any, dense: Any, length: Any, out: Any
+) -> None:
+    """States at the times out.t, from the kept states out.row before them and the pieces that start there."""
+    for k in range(len(out.t)):
+        row = out.row[k]
+        assign(piece.q, q[row])
+        assign(piece.v, v[row])
+        tau = out.t[k] - t[row]
+        if tau > 0.0 and flow.closed_form:
+            rebase(model, flow, piece, w, t[row])
+            piece.x[MODE] = mode[row]
+            state_at(model, flow, piece, w, tau)
+        elif tau > 0.0:
+            join(w.y, q[row], v[row])
+            interpolate(dense[row], w.y, tau / length[row], piece.y)
+            split(piece.y, piece.q, piece.v)
+        assign(out.q[k], piece.q)
+        assign(out.v[k], piece.v)
+
+
+class States(NamedTuple):
+    """Times asked for, and the states found there."""
+
+    t: Any  # (m,)
+    row: Any  # (m,) the kept state at or before each
+    q: Any  # (m, n_q)
+    v: Any  # (m, n_q)

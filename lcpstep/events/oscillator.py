@@ -1,0 +1,116 @@
+"""Closed-form motion of one linear degree of freedom under a constant and a harmonic force.
+
+    y'' + 2 delta y' + w2 y = f0 + X-, Y-forcing at the frequency Omega
+
+splits into the steady oscillation X cos(Omega t) + Y sin(Omega t) and a remainder that is carried by
+
+    S'' + 2 delta S' + w2 S = 0,  S(0) = 0, S'(0) = 1;      P = integral of S
+    z(tau) = z0 (S' + 2 delta S) + z0' S + f0 P
+
+for every damping, and for w2 = 0 (a free particle), without loss of digits at small tau. Source: any text on
+linear vibrations, e.g. L. Meirovitch, Fundamentals of Vibrations, chapters 2 and 3.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
+TERMS = 16  # of the series; the first neglected one is below rounding
+NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
+
+
+class Oscillator(NamedTuple):
+    """Coefficients of the equation, per unit mass, and of its steady oscillation."""
+
+    delta: float
+    w2: float
+    f0: float
+    X: float
+    Y: float
+    Omega: float
+
+
+def oscillator(
+    m: float, c: float, k: float, constant: float, cosine: float, sine: float, omega: float
+) -> Any:
+    """Oscillator of m y'' + c y' + k y = F(t); None where it is undamped and near resonance."""
+    delta, w2 = 0.5 * c / m, k / m
+    if omega == 0.0 or (cosine == 0.0 and sine == 0.0):
+        return Oscillator(delta, w2, (constant + (cosine if omega == 0.0 else 0.0)) / m, 0.0, 0.0, 0.0)
+    a, b = w2 - omega * omega, 2.0 * delta * omega
+    if math.hypot(a, b) < NEAR_RESONANCE * (abs(w2) + omega * omega):
+        return None
+    D = m * (a * a + b * b)
+    return Oscillator(
+        delta, w2, constant / m, (cosine * a - sine * b) / D, (cosine * b + sine * a) / D, omega
+    )
+
+
+def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
+    """S, S' and P at tau >= 0."""
+    if delta == 0.0 and w2 == 0.0:
+        return tau, 1.0, 0.5 * tau * tau
+    if max(2.0 * abs(delta) * tau, abs(w2) * tau * tau) < SMALL:
+        return series(delta, w2, tau)
+    if w2 > delta * delta:
+        w = math.sqrt(w2 - delta * delta)
+        decay = math.exp(-delta * tau)
+        S = decay * math.sin(w * tau) / w
+        dS = decay * math.cos(w * tau) - delta * S
+        return S, dS, (1.0 - dS - 2.0 * delta * S) / w2
+    return overdamped(delta, w2, tau)
+
+
+def series(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
+    """The same by their power series."""
+    S = dS = P = 0.0
+    before, term, power = 0.0, 1.0, 1.0  # s_{k-1}, s_k, tau^{k-1}
+    for k in range(1, TERMS + 1):
+        dS += k * term * power
+        S += term * power * tau
+        P += term * power * tau * tau / (k + 1)
+        before, term = term, -(2.0 * delta * k * term + w2 * before) / (k * (k + 1))
+        power *= tau
+    return S, dS, P
+
+
+def overdamped(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
+    """The same where both characteristic exponents are real; w2 may be zero or negative."""
+    root = math.sqrt(delta * delta - w2)
+    fast = -delta - math.copysign(root, delta) if delta != 0.0 else -root
+    slow = w2 / fast
+    if abs(fast - slow) * tau < SMALL:
+        # Nearly equal exponents: S = tau exp(-delta tau) sinh(x)/x with x = root tau
+        x2 = root * root * tau * tau
+        decay = math.exp(-delta * tau)
+        S = tau * decay * (1.0 + x2 / 6.0 * (1.0 + x2 / 20.0 * (1.0 + x2 / 42.0 * (1.0 + x2 / 72.0))))
+        cosh = 1.0 + x2 / 2.0 * (1.0 + x2 / 12.0 * (1.0 + x2 / 30.0 * (1.0 + x2 / 56.0)))
+        dS = decay * cosh - delta * S
+        return S, dS, (1.0 - dS - 2.0 * delta * S) / w2
+    e_fast, e_slow = math.expm1(fast * tau), math.expm1(slow * tau)
+    gap = fast - slow
+    S = (e_fast - e_slow) / gap
+    dS = (fast * (e_fast + 1.0) - slow * (e_slow + 1.0)) / gap
+    P_slow = e_slow / slow if slow != 0.0 else tau
+    return S, dS, (e_fast / fast - P_slow) / gap
+
+
+def flow(o: Any, t0: float, y0: float, w0: float, tau: float) -> tuple[float, float, float]:
+    """Position, velocity and acceleration at t0 + tau of the motion that starts at t0 with y0, w0."""
+    S, dS, P = fundamental(o.delta, o.w2, tau)
+    steady = steady_velocity = steady_acceleration = 0.0
+    z0, dz0 = y0, w0
+    if o.Omega != 0.0:
+        cosine, sine = math.cos(o.Omega * t0), math.sin(o.Omega * t0)
+        z0 -= o.X * cosine + o.Y * sine
+        dz0 -= o.Omega * (o.Y * cosine - o.X * sine)
+        cosine, sine = math.cos(o.Omega * (t0 + tau)), math.sin(o.Omega * (t0 + tau))
+        steady = o.X * cosine + o.Y * sine
+        steady_velocity = o.Omega * (o.Y * cosine - o.X * sine)
+        steady_acceleration = -o.Omega * o.Omega * steady
+    z = z0 * (dS + 2.0 * o.delta * S) + dz0 * S + o.f0 * P
+    dz = -o.w2 * z0 * S + dz0 * dS + o.f0 * S
+    ddz = o.f0 - 2.0 * o.delta * dz - o.w2 * z
+    return steady + z, steady_velocity + dz, steady_acceleration + ddz

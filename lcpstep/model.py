@@ -1,0 +1,137 @@
+"""A scene as kernels see it: numbers, arrays and the addresses of the user's functions.
+
+`model(scene)` compiles the scene's callbacks. One that numba cannot compile is kept as it is, with a warning,
+and the whole run then takes the same kernels in plain Python.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian.checks import Callback
+from lagrangian.system import Harmonic
+from lcpstep import compiled
+
+Array = NDArray[np.float64]
+ABSENT = 0  # in place of a callback that the scene does not have
+
+
+class UncompiledCallback(UserWarning):
+    """A user's function that numba cannot compile; the run takes plain Python, some hundred times slower."""
+
+
+class Model(NamedTuple):
+    """Everything a kernel needs to evaluate a scene's equations; see `lagrangian` for the symbols."""
+
+    linear: bool  # M v' + C v + K q = F(t); otherwise M(t, q) v' = force(t, q, v)
+    M: Array
+    M_inverse: Array
+    C: Array
+    K: Array
+    constant: Array
+    cosine: Array
+    sine: Array
+    omega: float
+    force: Any
+    frame: Any
+    mass: Any
+    force_q: Any
+    force_v: Any
+    flat: bool  # g = G q + offset - s(t); otherwise gap(t, q)
+    G: Array
+    offset: Array
+    restitution: Array
+    motion: Any
+    gap: Any
+    jacobian: Any
+    gap_t: Any
+    bias: Any
+    p: Array
+    frame_now: Array  # (n_q, 3), work space: c, c', c''
+    motion_now: Array  # (n_c, 3), work space: s, s', s''
+
+
+def model(scene: Scene) -> tuple[Model, bool]:
+    """The scene's model, and whether every callback of it could be compiled."""
+    fields = _system(scene) | _contacts(scene)
+    callbacks = {name: f for name, f in fields.items() if callable(f)}
+    addresses = {} if compiled.jit_disabled() else _compile(scene, callbacks)
+    fast = len(addresses) == len(callbacks)
+    return Model(**(fields | addresses if fast else fields)), fast
+
+
+def _compile(scene: Scene, callbacks: dict[str, Callback]) -> dict[str, int]:
+    addresses = {}
+    for name, f in callbacks.items():
+        ndim = 1 if name in ("force", "gap", "gap_t", "bias") else 2
+        try:
+            addresses[name] = compiled.address(f, ndim)
+        except Exception as error:  # numba's errors share no base class
+            reason = str(error).strip().splitlines()[0] if str(error) else type(error).__name__
+            warnings.warn(
+                f"{name} of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
+                UncompiledCallback,
+                stacklevel=4,
+            )
+    return addresses
+
+
+def culprit(scene: Scene, t: float, q: Array, v: Array) -> str:
+    """Which callback is not finite at a state, in words."""
+    try:
+        scene.system.trial(t, q, v, np.array(scene.p))
+        scene.gap(t, q, v)
+    except ValueError as error:
+        return str(error) + ";"
+    return "the motion left the finite numbers, or the step's matrix is singular,"
+
+
+def _system(scene: Scene) -> dict[str, Any]:
+    n_q, system = scene.n_q, scene.system
+    zero, square = np.zeros(n_q), np.zeros((n_q, n_q))
+    fields: dict[str, Any] = dict.fromkeys(("force", "frame", "mass", "force_q", "force_v"), ABSENT)
+    fields |= {"constant": zero, "cosine": zero, "sine": zero, "omega": 0.0, "C": square, "K": square}
+    fields |= {"p": np.array(scene.p), "frame_now": np.zeros((n_q, 3))}
+    if isinstance(system, LinearSystem):
+        M = np.array(system.M)
+        fields |= {"C": np.array(system.C), "K": np.array(system.K), "frame": system.frame or ABSENT}
+        if isinstance(system.force, Harmonic):
+            terms = dict(zip(("constant", "cosine", "sine"), system.force.terms(n_q), strict=True))
+            fields |= {name: np.array(term) for name, term in terms.items()}
+            fields["omega"] = float(system.force.omega)
+        else:
+            fields["force"] = system.force
+    else:
+        M = square if callable(system.mass) else np.array(system.mass)
+        fields |= {"force": system.force, "mass": system.mass if callable(system.mass) else ABSENT}
+        fields |= {"force_q": system.force_q or ABSENT, "force_v": system.force_v or ABSENT}
+    inverse = np.linalg.inv(M) if np.any(M) else square
+    return fields | {"linear": isinstance(system, LinearSystem), "M": M, "M_inverse": inverse}
+
+
+def _contacts(scene: Scene) -> dict[str, Any]:
+    n_q, n_c, contacts = scene.n_q, scene.n_c, scene.contacts
+    fields: dict[str, Any] = dict.fromkeys(("motion", "gap", "jacobian", "gap_t", "bias"), ABSENT)
+    fields |= {"flat": True, "G": np.zeros((n_c, n_q)), "offset": np.zeros(n_c)}
+    fields |= {"restitution": np.zeros(n_c), "motion_now": np.zeros((n_c, 3))}
+    if contacts is None:
+        return fields
+    fields["restitution"] = np.array(contacts.restitution)
+    if isinstance(contacts, LinearContacts):
+        return fields | {
+            "G": np.array(contacts.G),
+            "offset": np.array(contacts.offset),
+            "motion": contacts.motion or ABSENT,
+        }
+    return fields | {
+        "flat": False,
+        "gap": contacts.gap,
+        "jacobian": contacts.jacobian,
+        "gap_t": contacts.gap_t or ABSENT,
+        "bias": contacts.bias or ABSENT,
+    }

@@ -1,0 +1,59 @@
+"""simulate(scene, method): the one door to both integrators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol
+
+from lagrangian import Scene
+from lcpstep.recording import Keep, Kept
+
+if TYPE_CHECKING:
+    from lcpstep.trajectory import Trajectory
+
+
+class Method(Protocol):
+    """How a motion is computed: `lcpstep.Moreau`, `lcpstep.EventDriven`."""
+
+    def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
+        """The motion of a scene."""
+
+
+def simulate(
+    scene: Scene, method: Method, *, keep: Keep = 1, progress: Callable[[float], None] | None = None
+) -> Trajectory:
+    """Motion of a scene.
+
+    Parameters
+    ----------
+    scene : lagrangian.Scene
+    method : lcpstep.Moreau or lcpstep.EventDriven
+    keep : which states the trajectory holds
+        1: every step (default); k: every k-th; increasing times: those; "impacts": those right after an event.
+        The impact log is always complete.
+    progress : called now and then with the time reached [s]
+
+    Returns
+    -------
+    Trajectory; its `status` is DONE, or says why the run ended before the end of the span
+
+    Raises
+    ------
+    TypeError   scene is no Scene, or method no method
+    ValueError   keep is none of the above
+    SimulationError   a callback or the motion became infinite or not-a-number; carries the motion so far
+    SimulationInterrupted   a KeyboardInterrupt; carries the motion so far
+
+    Examples
+    --------
+    >>> from lagrangian import scenes
+    >>> from lcpstep import Moreau, simulate
+    >>> ball = simulate(scenes.bouncing_ball(t_end=1.0), Moreau(h=1e-3))
+    >>> ball.status.name
+    'DONE'
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
+    if isinstance(method, type) or not hasattr(method, "run"):
+        raise TypeError(f"method: expected for example lcpstep.Moreau(h=1e-4), got {method!r}")
+    return method.run(scene, Kept.parse(keep, scene.t_span), progress or (lambda _: None))

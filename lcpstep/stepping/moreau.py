@@ -1,0 +1,257 @@
+"""The Moreau theta-method: its parameters, and a run from a scene to a trajectory.
+
+The loop over steps is a kernel (`theta.run`); this file prepares its arrays, feeds it in portions, hands
+complementarity problems to an outside solver where one is named, and says in words how a run ended.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.compiled import compiled, jit_disabled, solver_address
+from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.lcp import check_method, solve_lcp
+from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.model import Model, culprit, model
+from lcpstep.recording import Kept, Recorder
+from lcpstep.stepping import theta as loop
+from lcpstep.stepping.newton import Newton
+from lcpstep.trajectory import Counts, Status, Trajectory
+
+Array = NDArray[np.float64]
+PORTION = 65536  # steps between two looks at the outside world
+WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
+
+
+@dataclass(frozen=True)
+class Moreau:
+    """Moreau's time-stepping with the theta-method.
+
+    Parameters
+    ----------
+    h : step [s]; the last step is shortened where h does not divide the span
+    theta : 0 explicit, 1/2 trapezoidal (keeps the energy of linear systems), 1 implicit
+    lcp : solver of the complementarity problems, "lemke" (compiled with the loop) or any name that
+        `lcpstep.solve_lcp` takes: "qp", "qp:daqp", ...
+
+    Raises
+    ------
+    ValueError   h is not positive, theta lies outside [0, 1], or the solver's name is unknown
+    MissingSolver   the solver is not installed
+
+    Notes
+    -----
+    A contact is active in a step where g + (h/2) u <= 0 at its start. Order one in the presence of impacts,
+    whatever theta: an impact is moved to the end of its step.
+    """
+
+    h: float = 1e-4
+    theta: float = 0.5
+    lcp: str = "lemke"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "h", checks.positive("h", self.h))
+        object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
+        check_method(self.lcp)
+
+    def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
+        """The motion of a scene; see `lcpstep.simulate`."""
+        return _Run(self, scene, kept).finish(progress)
+
+
+def plan(m: Model, h: float, theta: float) -> loop.Plan:
+    """What steps of size h multiply with: A = M + h theta C + h^2 theta^2 K, inverted once."""
+    n_q, n_c = m.G.shape[1], m.G.shape[0]
+    inverse = np.zeros((n_q, n_q))
+    if m.linear:
+        inverse = np.linalg.inv(m.M + h * theta * m.C + (h * theta) ** 2 * m.K)
+    A_g = inverse @ m.G.T
+    return loop.Plan(
+        h=h,
+        theta=theta,
+        A_q=h * inverse @ m.K,
+        A_v=inverse @ (h * m.C + h * h * theta * m.K),
+        A_f=h * inverse,
+        A_g=np.ascontiguousarray(A_g).reshape(n_q, n_c),
+        W=m.G @ A_g,
+    )
+
+
+def start(scene: Scene, fast: bool) -> loop.State:
+    """State at the start of the scene's span, with the work space of a step."""
+    n_q, n_c = scene.n_q, scene.n_c
+    vectors = {name: np.zeros(n_q) for name in ("force", "next_force", "next_q", "next_v", "v_free")}
+    contacts = {name: np.zeros(n_c) for name in ("g", "u", "impulse", "p", "g_t", "b", "z")}
+    newton = Newton(
+        *(np.zeros(n_q) for _ in range(5)),
+        *(np.zeros((n_q, n_q)) for _ in range(4)),
+        pivots=np.zeros(n_q, dtype=np.int64),
+    )
+    lcp = workspace(max(n_c, 1))
+    return loop.State(
+        q=np.array(scene.q0),
+        v=np.array(scene.v0),
+        closed=np.zeros(n_c, dtype=np.int64),
+        G=np.zeros((n_c, n_q)),
+        active=np.zeros(n_c, dtype=np.int64),
+        W=np.zeros(n_c * n_c),
+        solver=solver_address(solve_small, lcp) if fast else solve_small,
+        lcp=lcp,
+        newton=newton,
+        **vectors,
+        **contacts,
+    )
+
+
+class _Run:
+    """One run: the kernel's arrays, and the portions that it is fed in."""
+
+    def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
+        self.method, self.scene, self.kept = method, scene, kept
+        self.model, fast = model(scene)
+        fast = fast and not jit_disabled()
+        self.kernel = compiled(loop.run) if fast else loop.run
+        self.state = start(scene, fast)
+        # A portion keeps at most its steps, the given times, and the first and last state.
+        self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2)
+        self.count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
+        self.totals = {"steps": 0, "events": 0}
+
+    def finish(self, progress: Callable[[float], None]) -> Trajectory:
+        """Run to the end of the span, or to where it cannot go on."""
+        (t_start, t_end), h = self.scene.t_span, self.method.h
+        steps = (t_end - t_start) / h
+        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
+        status = Status.DONE
+        try:
+            begin = loop.begin if self.kernel is loop.run else compiled(loop.begin)
+            begin(self.model, self.state, self.recorder.buffers, self.count, t_start)
+            if whole > 0:
+                exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
+                status = self.portions(
+                    plan(self.model, exact, self.method.theta), t_start, 0, whole, progress
+                )
+            if status == Status.DONE and abs(steps - whole) > WHOLE:
+                t_last = t_start + whole * h
+                rest = plan(self.model, t_end - t_last, self.method.theta)
+                status = self.portions(rest, t_last, whole, whole + 1, progress)
+        except KeyboardInterrupt:
+            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+        result = self.trajectory(status)
+        if status == Status.NOT_FINITE:
+            raise SimulationError(result.message, result)
+        return result
+
+    def portions(
+        self, p: loop.Plan, t0: float, first: int, last: int, progress: Callable[[float], None]
+    ) -> Status:
+        """Steps first .. last - 1 of the run, all of one size."""
+        count, external, solved = self.count, self.method.lcp != "lemke", False
+        self.plan, self.t0, self.first = p, t0, first
+        while count[loop.STEP] < last:
+            goal = min(last, int(count[loop.STEP]) + PORTION)
+            code = loop.FINISHED
+            while count[loop.STEP] < goal:
+                code = self.kernel(
+                    self.model, p, self.state, self.recorder.buffers, count, t0, first, goal, external, solved
+                )
+                solved = False
+                if code == loop.LOG_FULL:
+                    self.empty()
+                elif code == loop.NEED_LCP:
+                    solved = self.solve_outside()
+                    if not solved:
+                        code = loop.LCP_FAILED
+                if code not in (loop.FINISHED, loop.LOG_FULL, loop.NEED_LCP):
+                    break
+            self.empty()
+            progress(self.now)
+            if count[loop.STEP] < goal:
+                return STATUS[code]
+        return Status.DONE
+
+    def solve_outside(self) -> bool:
+        """Hand the active problem to the named solver; whether it was solved."""
+        s = self.state
+        n_a = int(np.count_nonzero(s.g + 0.5 * self.plan.h * s.u <= 0.0))
+        W = s.W[: n_a * n_a].reshape(n_a, n_a)
+        solution = solve_lcp(W, s.b[:n_a], method=self.method.lcp)
+        s.z[:n_a] = solution.z
+        return bool(solution.solved)
+
+    @property
+    def now(self) -> float:
+        """Time of the current state [s]."""
+        return self.t0 + self.plan.h * (int(self.count[loop.STEP]) - self.first)
+
+    def empty(self) -> None:
+        """Move what the kernel's buffers hold to the recorder's keeping."""
+        rows, events = int(self.count[loop.ROW]), int(self.count[loop.EVENT])
+        self.recorder.empty(rows, events)
+        self.totals["events"] += events
+        self.count[loop.ROW] = self.count[loop.EVENT] = 0
+
+    def trajectory(self, status: Status) -> Trajectory:
+        """Everything computed so far."""
+        self.empty()
+        kept = self.recorder.states()
+        t, q, v, impulse = (kept[name] for name in ("t", "q", "v", "impulse"))
+        if len(self.kept.times) == 0 and self.now > t[-1]:
+            t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
+            impulse = np.vstack([impulse, self.state.impulse])
+        if abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+            t[-1] = self.scene.t_span[1]
+        count = self.count
+        return Trajectory(
+            scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
+            impacts=self.recorder.events(), status=status, message=self.message(status),
+            counts=Counts(
+                steps=int(count[loop.STEP]), lcp_calls=int(count[loop.LCP_CALLS]),
+                force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],
+            ),
+            dense=_interpolation(t, q, v, self.kept.all),
+        )  # fmt: skip
+
+    def message(self, status: Status) -> str:
+        """How the run ended, in words."""
+        s = self.state
+        if status == Status.DONE:
+            return "reached the end of the span"
+        where = f"at t = {self.now:.9g} s, q = {s.q.tolist()}, v = {s.v.tolist()}"
+        if status == Status.INTERRUPTED:
+            return f"interrupted {where}"
+        if status == Status.LCP_FAILED:
+            contacts = np.flatnonzero(s.g + 0.5 * self.plan.h * s.u <= 0.0).tolist()
+            return f"{self.method.lcp} found no solution for the contacts {contacts} {where}"
+        if status == Status.NEWTON_FAILED:
+            return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
+        return f"{culprit(self.scene, self.now + self.plan.h, s.q, s.v)} {where}"
+
+
+STATUS = {
+    loop.NOT_FINITE: Status.NOT_FINITE,
+    loop.LCP_FAILED: Status.LCP_FAILED,
+    loop.NEWTON_FAILED: Status.NEWTON_FAILED,
+}
+
+
+def _interpolation(t: Array, q: Array, v: Array, every_step: bool) -> Callable[[Array], tuple[Array, Array]]:
+    """States between kept ones: linear within a step, as the method itself moves."""
+
+    def at(times: Array) -> tuple[Array, Array]:
+        i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
+        if len(t) == 1:
+            return q[i], v[i]
+        share = (times - t[i]) / (t[i + 1] - t[i])
+        if not every_step and np.any((share != 0.0) & (share != 1.0)):
+            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        share = share[:, None]
+        return (1.0 - share) * q[i] + share * q[i + 1], (1.0 - share) * v[i] + share * v[i + 1]
+
+    return at

@@ -1,0 +1,127 @@
+"""The answer of a simulation: states, impulses, an impact log, and how the run went."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene
+
+Array = NDArray[np.float64]
+
+
+class Status(IntEnum):
+    """How a run ended. Kernels return the number, people read the name."""
+
+    DONE = 0
+    INTERRUPTED = 1
+    NOT_FINITE = 2  # a callback, or the motion, left the finite numbers
+    LCP_FAILED = 3  # the complementarity solver said no
+    NEWTON_FAILED = 4  # the implicit step did not converge
+    TOO_MANY_EVENTS = 5  # events faster than the bound allows
+    STEP_TOO_SMALL = 6  # the tolerance cannot be met
+
+
+class Kind(IntEnum):
+    """What happened at a contact."""
+
+    IMPACT = 0  # velocity jump
+    ACCUMULATION = 1  # infinitely many impacts end here (complete chattering)
+    STICK = 2  # the contact stays closed from here on
+    RELEASE = 3  # a closed contact opens
+
+
+# time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)
+IMPACT_DTYPE = np.dtype(
+    [
+        ("time", "f8"),
+        ("contact", "i4"),
+        ("before", "f8"),
+        ("after", "f8"),
+        ("impulse", "f8"),
+        ("kind", "i4"),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Work done by a run."""
+
+    steps: int = 0
+    lcp_calls: int = 0
+    force_evaluations: int = 0
+    events: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """A motion with impacts.
+
+    Attributes
+    ----------
+    t : (n,)   times of the kept states [s]
+    q, v : (n, n_q)   coordinates and velocities; v is the right limit, after an impact at that time
+    impulse : (n, n_c)   impulse of each contact since the state before [N s], the contact force's included
+    impacts : record array (n_events,)
+        Fields time [s], contact, before, after (gap velocities [m/s]), impulse [N s], kind (`Kind`).
+    status : Status   DONE, or why the run ended early; `message` says it in words
+    counts : Counts   steps, complementarity problems solved, force evaluations, events
+    scene, method : the question, and how it was answered
+    """
+
+    scene: Scene
+    method: Any
+    t: Array
+    q: Array
+    v: Array
+    impulse: Array
+    impacts: Any
+    status: Status
+    message: str
+    counts: Counts
+    dense: Callable[[Array], tuple[Array, Array]]
+
+    def at(self, t: ArrayLike) -> tuple[Array, Array]:
+        """State at any time of the run.
+
+        Parameters
+        ----------
+        t : number or (m,)   times within [self.t[0], self.t[-1]] [s]
+
+        Returns
+        -------
+        q, v : (n_q,) for a number, (m, n_q) for an array; v is the right limit at an impact
+
+        Raises
+        ------
+        ValueError   a time lies outside the run, or between states that were not kept
+        """
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        outside = ~((times >= self.t[0]) & (times <= self.t[-1]))
+        if np.any(outside):
+            raise ValueError(
+                f"t: expected times within [{self.t[0]:g}, {self.t[-1]:g}] s, got {times[outside][0]:g}"
+            )
+        q, v = self.dense(times)
+        return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
+
+    def __repr__(self) -> str:
+        return (
+            f"Trajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"{len(self.t)} states, {len(self.impacts)} events, {self.status.name})"
+        )
+
+
+def records(time: Any, contact: Any, before: Any, after: Any, impulse: Any, kind: Any) -> Any:
+    """Impact log as a record array of `IMPACT_DTYPE`."""
+    log = np.empty(len(time), dtype=IMPACT_DTYPE)
+    columns = (time, contact, before, after, impulse, kind)
+    for name, column in zip(IMPACT_DTYPE.names or (), columns, strict=True):
+        log[name] = column
+    return log.view(np.recarray)
