@@ -1,16 +1,18 @@
-"""Dense elimination with row interchanges, in place, on the leading block of a larger array.
+"""Dense elimination in place, on the leading block of a larger array.
 
-LU factors and, for Lemke's basis, the inverse by Gauss and Jordan. LAPACK would allocate and cost more than
-the whole problem at the sizes of a time step. The matrices come scaled, entries near one.
+LU factors of a principal submatrix, in which dependent indices are recognised and left out, and the inverse
+of Lemke's basis by Gauss and Jordan. LAPACK would allocate and would cost more than the whole problem at the
+sizes of a time step. The matrices come scaled, entries near one.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.lcp.workspace import ORDER
+from lcpstep.lcp.workspace import ACTIVE, CHOSEN, ORDER
 
 SINGULAR = 1e-14  # a pivot below this, next to entries of size one, is rounding
+PREFERENCE = 0.1  # a diagonal pivot is taken if it has this part of the largest one
 
 
 def dot(x: Any, y: Any, m: int) -> float:
@@ -55,27 +57,57 @@ def swap_rows(F: Any, i: int, j: int, k: int) -> None:
             F[i, q], F[j, q] = F[j, q], F[i, q]
 
 
-def factorise(F: Any, k: int, indices: Any) -> bool:
-    """LU factors of the leading k x k block, in place; False if it is singular."""
-    order = indices[ORDER]
-    for s in range(k):
-        order[s] = largest_below(F, s, k)
-        swap_rows(F, s, order[s], k)
-        if not abs(F[s, s]) > SINGULAR:
-            return False
+def swap_columns(F: Any, i: int, j: int, k: int) -> None:
+    """Interchange two columns of the leading k rows."""
+    if i != j:
+        for p in range(k):
+            F[p, i], F[p, j] = F[p, j], F[p, i]
+
+
+def factorise(F: Any, k: int, indices: Any) -> int:
+    """LU factors of the leading k x k block, rows and columns of which are listed in ORDER and ACTIVE.
+
+    An index whose column depends on those before it is left out of the block and of CHOSEN. Returns the
+    size that remains, or -1 if the row of such an index has been used already.
+    """
+    order, s = indices[ORDER], 0
+    while s < k:
+        row = largest_below(F, s, k)
+        if not abs(F[row, s]) > SINGULAR:
+            k = leave_out(F, s, k, indices)
+            if k < 0:
+                return k
+            continue
+        if abs(F[s, s]) < PREFERENCE * abs(F[row, s]):
+            swap_rows(F, s, row, k)
+            order[s], order[row] = order[row], order[s]
         for p in range(s + 1, k):
             factor = F[p, s] / F[s, s]
             if factor != 0.0:
                 subtract(F[p, s:], F[s, s:], factor, k - s)
             F[p, s] = factor
-    return True
+        s += 1
+    return k
 
 
-def back_substitute(F: Any, y: Any, k: int, indices: Any) -> None:
-    """Replace the right-hand side y by the solution of the factorised system."""
-    for s in range(k):
-        row = indices[ORDER, s]
-        y[s], y[row] = y[row], y[s]
+def leave_out(F: Any, s: int, k: int, indices: Any) -> int:
+    """Move row and column of the dependent index at place s to the end; returns the size without it."""
+    order, active, last = indices[ORDER], indices[ACTIVE], k - 1
+    index, row = active[s], s
+    while row < k and order[row] != index:
+        row += 1
+    if row == k:
+        return -1
+    swap_columns(F, s, last, k)
+    swap_rows(F, row, last, k)
+    active[s], active[last] = active[last], active[s]
+    order[row], order[last] = order[last], order[row]
+    indices[CHOSEN, index] = 0
+    return last
+
+
+def back_substitute(F: Any, y: Any, k: int) -> None:
+    """Replace the right-hand side y, in the order of the rows, by the solution of the factorised system."""
     for p in range(1, k):
         y[p] -= dot(F[p], y, p)
     for p in range(k - 1, -1, -1):
@@ -92,9 +124,7 @@ def invert(V: Any, m: int, indices: Any) -> bool:
             return False
         clear_column(V, s, m)
     for s in range(m - 1, -1, -1):
-        if order[s] != s:
-            for p in range(m):
-                V[p, s], V[p, order[s]] = V[p, order[s]], V[p, s]
+        swap_columns(V, s, order[s], m)
     return True
 
 

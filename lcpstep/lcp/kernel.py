@@ -3,9 +3,9 @@
     status = solve_small(W, b, z, work)
 
 z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
-beyond, the set of positive z of the guess is tried, then Lemke's method finds a basis, whose answer is
-computed afresh from W and b. Every answer is judged; after a refused one, indices are exchanged until the
-judge agrees, and a small problem is enumerated.
+beyond, principal pivoting starts from the positive z of the guess, or where b is negative; where a few
+exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and b. Every
+answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
 """
 
 from __future__ import annotations
@@ -23,8 +23,7 @@ from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, RAY_START, SIZE, SLACK,
 
 __all__ = ["Workspace", "solve_small", "workspace"]
 
-WARM = 3  # exchanges of indices granted to a guess
-RESCUE = 20  # exchanges granted to a basis that the judge refused
+EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
 TINY = 8  # up to this size every basis is tried at last
 ENOUGH = 1000  # pivots granted at least, and per unknown
 PER_UNKNOWN = 20
@@ -50,39 +49,31 @@ def solve_small(W: Any, b: Any, z: Any, work: Any) -> int:
 def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
     """`solve_small` with the judge's tolerance and the limit on pivots."""
     n = b.shape[0]
-    work.report[:] = 0.0
+    work.report[0] = work.report[1] = 0.0
     if n == 1:
         return solve_one(W, b, z, tolerance, work)
     if n == 2 and solve_two(W, b, z, tolerance, work):
         return SOLVED
-    guessed = choose_positive(z, work)
-    if not guessed and nonnegative(b):
-        z[:] = 0.0
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    if not choose_positive(z, work):
+        choose_negative(b, work)
+    if exchange_indices(W, b, z, tolerance, EXCHANGES, work) == SOLVED:
         return SOLVED
     equilibrate(W, b, work)
-    if guessed and exchange_indices(W, b, z, tolerance, WARM, work) == SOLVED:
-        return SOLVED
     status = lemke(n, max_pivots, work)
-    if status == RAY and proves_infeasible(W, b, work.vectors[RAY_DIRECTION, :n]):
-        z[:] = work.vectors[RAY_START, :n]
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-        return INFEASIBLE
+    if status == SOLVED and exchange_indices(W, b, z, tolerance, EXCHANGES, work) == SOLVED:
+        return SOLVED
     return rescue(W, b, z, tolerance, status, work)
 
 
 def rescue(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -> int:
-    """Compute the answer of the basis found; where the judge refuses it, look further."""
+    """After a ray, the limit or a refused answer: a proof that there is none, or every basis of a few."""
     n = b.shape[0]
-    if status != SOLVED:
-        choose_negative(b, work)
-    found = exchange_indices(W, b, z, tolerance, RESCUE, work)
-    if found != SOLVED and n <= TINY:
-        found = enumerate_bases(W, b, z, tolerance, 2**n, work)
-    if found == SOLVED:
+    if status == RAY and proves_infeasible(W, b, work.vectors[RAY_DIRECTION]):
+        status = INFEASIBLE
+    elif n <= TINY and enumerate_bases(W, b, z, tolerance, 2**n, work) == SOLVED:
         return SOLVED
     for i in range(n):
-        z[i] = work.vectors[RAY_START, i] if status == RAY else max(z[i], 0.0)
+        z[i] = work.vectors[RAY_START, i] if status in (RAY, INFEASIBLE) else max(z[i], 0.0)
     work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
     return FAILED if status == SOLVED else status
 
@@ -100,11 +91,3 @@ def choose_negative(b: Any, work: Any) -> None:
     """Mark the indices with b < 0, where w would be negative without z."""
     for i in range(b.shape[0]):
         work.indices[CHOSEN, i] = 1 if b[i] < 0.0 else 0
-
-
-def nonnegative(b: Any) -> bool:
-    """Whether z = 0 is the solution."""
-    for i in range(b.shape[0]):
-        if not b[i] >= 0.0:
-            return False
-    return True

@@ -187,7 +187,9 @@ def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
 def keep_ray(entering: int, m: int, n: int, work: Any) -> None:
     """Store the ray, in the units of W and b: z + t dz and z_0 + t dz_0 for t >= 0."""
     direction, begin = work.vectors[RAY_DIRECTION], work.vectors[RAY_START]
-    direction[:n], begin[:n], work.report[2:] = 0.0, 0.0, 0.0
+    for i in range(n):
+        direction[i] = begin[i] = 0.0
+    work.report[2] = work.report[3] = 0.0
     for q in range(m):
         j, dx, x = work.indices[BASIC, q], max(work.vectors[DX, q], 0.0), max(work.vectors[X, q], 0.0)
         if j < n:

@@ -1,48 +1,25 @@
 """Complementary bases: given which z may be positive, the answer is a linear system.
 
-With the index set a, z_a = -W_aa^-1 b_a and z = 0 elsewhere. The factors are fresh (LU with row
-interchanges) and the answer is refined against W itself, so it is as accurate as the conditioning of W_aa
-allows, however the set was found. If some z or w comes out negative, their indices change sides: all of
-them while their number falls, else only the last (J. J. Judice and F. M. Pires, Comput. Oper. Res. 21 (1994)
-587; K. G. Murty, Opsearch 11 (1974) 123), which is finite for P-matrices.
+With the index set a, z_a = -W_aa^-1 b_a and z = 0 elsewhere. The factors are fresh (LU) and the answer is
+refined against W itself, so it is as accurate as the conditioning of W_aa allows, however the set was found.
+Indices whose column depends on the others (a contact given twice) are left out of the set. Where z or w comes
+out negative the indices change sides, all at once (M. M. Kostreva, Linear Algebra Appl. 21 (1978) 263; the same
+as Newton's method on min(z, w) = 0), which ends after a few exchanges or is given up.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.lcp.elimination import back_substitute, copy, factorise, subtract
+from lcpstep.lcp.elimination import back_substitute, factorise
 from lcpstep.lcp.judge import judge, share
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-from lcpstep.lcp.workspace import ACTIVE, CHOSEN, COLUMN_SCALE, DSLACK, SCALED_B, SIZE, SLACK, TRIAL
+from lcpstep.lcp.workspace import ACTIVE, CHOSEN, DX, LEFT, ORDER, SIZE, SLACK, TRIAL, X
 
-REFINEMENTS = 2
-PATIENCE = 3  # exchanges of all indices that may pass without progress
-
-
-def solve_active(z: Any, k: int, work: Any) -> bool:
-    """Fill z with the refined solution for the first k indices of ACTIVE; False if W_aa is singular."""
-    F, columns, active = work.factor, work.columns, work.indices[ACTIVE]
-    for p in range(k):
-        for q in range(k):
-            F[p, q] = columns[active[q], active[p]]
-    if not factorise(F, k, work.indices):
-        return False
-    n, x, w, change = z.shape[0], work.vectors[TRIAL], work.vectors[SLACK], work.vectors[DSLACK]
-    for i in range(n):
-        x[i] = 0.0
-    for _ in range(1 + REFINEMENTS):
-        copy(w, work.vectors[SCALED_B], n)
-        for q in range(k):
-            subtract(w, columns[active[q]], -x[active[q]], n)
-        for p in range(k):
-            change[p] = w[active[p]]
-        back_substitute(F, change, k, work.indices)
-        for q in range(k):
-            x[active[q]] -= change[q]
-    for i in range(n):
-        z[i] = x[i] * work.vectors[COLUMN_SCALE, i]
-    return True
+REFINEMENTS = 3
+ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine
+UNDECIDED = 1e-9  # the same while the set is still changing
+PATIENCE = 2  # exchanges that may pass without fewer indices on the wrong side
 
 
 def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
@@ -51,53 +28,126 @@ def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work:
     The last answer is in z, its residual in report[0]; iterations are added to report[1].
     """
     n = b.shape[0]
+    for i in range(n):
+        work.vectors[TRIAL, i] = b[i]
     fewest, patience = n + 1, PATIENCE
     for _ in range(limit):
         work.report[1] += 1.0
-        if not solve_active(z, list_chosen(n, work), work):
+        if not solve_chosen(W, b, z, tolerance, work):
             return FAILED
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
         if work.report[0] <= tolerance:
-            return judge_clipped(W, b, z, tolerance, work)
-        wrong, last = mark_wrong(W, z, tolerance, work)
+            return clip(W, b, z, tolerance, work)
+        wrong = change_sides(W, z, tolerance, work)
         if wrong < fewest:
             fewest, patience = wrong, PATIENCE
+        elif patience == 0:
+            return FAILED
         else:
             patience -= 1
-        for i in range(n):
-            if work.vectors[TRIAL, i] != 0.0 and (patience > 0 or i == last):
-                work.indices[CHOSEN, i] = 1 - work.indices[CHOSEN, i]
     return MAX_ITERATIONS
 
 
-def list_chosen(n: int, work: Any) -> int:
-    """List the marked indices in ACTIVE; returns how many there are."""
-    k = 0
+def solve_chosen(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
+    """Fill z with the judged answer of the set in CHOSEN, refined if it passes; False if W_aa is singular."""
+    n, F = b.shape[0], work.factor
+    k = factorise(F, load(W, n, work), work.indices)
+    if k < 0:
+        return False
+    w, change = work.vectors[SLACK], work.vectors[LEFT]
     for i in range(n):
-        if work.indices[CHOSEN, i]:
-            work.indices[ACTIVE, k] = i
-            k += 1
+        z[i], w[i] = 0.0, b[i]
+    error = 1.0
+    for _ in range(1 + REFINEMENTS):
+        for p in range(k):
+            i = work.indices[ORDER, p]
+            change[p] = w[i] * work.vectors[X, i]
+        back_substitute(F, change, k)
+        for q in range(k):
+            j = work.indices[ACTIVE, q]
+            z[j] -= change[q] * work.vectors[DX, j]
+        work.report[0] = judge(W, b, z, w, work.vectors[SIZE])
+        before, error = error, row_error(k, work)
+        good_enough = error <= (ROUNDING if work.report[0] <= tolerance else UNDECIDED)
+        if good_enough or error > 0.5 * before:
+            return True
+    return True
+
+
+def load(W: Any, n: int, work: Any) -> int:
+    """Copy the submatrix of the set, scaled; X and DX are the scales of its rows and columns. Returns its size."""
+    F, active, r, c = work.factor, work.indices[ACTIVE], work.vectors[X], work.vectors[DX]
+    k = list_chosen(n, work)
+    for p in range(k):
+        c[active[p]] = 0.0
+    for p in range(k):
+        i, largest = active[p], 0.0
+        for q in range(k):
+            F[p, q] = W[i, active[q]]
+            largest = max(largest, abs(F[p, q]))
+        r[i] = 1.0 / largest if largest > 0.0 else 1.0
+        for q in range(k):
+            F[p, q] *= r[i]
+            c[active[q]] = max(c[active[q]], abs(F[p, q]))
+    for q in range(k):
+        c[active[q]] = 1.0 / c[active[q]] if c[active[q]] > 0.0 else 1.0
+    for p in range(k):
+        for q in range(k):
+            F[p, q] *= c[active[q]]
     return k
 
 
-def mark_wrong(W: Any, z: Any, tolerance: float, work: Any) -> tuple[int, int]:
-    """Mark in TRIAL where z or w is negative beyond the tolerance; returns how many and the last."""
-    wrong, last = 0, -1
-    for i in range(z.shape[0]):
-        negative_z = z[i] < 0.0 and share(W, z, work.vectors[SIZE], i) > tolerance
-        negative_w = (
-            work.indices[CHOSEN, i] == 0 and work.vectors[SLACK, i] < -tolerance * work.vectors[SIZE, i]
-        )
-        work.vectors[TRIAL, i] = 0.0
-        if negative_z or negative_w:
-            work.vectors[TRIAL, i] = 1.0
-            wrong, last = wrong + 1, i
-    return wrong, last
+def list_chosen(n: int, work: Any) -> int:
+    """List the set in ACTIVE and ORDER; returns its size.
+
+    The indices with the lowest w come first (TRIAL holds w of the last answer, relative), so that of two
+    dependent ones the violated one is kept.
+    """
+    active, order, w, k = work.indices[ACTIVE], work.indices[ORDER], work.vectors[TRIAL], 0
+    for i in range(n):
+        if work.indices[CHOSEN, i]:
+            place = k
+            while place > 0 and w[i] < w[active[place - 1]]:
+                active[place] = active[place - 1]
+                place -= 1
+            active[place] = i
+            k += 1
+    for p in range(k):
+        order[p] = active[p]
+    return k
 
 
-def judge_clipped(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
-    """Cut what rounding left of negative z and judge the rest."""
+def row_error(k: int, work: Any) -> float:
+    """Largest |w|, relative to the size of its terms, where it should be zero."""
+    error = 0.0
+    for p in range(k):
+        i = work.indices[ACTIVE, p]
+        if work.vectors[SIZE, i] > 0.0:
+            error = max(error, abs(work.vectors[SLACK, i]) / work.vectors[SIZE, i])
+    return error
+
+
+def change_sides(W: Any, z: Any, tolerance: float, work: Any) -> int:
+    """Indices with negative z leave the set, those with negative w enter it; returns how many did."""
+    w, size, relative, wrong = work.vectors[SLACK], work.vectors[SIZE], work.vectors[TRIAL], 0
     for i in range(z.shape[0]):
-        z[i] = max(z[i], 0.0)
-    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+        relative[i] = 0.0
+        if work.indices[CHOSEN, i]:
+            if z[i] < 0.0 and share(W, z, size, i) > tolerance:
+                work.indices[CHOSEN, i] = 0
+                wrong += 1
+        elif w[i] < -tolerance * size[i]:
+            work.indices[CHOSEN, i] = 1
+            relative[i] = w[i] / size[i]
+            wrong += 1
+    return wrong
+
+
+def clip(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
+    """Cut what rounding left of negative z and, if there was any, judge the rest."""
+    cut = False
+    for i in range(z.shape[0]):
+        if z[i] < 0.0:
+            z[i], cut = 0.0, True
+    if cut:
+        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
     return SOLVED if work.report[0] <= tolerance else FAILED

@@ -19,7 +19,8 @@ def equilibrate(W: Any, b: Any, work: Any) -> None:
     """Fill columns, b, rows_by and columns_by of the work arrays with the scaled problem."""
     n = b.shape[0]
     columns, r, c = work.columns, work.vectors[ROW_SCALE], work.vectors[COLUMN_SCALE]
-    c[:n] = 1.0
+    for j in range(n):
+        c[j] = 1.0
     for _ in range(SWEEPS):
         balance(W, r, c, n, work.vectors[DSLACK])
     largest = 0.0
@@ -37,7 +38,8 @@ def equilibrate(W: Any, b: Any, work: Any) -> None:
 
 def balance(W: Any, r: Any, c: Any, n: int, largest: Any) -> None:
     """Scale the largest entry of each row, then of each column, to between 1/2 and 1."""
-    largest[:n] = 0.0
+    for j in range(n):
+        largest[j] = 0.0
     for i in range(n):
         row = 0.0
         for j in range(n):

@@ -1,4 +1,4 @@
-"""The arrays that the pivoting kernels work in, made once for the largest problem and used for every smaller one.
+"""The arrays that the pivoting kernels work in, made once for the largest problem and used for smaller ones.
 
 They are few, so that handing them from kernel to kernel costs little; their rows have names.
 """
@@ -21,8 +21,9 @@ SIZE = 9  # sizes of the terms of w, the judge's scale
 RAY_DIRECTION, RAY_START = (
     10,
     11,
-)  # the ray that pivoting left along: its direction and its start, in the units of z
+)  # the ray that pivoting left along, in the units of z
 VECTORS = 12
+REPORT = 4
 
 # rows of Workspace.indices
 BASIC, TIGHT = 0, 1  # by position: index of the basic z; index of the row whose w is not basic
@@ -55,11 +56,30 @@ class Workspace(NamedTuple):
 
 def workspace(n_max: int) -> Workspace:
     """Work arrays for problems of up to n_max unknowns; every thread needs its own."""
+    return carve(np.empty(numbers_needed(n_max)), np.zeros(integers_needed(n_max), np.int64), n_max)
+
+
+def numbers_needed(n: int) -> int:
+    """Length of the block of floats that `carve` divides."""
+    return (n + 1) * n + 2 * n * n + VECTORS * (n + 1) + REPORT
+
+
+def integers_needed(n: int) -> int:
+    """Length of the block of integers."""
+    return INDICES * (2 * n + 1)
+
+
+def carve(numbers: Any, integers: Any, n: int) -> Workspace:
+    """Work arrays for n unknowns as parts of two blocks; for kernels that are handed the blocks."""
+    inverse = (n + 1) * n
+    factor = inverse + n * n
+    vectors = factor + n * n
+    report = vectors + VECTORS * (n + 1)
     return Workspace(
-        np.empty((n_max + 1, n_max)),
-        np.empty((n_max, n_max)),
-        np.empty((n_max, n_max)),
-        np.empty((VECTORS, n_max + 1)),
-        np.empty((INDICES, 2 * n_max + 1), np.int64),
-        np.zeros(4),
+        numbers[:inverse].reshape((n + 1, n)),
+        numbers[inverse:factor].reshape((n, n)),
+        numbers[factor:vectors].reshape((n, n)),
+        numbers[vectors:report].reshape((VECTORS, n + 1)),
+        integers[: INDICES * (2 * n + 1)].reshape((INDICES, 2 * n + 1)),
+        numbers[report : report + REPORT],
     )

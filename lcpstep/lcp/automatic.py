@@ -1,0 +1,43 @@
+"""The choice of a method by size, structure and symmetry, measured in benchmarks/lcp.
+
+few unknowns, or a sparse matrix of few         pivoting
+dense and large, or sparse                      Newton's method; pivoting if the judge refuses its answer
+                                                and the matrix is small enough to be made dense
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lcpstep.lcp.dense import pivoting
+from lcpstep.lcp.newton import newton
+from lcpstep.lcp.problem import Solution, is_sparse
+
+SMALL = 60  # unknowns up to which compiled pivoting is the fastest on a dense W
+SPARSE = 0.1  # part of nonzero entries below which a large dense W is treated as sparse
+LARGEST_DENSE = 3000  # unknowns up to which pivoting on a dense copy is worth its time
+
+
+def automatic(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
+    """Solve with the method that suits W, and with pivoting where that fails."""
+    n = len(b)
+    if n <= SMALL:
+        return pivoting(dense(W), b, z, tol, max_iterations)
+    suited = W if is_sparse(W) or np.count_nonzero(W) > SPARSE * n * n else _csr(W)
+    solution = newton(suited, b, z, tol, max_iterations)
+    if solution.solved or n > LARGEST_DENSE:
+        return solution
+    return pivoting(dense(W), b, z, tol, max_iterations)
+
+
+def dense(W: Any) -> Any:
+    """W as an array."""
+    return W.toarray() if is_sparse(W) else W
+
+
+def _csr(W: Any) -> Any:
+    from scipy.sparse import csr_array
+
+    return csr_array(W)

@@ -1,0 +1,103 @@
+"""Many small problems of one size in one compiled call."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lcpstep.compiled import compiled
+from lcpstep.lcp.dense import NOT_FINITE, all_finite
+from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
+from lcpstep.lcp.problem import as_array, check_finite
+from lcpstep.lcp.status import SOLVED, TOLERANCE
+from lcpstep.lcp.workspace import SLACK, workspace
+
+
+@dataclass(frozen=True, slots=True)
+class BatchSolution:
+    """What was found for each problem of a batch.
+
+    Attributes
+    ----------
+    z, w : (m, n) arrays
+    status : (m,) int array of Status values
+    iterations : (m,) int array
+    residual : (m,) array, judged
+    """
+
+    z: Any
+    w: Any
+    status: Any
+    iterations: Any
+    residual: Any
+
+    @property
+    def solved(self) -> Any:
+        """(m,) bool array: which answers the judge has passed."""
+        return self.status == SOLVED
+
+
+def solve_lcp_batch(
+    W: Any, b: Any, *, tol: float = TOLERANCE, guess: Any = None, max_iterations: int | None = None
+) -> BatchSolution:
+    """Solve m problems of n unknowns each, as `solve_lcp` does with method "lemke".
+
+    Parameters
+    ----------
+    W : (m, n, n) array, or (n, n) for one matrix that all problems share
+    b : (m, n) array
+    tol, max_iterations : as for `solve_lcp`
+    guess : (m, n) array whose positive entries are tried first, or None
+
+    Returns
+    -------
+    BatchSolution
+
+    Raises
+    ------
+    ValueError : naming the argument that has a wrong shape or is not real and finite
+    """
+    b = as_array(b, "b", 2)
+    W = as_array(W, "W", 2 if np.ndim(W) == 2 else 3)
+    m, n = b.shape
+    if W.shape not in ((n, n), (m, n, n)):
+        raise ValueError(f"W must be of shape {(m, n, n)} or {(n, n)} to match b, not {W.shape}")
+    z = np.zeros((m, n)) if guess is None else as_array(guess, "guess", 2).copy()
+    if z.shape != b.shape:
+        raise ValueError(f"guess must have the shape of b, {b.shape}, not {z.shape}")
+    w, residual = np.empty((m, n)), np.zeros(m)
+    status, iterations = np.zeros(m, dtype=np.int64), np.zeros(m, dtype=np.int64)
+    limit = max(ENOUGH, PER_UNKNOWN * n) if max_iterations is None else max_iterations
+    if n > 0:
+        matrices = W if W.ndim == 3 else W[None]
+        compiled(solve_all)(matrices, b, z, w, status, iterations, residual, tol, limit, workspace(n))
+    if (status == NOT_FINITE).any():
+        check_finite(W, b)
+    return BatchSolution(z, w, status, iterations, residual)
+
+
+def solve_all(
+    matrices: Any,
+    b: Any,
+    z: Any,
+    w: Any,
+    status: Any,
+    iterations: Any,
+    residual: Any,
+    tolerance: float,
+    max_pivots: int,
+    work: Any,
+) -> None:
+    """One problem after the other; a single matrix serves all."""
+    shared = matrices.shape[0] == 1
+    for i in range(b.shape[0]):
+        W = matrices[0 if shared else i]
+        if not all_finite(W, b[i]):
+            status[i] = NOT_FINITE
+            continue
+        status[i] = solve_dense(W, b[i], z[i], tolerance, max_pivots, work)
+        iterations[i], residual[i] = int(work.report[1]), work.report[0]
+        for j in range(b.shape[1]):
+            w[i, j] = work.vectors[SLACK, j]

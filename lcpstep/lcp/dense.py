@@ -1,0 +1,129 @@
+"""Pivoting and enumeration on a dense W, called from Python: one call into compiled code a problem."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lcpstep.compiled import compiled
+from lcpstep.lcp.enumeration import enumerate_bases
+from lcpstep.lcp.infeasible import farkas
+from lcpstep.lcp.judge import judge
+from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
+from lcpstep.lcp.problem import Ray, Solution, check_finite
+from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
+from lcpstep.lcp.workspace import (
+    RAY_DIRECTION,
+    RAY_START,
+    ROW_SCALE,
+    SIZE,
+    SLACK,
+    carve,
+    integers_needed,
+    numbers_needed,
+)
+
+NOT_FINITE = -1
+STATUS = tuple(Status)
+LARGEST_ENUMERATION = 20  # unknowns; a million bases
+
+
+@cache
+def kernel(entry: Callable[..., Any]) -> Callable[..., Any]:
+    """The compiled twin of an entry, looked up once."""
+    return compiled(entry)
+
+
+def pivot_once(
+    W: Any, b: Any, z: Any, w: Any, numbers: Any, integers: Any, tolerance: float, max_pivots: int
+) -> tuple[int, int, float]:
+    """`solve_dense` on work arrays carved from two blocks: status, iterations, residual; fills z and w."""
+    if not all_finite(W, b):
+        return NOT_FINITE, 0, np.inf
+    work = carve(numbers, integers, b.shape[0])
+    status = solve_dense(W, b, z, tolerance, max_pivots, work)
+    return finish(status, w, work)
+
+
+def enumerate_once(
+    W: Any, b: Any, z: Any, w: Any, numbers: Any, integers: Any, tolerance: float, limit: int
+) -> tuple[int, int, float]:
+    """`enumerate_bases` in the same way."""
+    if not all_finite(W, b):
+        return NOT_FINITE, 0, np.inf
+    work = carve(numbers, integers, b.shape[0])
+    work.report[1] = 0.0
+    status = enumerate_bases(W, b, z, tolerance, limit, work)
+    if status != SOLVED:
+        for i in range(b.shape[0]):
+            z[i] = max(z[i], 0.0)
+        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return finish(status, w, work)
+
+
+def finish(status: int, w: Any, work: Any) -> tuple[int, int, float]:
+    """Copy w out and report."""
+    for i in range(w.shape[0]):
+        w[i] = work.vectors[SLACK, i]
+    return status, int(work.report[1]), work.report[0]
+
+
+def all_finite(W: Any, b: Any) -> bool:
+    """Whether no entry is NaN or infinite: a number minus itself is zero exactly then."""
+    n, total = b.shape[0], 0.0
+    for i in range(n):
+        total += b[i] - b[i]
+        for j in range(n):
+            total += W[i, j] - W[i, j]
+    return total == 0.0
+
+
+def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
+    """Principal and Lemke's pivoting; where they end in a ray, the search for a proof of infeasibility."""
+    n = b.shape[0]
+    limit = max(ENOUGH, PER_UNKNOWN * n) if max_iterations is None else max_iterations
+    return _call(pivot_once, "lemke", W, b, z, tol, limit)
+
+
+def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
+    """Every complementary basis in turn."""
+    n = b.shape[0]
+    if n > LARGEST_ENUMERATION:
+        raise ValueError(f"W is too large to enumerate: 2^{n} bases; at most {LARGEST_ENUMERATION} unknowns")
+    limit = 2**n if max_iterations is None else max_iterations
+    return _call(enumerate_once, "enumeration", W, b, z, tol, limit)
+
+
+def _call(entry: Callable[..., Any], method: str, W: Any, b: Any, z: Any, tol: float, limit: int) -> Solution:
+    n = b.shape[0]
+    w, numbers, integers = np.empty(n), np.empty(numbers_needed(n)), np.empty(integers_needed(n), np.int64)
+    status, iterations, residual = kernel(entry)(W, b, z, w, numbers, integers, tol, limit)
+    if status == SOLVED:
+        return Solution(z, w, Status.SOLVED, iterations, residual, method)
+    if status == NOT_FINITE:
+        check_finite(W, b)
+    certificate: Any = None
+    if status == INFEASIBLE:
+        certificate = carve(numbers, integers, n).vectors[RAY_DIRECTION, :n].copy()
+    elif status == RAY or (status == FAILED and entry is enumerate_once):
+        certificate = farkas(W, b)
+        if certificate is not None:
+            status = INFEASIBLE
+        elif status == RAY:
+            certificate = ray(carve(numbers, integers, n), n)
+    return Solution(z, w, STATUS[status], iterations, residual, method, certificate)
+
+
+def ray(work: Any, n: int) -> Ray:
+    """The ray that the work arrays hold."""
+    vectors, report = work.vectors, work.report
+    return Ray(
+        vectors[RAY_START, :n].copy(),
+        vectors[RAY_DIRECTION, :n].copy(),
+        float(report[3]),
+        float(report[2]),
+        1.0 / vectors[ROW_SCALE, :n],
+    )

@@ -1,0 +1,133 @@
+"""Factors of W + diag(d) on a set of indices, with the library that suits the structure of W.
+
+    narrow band   LAPACK's band LU, after reverse Cuthill-McKee reordering if that makes the band narrow
+    sparse        SuperLU, ordered by minimum degree
+    dense         LAPACK's LU
+
+All three return a function that solves for a right-hand side of full length; off the set the answer is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from lcpstep.lcp.problem import is_sparse
+
+NARROW = 30  # half-bandwidth up to which the band is factorised as such
+
+Solve = Callable[[Any], Any]
+
+
+class Singular(ArithmeticError):
+    """The matrix has no factors."""
+
+
+class Factoriser(Protocol):
+    """What the Newton methods need of a matrix."""
+
+    def factor(self, active: Any, d: Any) -> Solve:
+        """Solver for W + diag(d) restricted to the indices where active is True; raises Singular."""
+
+
+def factoriser(W: Any) -> Factoriser:
+    """The factoriser that suits W."""
+    if not is_sparse(W):
+        return Dense(W)
+    if half_bandwidth(W) <= NARROW:
+        return Banded(W, None)
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+    order = reverse_cuthill_mckee(W, symmetric_mode=False)
+    permuted = W[order][:, order]
+    return Banded(permuted, order) if half_bandwidth(permuted) <= NARROW else General(W)
+
+
+def half_bandwidth(W: Any) -> int:
+    """Largest |i - j| of an entry of a CSR matrix."""
+    rows = np.repeat(np.arange(W.shape[0]), np.diff(W.indptr))
+    return int(np.max(np.abs(rows - W.indices), initial=0))
+
+
+class Dense:
+    """LAPACK on a dense submatrix."""
+
+    def __init__(self, W: Any) -> None:
+        self.W = W
+
+    def factor(self, active: Any, d: Any) -> Solve:
+        """See Factoriser."""
+        from scipy.linalg import lapack
+
+        chosen = np.flatnonzero(active)
+        A = self.W[np.ix_(chosen, chosen)]
+        A[np.diag_indices_from(A)] += d[chosen]
+        lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
+        if info != 0:
+            raise Singular
+        return lambda rhs: spread(lapack.dgetrs(lu, pivots, rhs[chosen])[0], chosen, len(rhs))
+
+
+class General:
+    """SuperLU on a sparse submatrix."""
+
+    def __init__(self, W: Any) -> None:
+        self.W = W
+
+    def factor(self, active: Any, d: Any) -> Solve:
+        """See Factoriser."""
+        from scipy.sparse import diags_array
+        from scipy.sparse.linalg import splu
+
+        chosen = np.flatnonzero(active)
+        part = self.W if len(chosen) == len(active) else self.W[chosen][:, chosen]
+        try:
+            lu = splu((part + diags_array(d[chosen])).tocsc(), permc_spec="MMD_AT_PLUS_A")
+        except RuntimeError:
+            raise Singular from None
+        return lambda rhs: spread(lu.solve(rhs[chosen]), chosen, len(rhs))
+
+
+class Banded:
+    """LAPACK on the band; indices off the set keep their place, with a row of the unit matrix."""
+
+    def __init__(self, W: Any, order: Any) -> None:
+        n, k = W.shape[0], half_bandwidth(W)
+        self.k, self.order = k, slice(None) if order is None else order
+        self.band = np.zeros((n, 2 * k + 1))  # band[j] holds column j of W, from row j - k to j + k
+        rows = np.repeat(np.arange(n), np.diff(W.indptr))
+        self.band[W.indices, k + rows - W.indices] = W.data
+
+    def factor(self, active: Any, d: Any) -> Solve:
+        """See Factoriser."""
+        from scipy.linalg import lapack
+
+        k, n = self.k, len(active)
+        inside, shift = active[self.order], d[self.order]
+        storage = np.zeros((n, 3 * k + 1))  # LAPACK's form, transposed; k more rows for the fill-in
+        storage[:, k:] = self.band
+        if not inside.all():
+            padded = np.zeros(n + 2 * k, dtype=bool)
+            padded[k : k + n] = inside
+            for offset in range(2 * k + 1):
+                storage[:, k + offset] *= inside & padded[offset : offset + n]
+        storage[:, 2 * k] += np.where(inside, shift, 1.0)
+        lu, pivots, info = lapack.dgbtrf(storage.T, k, k, overwrite_ab=True)
+        if info != 0:
+            raise Singular
+
+        def solve(rhs: Any) -> Any:
+            x = np.empty(n)
+            x[self.order] = lapack.dgbtrs(lu, k, k, np.where(inside, rhs[self.order], 0.0), pivots)[0]
+            return x
+
+        return solve
+
+
+def spread(part: Any, chosen: Any, n: int) -> Any:
+    """The vector of length n with these values at the chosen indices."""
+    x = np.zeros(n)
+    x[chosen] = part
+    return x

@@ -1,0 +1,38 @@
+"""The proof that no z >= 0 has W z + b >= 0, if that is so: y >= 0 with W^T y <= 0 and b^T y < 0 (Farkas).
+
+The linear programme "minimise 0 subject to W z + b >= 0, z >= 0" is the complementarity problem of
+
+    [ 0  -W^T ]      [ 0 ]
+    [ W    0  ],     [ b ],
+
+which is positive semidefinite, so Lemke's method solves it or leaves along a ray whose second half is y
+(R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (1992), theorem 4.4.1).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lcpstep.compiled import compiled
+from lcpstep.lcp.judge import proves_infeasible
+from lcpstep.lcp.lemke import lemke
+from lcpstep.lcp.scaling import equilibrate
+from lcpstep.lcp.status import RAY
+from lcpstep.lcp.workspace import RAY_DIRECTION, workspace
+
+PIVOTS = 50  # per unknown
+
+
+def farkas(W: Any, b: Any) -> Any:
+    """The vector y for a dense W, or None if there is no proof up to rounding."""
+    n = b.shape[0]
+    M, q = np.zeros((2 * n, 2 * n)), np.concatenate((np.zeros(n), b))
+    M[:n, n:], M[n:, :n] = -W.T, W
+    work = workspace(2 * n)
+    compiled(equilibrate)(M, q, work)
+    if compiled(lemke)(2 * n, 2 * PIVOTS * n, work) != RAY:
+        return None
+    y = work.vectors[RAY_DIRECTION, n : 2 * n].copy()
+    return y if compiled(proves_infeasible)(W, b, y) else None

@@ -1,0 +1,101 @@
+"""Quadratic programming back-ends, through qpsolvers, for symmetric positive semidefinite W.
+
+Then z solves the complementarity problem exactly when it minimises 1/2 z^T W z + b^T z over z >= 0 (these are
+its Karush-Kuhn-Tucker conditions). Such a solver stops at its own tolerances; its set of positive z is
+therefore solved for afresh, and the better of the two answers is judged and returned.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import warnings
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lcpstep.errors import MissingSolver, UnknownName
+from lcpstep.lcp.definite import require_semidefinite, scaled, unit_diagonal
+from lcpstep.lcp.factor import factoriser
+from lcpstep.lcp.judge import residual
+from lcpstep.lcp.newton import exchange, positive_set
+from lcpstep.lcp.problem import Solution, check_finite, is_sparse
+from lcpstep.lcp.status import FAILED, SOLVED, Status
+
+DEFAULT = "osqp"
+TIGHT: dict[str, dict[str, Any]] = {  # solvers that stop too early unless they are told not to
+    "osqp": {"eps_abs": 1e-10, "eps_rel": 1e-10, "max_iter": 20_000, "polishing": True},
+    "proxqp": {"eps_abs": 1e-10},
+    "piqp": {"eps_abs": 1e-11, "eps_rel": 1e-12},
+    "scs": {"eps_abs": 1e-9, "eps_rel": 1e-9},
+    "clarabel": {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12},
+}
+ITERATIONS = {
+    "osqp": "max_iter",
+    "proxqp": "max_iter",
+    "piqp": "max_iter",
+    "scs": "max_iters",
+    "clarabel": "max_iter",
+}
+EXCHANGES = 10  # of the polishing
+
+
+@cache
+def known_solvers() -> tuple[str, ...]:
+    """Names of all the solvers that qpsolvers has an interface for, installed or not."""
+    import qpsolvers
+
+    suffix = "_solve_problem"
+    return tuple(n.removesuffix(suffix) for n in dir(qpsolvers.solvers) if n.endswith(suffix))
+
+
+def require_solver(name: str) -> None:
+    """UnknownName or MissingSolver unless this back-end can be used."""
+    import qpsolvers
+
+    if name not in known_solvers():
+        raise UnknownName("LCP solver", f"qp:{name}", [f"qp:{n}" for n in known_solvers()])
+    if name not in qpsolvers.available_solvers:
+        raise MissingSolver(f"the QP solver {name!r} is not installed: pip install 'qpsolvers[{name}]'")
+
+
+def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
+    """Solve with the qpsolvers back-end of this name; ValueError if W is not symmetric semidefinite."""
+    require_solver(name)
+    check_finite(W, b)
+    require_semidefinite(W)
+    d = unit_diagonal(W)
+    found = call_solver(name, scaled(W, d), d * b, z / d, max_iterations)
+    best = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
+    error = residual(W, b, best)
+    polished, used = exchange(W, b, positive_set(W, b, best), tol, EXCHANGES, factoriser(W))
+    error_polished = residual(W, b, polished)
+    if error_polished < error:
+        best, error = polished, error_polished
+    status = SOLVED if error <= tol else FAILED
+    return Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}")
+
+
+def call_solver(name: str, P: Any, q: Any, guess: Any, max_iterations: int | None) -> Any:
+    """Minimiser that the solver found, or None; P has a unit diagonal and q is brought to size one."""
+    import qpsolvers
+
+    options = dict(TIGHT.get(name, {}))
+    if max_iterations is not None and name in ITERATIONS:
+        options[ITERATIONS[name]] = max_iterations
+    if is_sparse(P):
+        P.sort_indices()  # piqp takes them as they come
+    elif name in qpsolvers.sparse_solvers and name not in qpsolvers.dense_solvers:
+        from scipy.sparse import csc_matrix
+
+        P = csc_matrix(P)
+    size = float(np.max(np.abs(q), initial=0.0)) or 1.0
+    problem = qpsolvers.Problem(P, q / size, lb=np.zeros_like(q))
+    with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
+        warnings.simplefilter("ignore")  # what they say of their tolerances; the judge decides here
+        try:
+            x = qpsolvers.solve_problem(problem, name, initvals=guess / size, **options).x
+        except (ValueError, ArithmeticError, qpsolvers.SolverError):
+            return None
+    return None if x is None or not np.isfinite(x).all() else np.asarray(x) * size
