@@ -18,7 +18,7 @@ import dis
 import functools
 import hashlib
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from types import FunctionType
 from typing import Any, TypeVar, cast
 
@@ -52,9 +52,14 @@ def jit_disabled() -> bool:
     return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
-def compiled(f: Callable[..., Any]) -> Callable[..., Any]:
-    """Numba twin of kernel f, compiled for the argument types of its first call and cached on disk."""
-    return f if jit_disabled() else _entry(cast(FunctionType, f))
+def compiled(f: Callable[..., Any], without: Iterable[Callable[..., Any]] = ()) -> Callable[..., Any]:
+    """Numba twin of kernel f, compiled for the argument types of its first call and cached on disk.
+
+    `without`: kernels that this use of f never reaches; leaving them out spares compiling them.
+    """
+    if jit_disabled():
+        return f
+    return _entry(cast(FunctionType, f), frozenset(cast(Iterable[FunctionType], without)))
 
 
 def address(f: Callback, ndim: int) -> int:
@@ -79,17 +84,25 @@ def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
     return cast(int, _cfunc(cast(FunctionType, f), types, typeof(returned)).address)
 
 
+def absent(*arguments: Any) -> int:
+    """In the place of a kernel that is never reached."""
+    return 0
+
+
 @functools.cache
-def _entry(f: FunctionType) -> Any:
+def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     import numba
 
-    dispatcher = numba.njit(nogil=True, **OPTIONS)(_with_compiled_callees(f))
+    copy = _with_compiled_callees(f, without)
+    # The name is that of the file in the cache, where every variant has its own.
+    copy.__qualname__ = "_without_".join([f.__qualname__, *sorted(g.__name__ for g in without)])
+    dispatcher = numba.njit(nogil=True, **OPTIONS)(copy)
     _keep_on_disk(dispatcher, f)
     return dispatcher
 
 
 @functools.cache
-def _callee(f: FunctionType) -> Any:
+def _callee(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     """F as other kernels call it: never from Python, so without the wrappers that take most of the compiling."""
     if f is call or f is call_solver:
         return _intrinsics()[f is call_solver]
@@ -97,14 +110,15 @@ def _callee(f: FunctionType) -> Any:
 
     inlined = hasattr(f, "inline")
     wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return numba.njit(nogil=True, forceinline=inlined, **wrappers, **OPTIONS)(_with_compiled_callees(f))
+    copy = _with_compiled_callees(f, without)
+    return numba.njit(nogil=True, forceinline=inlined, **wrappers, **OPTIONS)(copy)
 
 
 @functools.cache
 def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any) -> Any:
     from numba.core.ccallback import CFunc
 
-    c_function = CFunc(_with_compiled_callees(f), (arguments, returned), {}, OPTIONS)
+    c_function = CFunc(_with_compiled_callees(f, frozenset()), (arguments, returned), {}, OPTIONS)
     _keep_on_disk(c_function, f)
     c_function.compile()
     return c_function
@@ -124,10 +138,12 @@ def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
     cache_file._source_stamp = (cache_file._source_stamp, _digest(f))
 
 
-def _with_compiled_callees(f: FunctionType) -> FunctionType:
+def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) -> FunctionType:
     """A copy of f in which every plain function that it names is replaced by its compiled twin."""
-    scope = {**f.__globals__, **{name: _callee(g) for name, g in _callees(f)}}
-    copy = FunctionType(f.__code__, scope, f.__name__, f.__defaults__, f.__closure__)
+    callees = {
+        name: _callee(*((absent, frozenset()) if g in without else (g, without))) for name, g in _callees(f)
+    }
+    copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)
     copy.__kwdefaults__ = f.__kwdefaults__
     copy.__module__, copy.__qualname__ = f.__module__, f.__qualname__
     return copy

@@ -19,7 +19,7 @@ from lcpstep.compiled import compiled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import dop853
 from lcpstep.events import integrator as loop
-from lcpstep.events.flow import FREE, MODE, N_NUMBERS, SCALE, Piece
+from lcpstep.events.flow import FREE, MODE, N_NUMBERS, SCALE, Piece, closed_form_state, gap_speed_along
 from lcpstep.events.oscillator import Oscillator, oscillator
 from lcpstep.model import ABSENT, Model, culprit, model
 from lcpstep.recording import Kept, Recorder
@@ -121,20 +121,24 @@ class _Run:
         self.model, self.fast = model(scene)
         self.flow = flow(scene, self.model, method)
         self.piece = piece(scene, self.model)
+        self.never = NEVER_CLOSED_FORM if self.flow.closed_form else NEVER_RUNGE_KUTTA
         self.work = dop853.work(2 * scene.n_q)
         rows = PORTION + len(kept.times) + 2 * loop.SLACK
-        self.recorder = Recorder(scene.n_q, scene.n_c, kept, rows, dense=kept.all and not self.flow.closed_form)
+        self.recorder = Recorder(
+            scene.n_q, scene.n_c, kept, rows, dense=kept.all and not self.flow.closed_form
+        )
         self.count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
         self.x = np.zeros(loop.N_NUMBERS)
+        self.x[loop.NOW] = scene.t_span[0]
         self.x[loop.NEXT_STEP] = 0.1 * self.flow.scan
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        begin, run = (compiled(f) if self.fast else f for f in (loop.begin, loop.run))
+        run = compiled(loop.run, self.never) if self.fast else loop.run
         m, f, p, w, count, x = self.model, self.flow, self.piece, self.work, self.count, self.x
         record, tab = self.recorder.buffers, dop853.tableau()
         try:
-            code = begin(m, f, p, w, record, count, x, self.scene.t_span[0])
+            code = loop.FINISHED
             while code in (loop.FINISHED, loop.BUFFER_FULL) and x[loop.NOW] < f.t_end:
                 code = run(m, f, p, tab, w, record, count, x, int(count[loop.STEP]) + PORTION)
                 self.empty()
@@ -178,7 +182,7 @@ class _Run:
     def dense_output(self, s: dict[str, Array]) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the pieces of motion that start there."""
         complete = self.kept.all or (self.flow.closed_form and self.kept.on_events)
-        evaluate = compiled(loop.evaluate) if self.fast else loop.evaluate
+        evaluate = compiled(loop.evaluate, self.never) if self.fast else loop.evaluate
 
         def at(times: Array) -> tuple[Array, Array]:
             if not complete and not np.all(np.isin(times, s["t"])):
@@ -187,7 +191,9 @@ class _Run:
             row = np.maximum(np.searchsorted(s["t"], times, side="right") - 1, 0)
             out = loop.States(times, row, np.zeros((len(times), n_q)), np.zeros((len(times), n_q)))
             columns = (s[name] for name in ("t", "q", "v", "mode", "dense", "length"))
-            evaluate(self.model, self.flow, piece(self.scene, self.model), dop853.work(2 * n_q), *columns, out)
+            evaluate(
+                self.model, self.flow, piece(self.scene, self.model), dop853.work(2 * n_q), *columns, out
+            )
             return out.q, out.v
 
         return at
@@ -207,6 +213,9 @@ class _Run:
         return f"{culprit(self.scene, now, q, v)} {where}"
 
 
+# Kernels that one kind of smooth motion leaves aside
+NEVER_CLOSED_FORM = (loop.runge_kutta_interval, loop.shorten, loop.project, loop.interpolate, gap_speed_along)
+NEVER_RUNGE_KUTTA = (loop.closed_form_interval, closed_form_state)
 STATUS = {
     loop.FINISHED: Status.DONE,
     loop.NOT_FINITE: Status.NOT_FINITE,

@@ -57,7 +57,8 @@ STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS = range(6)
 N_COUNTERS = 6
 # Places in the array of the loop's numbers
 NOW, NEXT_STEP, EDGE_G, EDGE_U, EDGE_ALPHA, IMPULSE = range(6)
-N_NUMBERS = 6
+FROM, TO, END, FOUND, HOP = range(6, 11)  # the interval at hand, after the base; its end; an event within it
+N_NUMBERS = 11
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 
@@ -86,7 +87,7 @@ class Flow(NamedTuple):
     max_events: int
 
 
-def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, t: float) -> int:
+def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, t: float) -> bool:
     """The state at the start of the span, which may lie on the surface or strike it at once."""
     x[NOW] = t
     find_corners(flow, piece, t)
@@ -94,7 +95,7 @@ def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
     if flow.contact:
         g, u, alpha = contact_at(model, flow, piece, w, 0.0)
         if not g - g + u - u + alpha - alpha == 0.0:
-            return NOT_FINITE
+            return False
         length = speed = 1.0
         for i in range(len(piece.q)):
             length, speed = max(length, abs(piece.q[i])), max(speed, abs(piece.v[i]))
@@ -106,13 +107,15 @@ def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
                 settle(model, flow, piece, w, record, count, x, u if u > ON_THE_SURFACE * speed else 0.0)
     if count[ROW] == 0 and len(record.times) == 0:
         keep(piece, record, count, x, t)
-    return FINISHED
+    return True
 
 
 def run(
     model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any, goal: int
 ) -> int:
     """Go on from x[NOW] to the end of the span, or to step number `goal`; says why it returned."""
+    if count[ROW] == 0 and count[STEP] == 0 and not begin(model, flow, piece, w, record, count, x, x[NOW]):
+        return NOT_FINITE
     while x[NOW] < flow.t_end and count[STEP] < goal:
         if count[EVENT] + SLACK > len(record.event_time) or count[ROW] + SLACK > len(record.t):
             return BUFFER_FULL
@@ -123,9 +126,11 @@ def run(
         if piece.x[MODE] == CLOSED and x[EDGE_ALPHA] > 0.0:
             release(model, flow, piece, w, record, count, x, x[EDGE_ALPHA])
         if flow.closed_form:
-            code = closed_form_interval(model, flow, piece, tab, w, record, count, x)
+            code = closed_form_interval(model, flow, piece, w, x)
         else:
-            code = runge_kutta_interval(model, flow, piece, tab, w, record, count, x)
+            code = runge_kutta_interval(model, flow, piece, tab, w, count, x)
+        if code == FINISHED:
+            code = finish_interval(model, flow, piece, tab, w, record, count, x)
         if code != FINISHED:
             return code
     return FINISHED
@@ -134,9 +139,7 @@ def run(
 # --- one interval ---------------------------------------------------------------------------------------------
 
 
-def closed_form_interval(
-    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any
-) -> int:
+def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> int:
     """Up to the next event or the end of the scan interval, of the one linear degree of freedom."""
     a = x[NOW] - piece.x[T0]
     end = min(flow.t_end, piece.x[HIGH], x[NOW] + flow.scan)
@@ -155,12 +158,11 @@ def closed_form_interval(
             tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
         if tau == NONE:
             x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_b
-    return finish_interval(model, flow, piece, tab, w, record, count, x, a, b, end, tau, hop)
+    x[FROM], x[TO], x[END], x[FOUND], x[HOP] = a, b, end, tau, 1.0 if hop else 0.0
+    return FINISHED
 
 
-def runge_kutta_interval(
-    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any
-) -> int:
+def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, count: Any, x: Any) -> int:
     """One DOP853 step, up to the first event within it."""
     longest = min(flow.t_end, piece.x[HIGH]) - x[NOW]
     guess = hop_time(piece, x)
@@ -186,7 +188,8 @@ def runge_kutta_interval(
             x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_a
         elif not hop:
             tau = refine_contact(model, flow, piece, tab, w, tau)
-    return finish_interval(model, flow, piece, tab, w, record, count, x, 0.0, h, end, tau, hop)
+    x[FROM], x[TO], x[END], x[FOUND], x[HOP] = 0.0, h, end, tau, 1.0 if hop else 0.0
+    return FINISHED
 
 
 def hop_time(piece: Any, x: Any) -> float:
@@ -197,21 +200,10 @@ def hop_time(piece: Any, x: Any) -> float:
 
 
 def finish_interval(
-    model: Any,
-    flow: Any,
-    piece: Any,
-    tab: Any,
-    w: Any,
-    record: Any,
-    count: Any,
-    x: Any,
-    a: float,
-    b: float,
-    end: float,
-    tau: float,
-    hop: bool,
+    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any
 ) -> int:
-    """Take over the interval (a, b], which ends early at tau if there is an event."""
+    """Take over the interval, which ends early if an event was found in it."""
+    a, b, end, tau, hop = x[FROM], x[TO], x[END], x[FOUND], x[HOP] == 1.0
     count[STEP] += 1
     closed = flow.contact and piece.x[MODE] == CLOSED
     if closed:
@@ -516,7 +508,17 @@ def store_dense(piece: Any, w: Any, record: Any, count: Any) -> None:
 
 
 def evaluate(
-    model: Any, flow: Any, piece: Any, w: Any, t: Any, q: Any, v: Any, mode: Any, dense: Any, length: Any, out: Any
+    model: Any,
+    flow: Any,
+    piece: Any,
+    w: Any,
+    t: Any,
+    q: Any,
+    v: Any,
+    mode: Any,
+    dense: Any,
+    length: Any,
+    out: Any,
 ) -> None:
     """States at the times out.t, from the kept states out.row before them and the pieces that start there."""
     for k in range(len(out.t)):

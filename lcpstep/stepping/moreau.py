@@ -94,6 +94,7 @@ def start(scene: Scene, fast: bool) -> loop.State:
         pivots=np.zeros(n_q, dtype=np.int64),
     )
     lcp = workspace(max(n_c, 1))
+    solver = loop.solve_single if n_c <= 1 else solve_small
     return loop.State(
         q=np.array(scene.q0),
         v=np.array(scene.v0),
@@ -101,7 +102,7 @@ def start(scene: Scene, fast: bool) -> loop.State:
         G=np.zeros((n_c, n_q)),
         active=np.zeros(n_c, dtype=np.int64),
         W=np.zeros(n_c * n_c),
-        solver=solver_address(solve_small, lcp) if fast else solve_small,
+        solver=solver_address(solver, lcp) if fast else solver,
         lcp=lcp,
         newton=newton,
         **vectors,
@@ -116,7 +117,8 @@ class _Run:
         self.method, self.scene, self.kept = method, scene, kept
         self.model, fast = model(scene)
         fast = fast and not jit_disabled()
-        self.kernel = compiled(loop.run) if fast else loop.run
+        never = (loop.linearise,) if self.model.linear else ()
+        self.kernel = compiled(loop.run, never) if fast else loop.run
         self.state = start(scene, fast)
         # A portion keeps at most its steps, the given times, and the first and last state.
         self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2)

@@ -19,6 +19,8 @@ from typing import Any, NamedTuple
 from lcpstep.compiled import call_solver, inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, product, total_force
+from lcpstep.lcp.small import solve_one
+from lcpstep.lcp.status import TOLERANCE
 from lcpstep.stepping.newton import linearise
 
 # Why the loop returned
@@ -68,6 +70,11 @@ class State(NamedTuple):
     solver: Any  # the complementarity solver, a function or its address
     lcp: Any  # its work space
     newton: Any  # work space of `newton.linearise`
+
+
+def solve_single(W: Any, b: Any, z: Any, work: Any) -> int:
+    """The complementarity problem of a scene with one contact: a division."""
+    return solve_one(W, b, z, TOLERANCE, work)
 
 
 def begin(m: Any, state: Any, record: Any, count: Any, t: float) -> None:
