@@ -112,7 +112,8 @@ class Recorder:
     def events(self) -> Any:
         """The impact log."""
         e = self._joined(self._events, EVENT_COLUMNS)
-        return records(e["event_time"], e["event_contact"], *e["event"].T, e["event_kind"])
+        before, after, impulse = e["event"].T
+        return records(e["event_time"], e["event_contact"], before, after, impulse, e["event_kind"])
 
     def _joined(self, parts: list[dict[str, Array]], names: tuple[str, ...]) -> dict[str, Array]:
         nothing = {name: getattr(self.buffers, name)[:0] for name in names}

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,8 +72,9 @@ def flow(scene: Scene, m: Model, method: EventDriven) -> loop.Flow:
     """How the smooth motion of the scene is computed."""
     closed_form = None
     if m.linear and scene.n_q == 1 and m.flat and m.force == ABSENT:
-        terms = (float(x[0]) for x in (m.constant, m.cosine, m.sine))
-        closed_form = oscillator(float(m.M[0, 0]), float(m.C[0, 0]), float(m.K[0, 0]), *terms, m.omega)
+        mass, damping, stiffness = (float(x[0, 0]) for x in (m.M, m.C, m.K))
+        constant, cosine, sine = (float(x[0]) for x in (m.constant, m.cosine, m.sine))
+        closed_form = oscillator(mass, damping, stiffness, constant, cosine, sine, m.omega)
     return loop.Flow(
         closed_form=closed_form is not None,
         oscillator=closed_form or Oscillator(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),

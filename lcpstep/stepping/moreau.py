@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,7 +67,7 @@ class Moreau:
 def plan(m: Model, h: float, theta: float) -> loop.Plan:
     """What steps of size h multiply with: A = M + h theta C + h^2 theta^2 K, inverted once."""
     n_q, n_c = m.G.shape[1], m.G.shape[0]
-    inverse = np.zeros((n_q, n_q))
+    inverse: Array = np.zeros((n_q, n_q))
     if m.linear:
         inverse = np.linalg.inv(m.M + h * theta * m.C + (h * theta) ** 2 * m.K)
     A_g = inverse @ m.G.T
@@ -89,8 +88,8 @@ def start(scene: Scene, fast: bool) -> loop.State:
     vectors = {name: np.zeros(n_q) for name in ("force", "next_force", "next_q", "next_v", "v_free")}
     contacts = {name: np.zeros(n_c) for name in ("g", "u", "impulse", "p", "g_t", "b", "z")}
     newton = Newton(
-        *(np.zeros(n_q) for _ in range(5)),
-        *(np.zeros((n_q, n_q)) for _ in range(4)),
+        **{name: np.zeros(n_q) for name in ("R", "R_shifted", "v", "q", "f")},
+        **{name: np.zeros((n_q, n_q)) for name in ("M", "M_start", "A", "J")},
         pivots=np.zeros(n_q, dtype=np.int64),
     )
     lcp = workspace(max(n_c, 1))
