@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -182,7 +183,7 @@ class _Run:
     def dense_output(self, s: dict[str, Array]) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the pieces of motion that start there."""
         complete = self.kept.all or (self.flow.closed_form and self.kept.on_events)
-        evaluate = compiled(loop.evaluate, self.never) if self.fast else loop.evaluate
+        evaluate: Any = compiled(loop.evaluate, self.never) if self.fast else loop.evaluate
 
         def at(times: Array) -> tuple[Array, Array]:
             if not complete and not np.all(np.isin(times, s["t"])):

@@ -94,7 +94,7 @@ def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
     rebase(model, flow, piece, w, t)
     if flow.contact:
         g, u, alpha = contact_at(model, flow, piece, w, 0.0)
-        if not g - g + u - u + alpha - alpha == 0.0:
+        if g - g + u - u + alpha - alpha != 0.0:
             return False
         length = speed = 1.0
         for i in range(len(piece.q)):
@@ -153,7 +153,7 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
         at_b = (0.0, 0.0, 0.0)
         if not hop:
             at_b = contact_at(model, flow, piece, w, b)
-            if not at_b[0] - at_b[0] == 0.0:
+            if at_b[0] - at_b[0] != 0.0:
                 return NOT_FINITE
             tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
         if tau == NONE:
@@ -180,7 +180,7 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
             if tau == NONE:
                 b = h * part / PARTS
                 at_b = contact_at(model, flow, piece, w, b)
-                if not at_b[0] - at_b[0] == 0.0:
+                if at_b[0] - at_b[0] != 0.0:
                     return NOT_FINITE
                 tau = first_contact(model, flow, piece, w, a, at_a, b, at_b)
                 a, at_a = b, at_b
@@ -216,10 +216,10 @@ def finish_interval(
         x[IMPULSE] += contact_impulse(model, flow, piece, w, a, stop)
     keep_times(model, flow, piece, w, record, count, x, t_stop, tau == NONE and t_stop >= flow.t_end)
     store_dense(piece, w, record, count)
-    g, u, alpha = x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]
+    u, alpha = x[EDGE_U], x[EDGE_ALPHA]
     if flow.contact:
-        g, u, alpha = contact_at(model, flow, piece, w, stop)
-        if not alpha - alpha + u - u == 0.0:
+        _, u, alpha = contact_at(model, flow, piece, w, stop)
+        if alpha - alpha + u - u != 0.0:
             return NOT_FINITE
         if hop:
             _, u = near_surface(model, flow, piece, w, tau)
@@ -255,7 +255,7 @@ def take_step(
             return -float(NOT_FINITE)
         count[FORCES] += STAGES + 1
         error = error_norm(tab, w, h, flow.rtol, flow.atol)
-        if not error - error == 0.0:
+        if error - error != 0.0:
             return -float(NOT_FINITE)
         if error <= 1.0:
             break

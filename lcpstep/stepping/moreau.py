@@ -67,9 +67,8 @@ class Moreau:
 def plan(m: Model, h: float, theta: float) -> loop.Plan:
     """What steps of size h multiply with: A = M + h theta C + h^2 theta^2 K, inverted once."""
     n_q, n_c = m.G.shape[1], m.G.shape[0]
-    inverse: Array = np.zeros((n_q, n_q))
-    if m.linear:
-        inverse = np.linalg.inv(m.M + h * theta * m.C + (h * theta) ** 2 * m.K)
+    A = m.M + h * theta * m.C + (h * theta) ** 2 * m.K
+    inverse = np.asarray(np.linalg.inv(A) if m.linear else np.zeros((n_q, n_q)), dtype=np.float64)
     A_g = inverse @ m.G.T
     return loop.Plan(
         h=h,
