@@ -55,7 +55,7 @@ def enumerate_once(
     if not all_finite(W, b):
         return NOT_FINITE, 0, np.inf
     work = carve(numbers, integers, b.shape[0])
-    work.report[1] = 0.0
+    work.report[1], work.report[4] = 0.0, tolerance
     status = enumerate_bases(W, b, z, tolerance, limit, work)
     if status != SOLVED:
         for i in range(b.shape[0]):

@@ -26,7 +26,7 @@ def enumerate_bases(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: 
         if (
             solve_chosen(W, b, z, tolerance, work)
             and work.report[0] <= tolerance
-            and clip(W, b, z, tolerance, work) == SOLVED
+            and clip(W, b, z, work) <= tolerance
         ):
             return SOLVED
     return FAILED

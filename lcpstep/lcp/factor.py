@@ -62,6 +62,8 @@ class Dense:
         from scipy.linalg import lapack
 
         chosen = np.flatnonzero(active)
+        if len(chosen) == 0:
+            return np.zeros_like
         A = self.W[np.ix_(chosen, chosen)]
         A[np.diag_indices_from(A)] += d[chosen]
         lu, pivots, info = lapack.dgetrf(A, overwrite_a=True)
@@ -82,6 +84,8 @@ class General:
         from scipy.sparse.linalg import splu
 
         chosen = np.flatnonzero(active)
+        if len(chosen) == 0:
+            return np.zeros_like
         part = self.W if len(chosen) == len(active) else self.W[chosen][:, chosen]
         try:
             lu = splu((part + diags_array(d[chosen])).tocsc(), permc_spec="MMD_AT_PLUS_A")

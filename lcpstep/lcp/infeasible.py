@@ -20,9 +20,10 @@ from lcpstep.lcp.judge import proves_infeasible
 from lcpstep.lcp.lemke import lemke
 from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.status import RAY
-from lcpstep.lcp.workspace import RAY_DIRECTION, workspace
+from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, workspace
 
 PIVOTS = 50  # per unknown
+SMALLEST_PIVOT = 1e-11
 
 
 def farkas(W: Any, b: Any) -> Any:
@@ -32,7 +33,8 @@ def farkas(W: Any, b: Any) -> Any:
     M[:n, n:], M[n:, :n] = -W.T, W
     work = workspace(2 * n)
     compiled(equilibrate)(M, q, work)
-    if compiled(lemke)(2 * n, 2 * PIVOTS * n, work) != RAY:
+    work.indices[CHOSEN] = 0
+    if compiled(lemke)(2 * n, 2 * PIVOTS * n, SMALLEST_PIVOT, True, work) != RAY:
         return None
     y = work.vectors[RAY_DIRECTION, n : 2 * n].copy()
     return y if compiled(proves_infeasible)(W, b, y) else None

@@ -21,7 +21,7 @@ BACK_OFF = 0.995  # part of the way to the boundary that a step may go
 SMALLEST = 1e-13  # relative complementarity at which rounding takes over
 
 
-def interior_point(W: Any, b: Any, tol: float, factors: Factoriser) -> tuple[Any, int]:
+def interior_point(W: Any, b: Any, factors: Factoriser) -> tuple[Any, int]:
     """The last point z > 0, and the number of steps; not judged."""
     n, everywhere = len(b), np.ones(len(b), dtype=bool)
     z, w, scale = start(W, b)
@@ -50,8 +50,8 @@ def interior_point(W: Any, b: Any, tol: float, factors: Factoriser) -> tuple[Any
 def start(W: Any, b: Any) -> tuple[Any, Any, float]:
     """A first point whose products z_i w_i are all alike, and their size."""
     diagonal = np.abs(W.diagonal())
-    diagonal = np.where(diagonal > 0.0, diagonal, np.max(diagonal, initial=1.0))
-    level = np.max(np.abs(b) / np.sqrt(diagonal))
+    diagonal = np.where(diagonal > 0.0, diagonal, np.max(diagonal) or 1.0)
+    level = np.max(np.abs(b) / np.sqrt(diagonal)) or 1.0
     z = level / np.sqrt(diagonal)
     w = level * np.sqrt(diagonal)
     return z, w, float(level) ** 2

@@ -109,22 +109,29 @@ def residual(W: Any, b: Any, z: Any) -> float:
 
 
 def _sparse(W: Any, b: Any, z: Any) -> float:
-    W = W.tocsc()
-    size = abs(W)
     with np.errstate(over="ignore", invalid="ignore"):
         w = W @ z + b
-        s = size @ np.abs(z) + np.abs(b)
+        s = abs(W) @ np.abs(z) + np.abs(b)
     if not np.all(s < np.inf):
         return float("inf")
-    felt_rows = s > 0.0
-    inverse = np.divide(1.0, s, out=np.zeros_like(s), where=felt_rows)
-    relative = w * inverse
-    column = np.repeat(np.arange(len(b)), np.diff(W.indptr))
-    parts, felt = np.zeros_like(s), np.zeros(len(b), dtype=bool)
-    np.maximum.at(parts, column, size.data * inverse[W.indices] * np.abs(z)[column])
-    np.logical_or.at(felt, column, (W.data != 0.0) & felt_rows[W.indices])
-    parts[~felt] = 1.0
+    relative = np.divide(w, s, out=np.zeros_like(s), where=s > 0.0)
+    doubtful = (z < 0.0) | ((z > 0.0) & (relative > 0.0))
+    parts = shares(W, z, s) if np.max(relative[doubtful], initial=0.0) > EPSILON else np.ones_like(z)
     return float(compiled(_worst)(z, relative, parts))
+
+
+def shares(W: Any, z: Any, s: Any) -> Any:
+    """Largest relative contribution of each z_i to a row, as `share` has it, for a dense or sparse W."""
+    inverse = np.divide(1.0, s, out=np.zeros_like(s), where=s > 0.0)
+    if hasattr(W, "tocsc"):
+        columns = abs(W).tocsc()
+        columns.eliminate_zeros()
+        weighted = np.append(columns.data * inverse[columns.indices], 0.0)
+        largest = np.maximum.reduceat(weighted, columns.indptr[:-1])
+        largest[np.diff(columns.indptr) == 0] = 0.0
+    else:
+        largest = np.max(np.abs(W) * inverse[:, None], axis=0, initial=0.0)
+    return np.where(largest > 0.0, largest * np.abs(z), 1.0)
 
 
 def _worst(z: Any, relative: Any, parts: Any) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lcpstep.lcp.elimination import copy
 from lcpstep.lcp.enumeration import enumerate_bases
 from lcpstep.lcp.judge import judge, proves_infeasible
 from lcpstep.lcp.lemke import lemke
@@ -19,11 +20,15 @@ from lcpstep.lcp.principal import exchange_indices
 from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.small import solve_one, solve_two
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, TOLERANCE
-from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, RAY_START, SIZE, SLACK, Workspace, workspace
+from lcpstep.lcp.workspace import BEST, CHOSEN, RAY_DIRECTION, RAY_START, SIZE, SLACK, Workspace, workspace
 
 __all__ = ["Workspace", "solve_small", "workspace"]
 
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
+STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
+STARTS = 12  # times that Lemke's method is started
+STRIDE = 7919  # a prime that scatters them
+SMALLEST_PIVOTS = (1e-11, 1e-8)  # relative to the largest entry of a direction, in turn
 TINY = 8  # up to this size every basis is tried at last
 ENOUGH = 1000  # pivots granted at least, and per unknown
 PER_UNKNOWN = 20
@@ -54,28 +59,67 @@ def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work:
         return solve_one(W, b, z, tolerance, work)
     if n == 2 and solve_two(W, b, z, tolerance, work):
         return SOLVED
+    work.report[4] = tolerance
+    strict = min(tolerance, STRICT)
     if not choose_positive(z, work):
         choose_negative(b, work)
-    if exchange_indices(W, b, z, tolerance, EXCHANGES, work) == SOLVED:
+    if exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
         return SOLVED
+    return pivot_on(W, b, z, tolerance, max_pivots, work)
+
+
+def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
+    """Lemke's method from z = 0 and, where that ends in a ray or an answer is refused, from other bases."""
+    n, strict, status = b.shape[0], min(tolerance, STRICT), FAILED
     equilibrate(W, b, work)
-    status = lemke(n, max_pivots, work)
-    if status == SOLVED and exchange_indices(W, b, z, tolerance, EXCHANGES, work) == SOLVED:
-        return SOLVED
-    return rescue(W, b, z, tolerance, status, work)
+    for attempt in range(STARTS):
+        choose_start(attempt, n, work)
+        smallest = SMALLEST_PIVOTS[attempt % len(SMALLEST_PIVOTS)]
+        ended = lemke(n, max_pivots, smallest, attempt == 0, work)
+        if ended == SOLVED and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
+            return SOLVED
+        if work.report[4] < tolerance:
+            break
+        if attempt == 0:
+            status = ended
+            if ended == RAY and proves_infeasible(W, b, work.vectors[RAY_DIRECTION]):
+                status = INFEASIBLE
+                break
+    return conclude(W, b, z, tolerance, status, work)
 
 
-def rescue(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -> int:
-    """After a ray, the limit or a refused answer: a proof that there is none, or every basis of a few."""
+def conclude(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -> int:
+    """The best answer that passes; or every basis of a few unknowns; or why there is none."""
     n = b.shape[0]
-    if status == RAY and proves_infeasible(W, b, work.vectors[RAY_DIRECTION]):
-        status = INFEASIBLE
-    elif n <= TINY and enumerate_bases(W, b, z, tolerance, 2**n, work) == SOLVED:
-        return SOLVED
-    for i in range(n):
-        z[i] = work.vectors[RAY_START, i] if status in (RAY, INFEASIBLE) else max(z[i], 0.0)
+    if status != INFEASIBLE and not work.report[4] < tolerance and n <= TINY:
+        if enumerate_bases(W, b, z, tolerance, 2**n, work) == SOLVED:
+            return SOLVED
+    if work.report[4] < tolerance:
+        copy(z, work.vectors[BEST], n)
+        status = SOLVED
+    elif status in (RAY, INFEASIBLE):
+        copy(z, work.vectors[RAY_START], n)
+    else:
+        status = FAILED if status == SOLVED else status
+        for i in range(n):
+            z[i] = max(z[i], 0.0)
     work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return FAILED if status == SOLVED else status
+    return status
+
+
+def choose_start(attempt: int, n: int, work: Any) -> None:
+    """The basis to start from: z = 0 twice, then one positive z, with a partner if its diagonal is small."""
+    columns, chosen = work.columns, work.indices[CHOSEN]
+    for i in range(n):
+        chosen[i] = 0
+    if attempt < len(SMALLEST_PIVOTS):
+        return
+    i = (STRIDE * attempt) % n
+    partner = i
+    for j in range(n):
+        if abs(columns[i, j] * columns[j, i]) > 4.0 * abs(columns[i, partner] * columns[partner, i]):
+            partner = j
+    chosen[i] = chosen[partner] = 1
 
 
 def choose_positive(z: Any, work: Any) -> bool:

@@ -7,8 +7,9 @@ The problem is widened by a covering variable z_0 >= 0,
 so that z = 0 with z_0 large is feasible; z_0 is driven out while z_i w_i = 0 stays true for every i: the
 complement of the variable that left enters next. Ties are broken as if b were b + (e, e^2, ..., e^n) for an
 infinitesimal e, so no basis comes twice. It ends when z_0 leaves (solved) or when nothing bounds the entering
-variable (a ray). C. E. Lemke, Management Sci. 11 (1965) 681; R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear
-Complementarity Problem (1992), section 4.4.
+variable (a ray). C. E. Lemke, Management Sci. 11 (1965) 681; R. W. Cottle, J.-S. Pang, R. E. Stone, The
+Linear Complementarity Problem (1992), section 4.4. It may start from any complementary basis, not only z = 0;
+then d is chosen for that basis.
 
 Variables are numbered z_0..z_(n-1) = 0..n-1, the covering variable n, w_i = n + 1 + i.
 """
@@ -19,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.lcp.basis import pivot, set_direction
-from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
+from lcpstep.lcp.basis import pivot, refactorise, set_direction
+from lcpstep.lcp.elimination import subtract
+from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, RAY, SOLVED
 from lcpstep.lcp.workspace import (
     BASIC,
     CHOSEN,
@@ -29,28 +31,36 @@ from lcpstep.lcp.workspace import (
     DX,
     RAY_DIRECTION,
     RAY_START,
-    SCALED_B,
     SLACK,
     TIED,
+    TIGHT,
     W_PLACE,
     Z_PLACE,
     X,
 )
 
-PIVOT = 1e-11  # smallest pivot, relative to the largest entry of its direction
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 NOTHING = -1
 
 
-def lemke(n: int, max_pivots: int, work: Any) -> int:
-    """Pivot from z = 0 to a complementary basis, which is marked in CHOSEN; returns a status."""
-    start(n, work)
-    m, entering = 0, n
-    while work.report[1] < max_pivots:
+def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Any) -> int:
+    """Pivot from the basis marked in CHOSEN to a complementary one, which is marked there; returns a status.
+
+    No pivot is smaller than `smallest`, relative to the largest entry of its direction. If `keep`, a ray is
+    stored in the work arrays.
+    """
+    m, entering = start(n, work), n
+    if m < 0:
+        return FAILED
+    for _ in range(max_pivots):
         set_direction(entering, m, n, work)
-        leaving = first_leaving(n, work) if m == 0 else ratio_test(m, n, work)
+        if work.indices[Z_PLACE, n] < 0:
+            leaving = first_leaving(m, n, work)
+        else:
+            leaving = ratio_test(m, n, smallest, work)
         if leaving == NOTHING:
-            keep_ray(entering, m, n, work)
+            if keep:
+                keep_ray(entering, m, n, work)
             return RAY
         m = advance(entering, leaving, m, n, work)
         work.report[1] += 1.0
@@ -62,28 +72,44 @@ def lemke(n: int, max_pivots: int, work: Any) -> int:
     return MAX_ITERATIONS
 
 
-def start(n: int, work: Any) -> None:
-    """The basis of all w, and the covering vector."""
+def start(n: int, work: Any) -> int:
+    """The basis of the chosen z and the other w; returns the number of z, -1 if the basis is singular.
+
+    The covering vector is such that every basic variable grows by one with z_0: all ones for the basis of w.
+    """
+    m, basic, d = 0, work.indices[BASIC], work.columns[n]
     for i in range(n):
-        work.columns[n, i] = 1.0
-        work.vectors[SLACK, i] = work.vectors[SCALED_B, i]
         work.indices[Z_PLACE, i] = work.indices[W_PLACE, i] = -1
+        if work.indices[CHOSEN, i]:
+            work.indices[Z_PLACE, i] = work.indices[W_PLACE, i] = m
+            basic[m] = work.indices[TIGHT, m] = i
+            m += 1
     work.indices[Z_PLACE, n] = -1
+    if not refactorise(m, n, work):
+        return -1
+    for i in range(n):
+        d[i] = 0.0 if work.indices[CHOSEN, i] else 1.0
+    for q in range(m):
+        subtract(d, work.columns[basic[q]], 1.0, n)
+    return m
 
 
-def first_leaving(n: int, work: Any) -> int:
-    """The w that the covering variable, falling from infinity, reaches first; the last of equal ones."""
-    w, d = work.vectors[SLACK], work.columns[n]
-    lowest = 0
-    for i in range(1, n):
-        if w[i] / d[i] <= w[lowest] / d[lowest]:
-            lowest = i
-    return n + 1 + lowest
+def first_leaving(m: int, n: int, work: Any) -> int:
+    """The variable that the covering one, falling from infinity, reaches first; the last of equal ones."""
+    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    lowest, leaving = np.inf, NOTHING
+    for q in range(m):
+        if x[q] / dx[q] <= lowest:
+            lowest, leaving = x[q] / dx[q], work.indices[BASIC, q]
+    for i in range(n):
+        if work.indices[W_PLACE, i] < 0 and w[i] / dw[i] <= lowest:
+            lowest, leaving = w[i] / dw[i], n + 1 + i
+    return leaving
 
 
-def ratio_test(m: int, n: int, work: Any) -> int:
+def ratio_test(m: int, n: int, smallest: float, work: Any) -> int:
     """The basic variable that bounds the entering one, lexicographically; the covering variable if it can."""
-    bound = first_zero(m, n, work)
+    bound = first_zero(m, n, smallest, work)
     if bound == np.inf:
         return NOTHING
     tied = list_ties(bound, m, n, work)
@@ -97,7 +123,7 @@ def ratio_test(m: int, n: int, work: Any) -> int:
     return work.indices[TIED, 0]
 
 
-def first_zero(m: int, n: int, work: Any) -> float:
+def first_zero(m: int, n: int, smallest: float, work: Any) -> float:
     """Growth of the entering variable at which a basic one is surely zero; infinite if none falls.
 
     Leaves in report[2] the size above which a component of the direction counts.
@@ -108,7 +134,7 @@ def first_zero(m: int, n: int, work: Any) -> float:
         steepest, largest = max(steepest, abs(dx[q])), max(largest, abs(x[q]))
     for i in range(n):
         steepest, largest = max(steepest, abs(dw[i])), max(largest, abs(w[i]))
-    smallest, slack, bound = PIVOT * steepest, TIE * largest, np.inf
+    smallest, slack, bound = smallest * steepest, TIE * largest, np.inf
     for q in range(m):
         if dx[q] < -smallest:
             bound = min(bound, (max(x[q], 0.0) + slack) / -dx[q])
@@ -165,11 +191,10 @@ def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
     """Let the entering variable grow until the leaving one is zero, and exchange them."""
     x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
     if leaving <= n:
-        q = work.indices[Z_PLACE, leaving]
-        theta = max(x[q], 0.0) / -dx[q]
+        theta = -x[work.indices[Z_PLACE, leaving]] / dx[work.indices[Z_PLACE, leaving]]
     else:
-        i = leaving - n - 1
-        theta = -w[i] / dw[i] if m == 0 else max(w[i], 0.0) / -dw[i]
+        theta = -w[leaving - n - 1] / dw[leaving - n - 1]
+    theta = max(theta, 0.0)
     for q in range(m):
         x[q] += theta * dx[q]
     for i in range(n):

@@ -3,22 +3,23 @@
 With the index set a, z_a = -W_aa^-1 b_a and z = 0 elsewhere. The factors are fresh (LU) and the answer is
 refined against W itself, so it is as accurate as the conditioning of W_aa allows, however the set was found.
 Indices whose column depends on the others (a contact given twice) are left out of the set. Where z or w comes
-out negative the indices change sides, all at once (M. M. Kostreva, Linear Algebra Appl. 21 (1978) 263; the same
-as Newton's method on min(z, w) = 0), which ends after a few exchanges or is given up.
+out negative the indices change sides, all at once (M. M. Kostreva, Linear Algebra Appl. 21 (1978) 263; the
+same as Newton's method on min(z, w) = 0), which ends after a few exchanges or is given up.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.lcp.elimination import back_substitute, factorise
+from lcpstep.lcp.elimination import back_substitute, copy, factorise
 from lcpstep.lcp.judge import judge, share
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-from lcpstep.lcp.workspace import ACTIVE, CHOSEN, DX, LEFT, ORDER, SIZE, SLACK, TRIAL, X
+from lcpstep.lcp.workspace import ACTIVE, BEST, CHOSEN, DX, LEFT, ORDER, SIZE, SLACK, TRIAL, X
 
 REFINEMENTS = 3
 ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine
 UNDECIDED = 1e-9  # the same while the set is still changing
+NOISE = 1e-13  # a scaled z this small next to the largest may be rounding
 PATIENCE = 2  # exchanges that may pass without fewer indices on the wrong side
 
 
@@ -28,16 +29,17 @@ def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work:
     The last answer is in z, its residual in report[0]; iterations are added to report[1].
     """
     n = b.shape[0]
-    for i in range(n):
-        work.vectors[TRIAL, i] = b[i]
+    copy(work.vectors[TRIAL], b, n)
     fewest, patience = n + 1, PATIENCE
     for _ in range(limit):
         work.report[1] += 1.0
         if not solve_chosen(W, b, z, tolerance, work):
             return FAILED
-        if work.report[0] <= tolerance:
-            return clip(W, b, z, tolerance, work)
+        if work.report[0] <= tolerance and clip(W, b, z, work) <= tolerance:
+            return SOLVED
         wrong = change_sides(W, z, tolerance, work)
+        if work.report[0] <= work.report[4]:
+            keep_best(W, b, z, work)
         if wrong < fewest:
             fewest, patience = wrong, PATIENCE
         elif patience == 0:
@@ -69,12 +71,37 @@ def solve_chosen(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
         before, error = error, row_error(k, work)
         good_enough = error <= (ROUNDING if work.report[0] <= tolerance else UNDECIDED)
         if good_enough or error > 0.5 * before:
-            return True
+            break
+    if work.report[0] > tolerance:
+        drop_noise(W, b, z, k, work)
     return True
 
 
+def drop_noise(W: Any, b: Any, z: Any, k: int, work: Any) -> None:
+    """Set z to zero where it is rounding next to the others: a row of such terms alone has no sign.
+
+    Only if the judge does not object.
+    """
+    largest, some, kept, before = 0.0, False, work.vectors[LEFT], work.report[0]
+    for q in range(k):
+        j = work.indices[ACTIVE, q]
+        kept[q] = z[j]
+        largest = max(largest, abs(z[j]) / work.vectors[DX, j])
+    for q in range(k):
+        j = work.indices[ACTIVE, q]
+        if z[j] != 0.0 and abs(z[j]) <= NOISE * largest * work.vectors[DX, j]:
+            z[j], some = 0.0, True
+    if not some:
+        return
+    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    if work.report[0] > before:
+        for q in range(k):
+            z[work.indices[ACTIVE, q]] = kept[q]
+        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+
+
 def load(W: Any, n: int, work: Any) -> int:
-    """Copy the submatrix of the set, scaled; X and DX are the scales of its rows and columns. Returns its size."""
+    """Copy the submatrix of the set, scaled by X in rows and DX in columns; returns its size."""
     F, active, r, c = work.factor, work.indices[ACTIVE], work.vectors[X], work.vectors[DX]
     k = list_chosen(n, work)
     for p in range(k):
@@ -142,12 +169,24 @@ def change_sides(W: Any, z: Any, tolerance: float, work: Any) -> int:
     return wrong
 
 
-def clip(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
-    """Cut what rounding left of negative z and, if there was any, judge the rest."""
+def clip(W: Any, b: Any, z: Any, work: Any) -> float:
+    """Cut what rounding left of negative z and, if there was any, judge the rest; returns the residual."""
     cut = False
     for i in range(z.shape[0]):
         if z[i] < 0.0:
             z[i], cut = 0.0, True
     if cut:
         work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return SOLVED if work.report[0] <= tolerance else FAILED
+    return float(work.report[0])
+
+
+def keep_best(W: Any, b: Any, z: Any, work: Any) -> None:
+    """Remember an answer that is no worse than the best so far, its negative z cut."""
+    n, best = z.shape[0], work.vectors[BEST]
+    for i in range(n):
+        work.vectors[LEFT, i], z[i] = z[i], max(z[i], 0.0)
+    found = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    if found <= work.report[4]:
+        work.report[4] = found
+        copy(best, z, n)
+    copy(z, work.vectors[LEFT], n)

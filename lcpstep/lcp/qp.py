@@ -18,8 +18,7 @@ import numpy as np
 from lcpstep.errors import MissingSolver, UnknownName
 from lcpstep.lcp.definite import require_semidefinite, scaled, unit_diagonal
 from lcpstep.lcp.factor import factoriser
-from lcpstep.lcp.judge import residual
-from lcpstep.lcp.newton import exchange, positive_set
+from lcpstep.lcp.newton import best_of, exchange, positive_set
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import FAILED, SOLVED, Status
 
@@ -38,7 +37,7 @@ ITERATIONS = {
     "scs": "max_iters",
     "clarabel": "max_iter",
 }
-EXCHANGES = 10  # of the polishing
+EXCHANGES = 40  # of the polishing
 
 
 @cache
@@ -67,12 +66,9 @@ def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int
     require_semidefinite(W)
     d = unit_diagonal(W)
     found = call_solver(name, scaled(W, d), d * b, z / d, max_iterations)
-    best = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
-    error = residual(W, b, best)
-    polished, used = exchange(W, b, positive_set(W, b, best), tol, EXCHANGES, factoriser(W))
-    error_polished = residual(W, b, polished)
-    if error_polished < error:
-        best, error = polished, error_polished
+    raw = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
+    polished, used = exchange(W, b, raw, positive_set(W, b, raw), EXCHANGES, factoriser(W))
+    best, error = best_of(W, b, raw, polished)
     status = SOLVED if error <= tol else FAILED
     return Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}")
 

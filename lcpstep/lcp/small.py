@@ -12,7 +12,7 @@ from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import FAILED, INFEASIBLE, SOLVED
 from lcpstep.lcp.workspace import RAY_DIRECTION, SIZE, SLACK
 
-ROUNDING = 1e-14  # a basis this good is taken without looking at the others
+ROUNDING = 1e-14  # residual up to which Cramer's rule is accurate enough
 
 
 def solve_one(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
@@ -31,19 +31,14 @@ def solve_one(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
 
 
 def solve_two(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
-    """Whether one of the four bases passes the judge; z is then its answer."""
-    best, best_0, best_1 = tolerance, -1.0, -1.0
+    """Whether one of the four bases is right up to rounding; z is then its answer, else zero."""
     for basis in range(4):
         if cramer(W, b, z, basis):
-            found = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-            work.report[0] = found
-            if found <= ROUNDING:
-                return found <= tolerance
-            if found <= best:
-                best, best_0, best_1 = found, z[0], z[1]
-    z[0], z[1] = max(best_0, 0.0), max(best_1, 0.0)
-    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return best_0 >= 0.0
+            work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+            if work.report[0] <= ROUNDING and work.report[0] <= tolerance:
+                return True
+    z[0], z[1] = 0.0, 0.0
+    return False
 
 
 def cramer(W: Any, b: Any, z: Any, basis: int) -> bool:

@@ -22,8 +22,9 @@ RAY_DIRECTION, RAY_START = (
     10,
     11,
 )  # the ray that pivoting left along, in the units of z
-VECTORS = 12
-REPORT = 4
+BEST = 12  # the best answer so far that passes the tolerance asked for
+VECTORS = 13
+REPORT = 5
 
 # rows of Workspace.indices
 BASIC, TIGHT = 0, 1  # by position: index of the basic z; index of the row whose w is not basic
@@ -40,10 +41,10 @@ class Workspace(NamedTuple):
     columns : (n+1, n)   columns of the scaled W, each in one piece; the last is Lemke's covering vector
     inverse : (n, n)     inverse of the basis matrix
     factor : (n, n)      LU factors of a principal submatrix
-    vectors : (12, n+1)  see the names of its rows in this module
+    vectors : (13, n+1)  see the names of its rows in this module
     indices : (8, 2n+1)  likewise
-    report : (4,)        of the last problem: residual, number of iterations, and the covering variable's
-                         share in a ray, direction and start
+    report : (5,)        of the last problem: residual, number of iterations, the covering variable's share
+                         in a ray, direction and start, and the residual of the best answer so far
     """
 
     columns: Any
