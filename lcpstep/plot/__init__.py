@@ -1,0 +1,1 @@
+"""Pictures of trajectories. Everything here returns a matplotlib figure and saves or shows nothing."""

@@ -1,0 +1,95 @@
+"""Time series and state-space portraits of two runs of one scene, side by side.
+
+The layout is that of G. Osorio, Complex Behavior in Impacting Systems, Figs 3.4 and 3.5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from lcpstep.compare import Comparison
+from lcpstep.trajectory import Kind, Trajectory
+
+SAMPLES = 4000  # of a curve
+JUMPS = "0.75"  # colour of the velocity jumps
+
+
+def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
+    """Positions of both runs overlaid, and below each the distance of the two on a logarithmic scale."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 3.4 * len(comparisons)), layout="constrained")
+    axes = figure.subplots(2 * len(comparisons), 1, height_ratios=[3, 1] * len(comparisons), squeeze=False)[
+        :, 0
+    ]
+    for k, (c, title) in enumerate(zip(comparisons, titles, strict=True)):
+        fast, exact, distance = c.fast.trajectory, c.reference.trajectory, axes[2 * k + 1]
+        t = np.linspace(exact.t[0], exact.t[-1], SAMPLES)
+        axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=_name(exact))
+        axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=_name(fast))
+        axes[2 * k].set(title=title, ylabel="position q [m]")
+        axes[2 * k].legend(loc="upper right", fontsize=8)
+        distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]) + 1e-17, "C3-", lw=0.7)
+        distance.set(ylabel="|difference| [m]", xlabel="time t [s]")
+        for ax in (axes[2 * k], distance):
+            ax.set_xlim(exact.t[0], exact.t[-1])
+            ax.grid(alpha=0.3)
+    return figure
+
+
+def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
+    """State-space portraits, one row a comparison: the fast method on the left, the reference on the right."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 3.6 * len(comparisons)), layout="constrained")
+    grid = figure.subplots(len(comparisons), 2, sharex="row", sharey="row", squeeze=False)
+    for row, c, title in zip(grid, comparisons, titles, strict=True):
+        for ax, run in zip(row, (c.fast.trajectory, c.reference.trajectory), strict=True):
+            portrait(ax, run)
+            ax.set(title=f"{title}: {_name(run)}", xlabel="position q [m]")
+        row[0].set_ylabel("velocity v [m/s]")
+    return figure
+
+
+def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
+    """One coordinate's path in the plane (q, v); velocity jumps in grey."""
+    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps.time]))
+    q, v = run.at(t)
+    q, v = q[:, coordinate].copy(), v[:, coordinate].copy()
+    # The path is broken where it jumps, and the jump drawn as a line of its own.
+    landed = np.searchsorted(t, jumps.time)
+    landed = landed[landed > 0]
+    ax.plot([q[landed - 1], q[landed]], [v[landed - 1], v[landed]], color=JUMPS, lw=0.6)
+    ax.plot(np.insert(q, landed, np.nan), np.insert(v, landed, np.nan), "C0-", lw=0.7)
+    ax.grid(alpha=0.3)
+
+
+def overview(run: Trajectory) -> Any:
+    """Position, velocity and impulses of one run over time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    position, velocity, impulse = figure.subplots(3, 1, sharex=True)
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+    q, v = run.at(t)
+    position.plot(t, q, lw=1.0)
+    velocity.plot(t, v, lw=1.0)
+    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
+    impulse.stem(jumps.time, jumps.impulse, basefmt="k-", markerfmt=".")
+    for ax, label in zip((position, velocity, impulse), ("q [m]", "v [m/s]", "impulse [N s]"), strict=True):
+        ax.set_ylabel(label)
+        ax.grid(alpha=0.3)
+    impulse.set_xlabel("time t [s]")
+    position.set_title(f"{run.scene.name}: {_name(run)}")
+    return figure
+
+
+def _name(run: Trajectory) -> str:
+    method = run.method
+    if hasattr(method, "h"):
+        return f"{type(method).__name__}, h = {method.h:g} s, theta = {method.theta:g}"
+    return f"event-driven, tolerance {method.rtol:g}"
