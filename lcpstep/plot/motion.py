@@ -14,6 +14,7 @@ from lcpstep.compare import Comparison
 from lcpstep.trajectory import Kind, Trajectory
 
 SAMPLES = 4000  # of a curve
+DECADES = 1e-5  # how far below its maximum the distance of two motions is drawn
 JUMPS = "0.75"  # colour of the velocity jumps
 
 
@@ -32,8 +33,9 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
         axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=_name(fast))
         axes[2 * k].set(title=title, ylabel="position q [m]")
         axes[2 * k].legend(loc="upper right", fontsize=8)
-        distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]) + 1e-17, "C3-", lw=0.7)
+        distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]), "C3-", lw=0.7)
         distance.set(ylabel="|difference| [m]", xlabel="time t [s]")
+        distance.set_ylim(bottom=max(c.sup_q, 1e-16) * DECADES)
         for ax in (axes[2 * k], distance):
             ax.set_xlim(exact.t[0], exact.t[-1])
             ax.grid(alpha=0.3)
@@ -57,7 +59,8 @@ def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
 def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
     """One coordinate's path in the plane (q, v); velocity jumps in grey."""
     jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps.time]))
+    before = np.nextafter(jumps.time, run.t[0])
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps.time, before]))
     q, v = run.at(t)
     q, v = q[:, coordinate].copy(), v[:, coordinate].copy()
     # The path is broken where it jumps, and the jump drawn as a line of its own.

@@ -1,0 +1,103 @@
+"""Set the project up in a virtual environment of its own and run it; needs Python 3.11 and nothing else.
+
+python3 start.py          the cam-follower by time-stepping and event by event: a table, and pictures in out/
+python3 start.py test     the checks: lint, types, import rules, tests
+"""
+
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import urllib.request
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+ENVIRONMENT = ROOT / ".venv"
+BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
+CHECKS = (
+    ["ruff", "check", "."],
+    ["ruff", "format", "--check", "."],
+    ["mypy"],
+    ["lint-imports"],
+    ["pytest"],
+)
+
+
+def main(arguments: list[str]) -> int:
+    """Run the main job, or the checks."""
+    if sys.version_info < (3, 11):
+        sys.exit(f"lcpstep needs Python 3.11 or newer; this is {sys.version.split()[0]}")
+    if arguments not in ([], ["test"]):
+        sys.exit(__doc__)
+    if not arguments:
+        set_up(".")
+        return subprocess.call([BIN / "lcpstep", "compare", "cam-follower"], cwd=ROOT)
+    set_up(".[test]")
+    for check in CHECKS:
+        print("==", *check, flush=True)
+        status = subprocess.call([BIN / check[0], *check[1:]], cwd=ROOT)
+        if status != 0:
+            return status
+    return 0
+
+
+def set_up(what: str) -> None:
+    """Make the virtual environment and install the project into it, unless that has been done."""
+    wanted = hashlib.sha256((ROOT / "pyproject.toml").read_bytes()).hexdigest()
+    done = ENVIRONMENT / f"installed{what.strip('.')}"
+    if done.exists() and done.read_text() == wanted:
+        return
+    print("setting up .venv; this takes a minute", flush=True)
+    if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
+        venv.create(ENVIRONMENT, symlinks=os.name != "nt")
+    install("--quiet", "--editable", what)
+    done.write_text(wanted)
+
+
+def install(*arguments: str) -> None:
+    """Run `pip install` for the environment, with whatever pip there is.
+
+    Some systems ship Python without ensurepip: then an installed pip does it from outside, and failing that one
+    is fetched from the package index.
+    """
+    python = BIN / "python"
+    ways = [[python, "-m", "pip"], [sys.executable, "-m", "pip", "--python", python]]
+    if not works(ways[0]):
+        subprocess.call([python, "-m", "ensurepip"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    way = next((way for way in ways if works(way)), None)
+    if way is None:
+        with tempfile.TemporaryDirectory() as folder:
+            wheel = fetch_pip(Path(folder))
+            subprocess.check_call([python, f"{wheel}/pip", "install", "--quiet", str(wheel)])
+        way = ways[0]
+    subprocess.check_call([*way, "install", *arguments], cwd=ROOT)
+
+
+def works(pip: list) -> bool:
+    """Whether a pip command runs."""
+    return subprocess.call([*pip, "--version"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0
+
+
+def fetch_pip(folder: Path) -> Path:
+    """Newest wheel of pip from the package index, its checksum verified."""
+    index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
+    request = urllib.request.Request(index, headers={"Accept": "application/vnd.pypi.simple.v1+json"})
+    with urllib.request.urlopen(request) as answer:
+        files = json.load(answer)["files"]
+    wheels = [f for f in files if re.fullmatch(r"pip-[\d.]+-py3-none-any\.whl", f["filename"])]
+    newest = max(wheels, key=lambda f: [int(x) for x in f["filename"].split("-")[1].split(".")])
+    with urllib.request.urlopen(newest["url"]) as answer:
+        content = answer.read()
+    if hashlib.sha256(content).hexdigest() != newest["hashes"]["sha256"]:
+        sys.exit(f"{newest['filename']}: the checksum does not fit")
+    wheel = folder / newest["filename"]
+    wheel.write_bytes(content)
+    return wheel
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
