@@ -18,6 +18,7 @@ import dis
 import functools
 import hashlib
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from types import FunctionType
 from typing import Any, TypeVar, cast
@@ -128,10 +129,11 @@ def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
     """Cache the machine code of f beside its source.
 
     numba judges a cached entry by the age of f's own file; its callees may live in others, so the entry is
-    stamped with a fingerprint of all of them. A function without a file (typed into a terminal, made by
-    exec) is compiled afresh in each process.
+    stamped with a fingerprint of all of them. A function that cannot be found again by its file and module
+    (typed into a terminal, made by exec) is compiled afresh in each process.
     """
-    if not os.path.exists(f.__code__.co_filename):
+    home = sys.modules.get(f.__module__)
+    if not os.path.exists(f.__code__.co_filename) or vars(home or os) is not f.__globals__:
         return
     compilable.enable_caching()
     cache_file = compilable._cache._cache_file
