@@ -12,7 +12,7 @@ from lcpstep.lcp.dense import NOT_FINITE, all_finite
 from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
 from lcpstep.lcp.problem import as_array, check_finite
 from lcpstep.lcp.status import SOLVED, TOLERANCE
-from lcpstep.lcp.workspace import SLACK, workspace
+from lcpstep.lcp.workspace import ITERATIONS, RESIDUAL, SLACK, workspace
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +98,6 @@ def solve_all(
             status[i] = NOT_FINITE
             continue
         status[i] = solve_dense(W, b[i], z[i], tolerance, max_pivots, work)
-        iterations[i], residual[i] = int(work.report[1]), work.report[0]
+        iterations[i], residual[i] = int(work.report[ITERATIONS]), work.report[RESIDUAL]
         for j in range(b.shape[1]):
             w[i, j] = work.vectors[SLACK, j]

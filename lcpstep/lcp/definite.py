@@ -33,7 +33,7 @@ def defect(W: Any) -> str:
         return ""
     difference = abs(S - S.T)
     if difference.max() > ASYMMETRY:
-        i, j = largest(difference)
+        i, j = sorted(largest(difference))
         return f"W[{i}, {j}] = {W[i, j]:.6g} but W[{j}, {i}] = {W[j, i]:.6g}"
     shift = NEGATIVE * len(diagonal)
     if positive_definite(S, shift):

@@ -16,8 +16,13 @@ from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
 from lcpstep.lcp.workspace import (
+    BEST_RESIDUAL,
+    ITERATIONS,
     RAY_DIRECTION,
+    RAY_DZ0,
     RAY_START,
+    RAY_Z0,
+    RESIDUAL,
     ROW_SCALE,
     SIZE,
     SLACK,
@@ -55,12 +60,12 @@ def enumerate_once(
     if not all_finite(W, b):
         return NOT_FINITE, 0, np.inf
     work = carve(numbers, integers, b.shape[0])
-    work.report[1], work.report[4] = 0.0, tolerance
+    work.report[ITERATIONS], work.report[BEST_RESIDUAL] = 0.0, tolerance
     status = enumerate_bases(W, b, z, tolerance, limit, work)
     if status != SOLVED:
         for i in range(b.shape[0]):
             z[i] = max(z[i], 0.0)
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+        work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
     return finish(status, w, work)
 
 
@@ -68,7 +73,7 @@ def finish(status: int, w: Any, work: Any) -> tuple[int, int, float]:
     """Copy w out and report."""
     for i in range(w.shape[0]):
         w[i] = work.vectors[SLACK, i]
-    return status, int(work.report[1]), work.report[0]
+    return status, int(work.report[ITERATIONS]), work.report[RESIDUAL]
 
 
 def all_finite(W: Any, b: Any) -> bool:
@@ -123,7 +128,7 @@ def ray(work: Any, n: int) -> Ray:
     return Ray(
         vectors[RAY_START, :n].copy(),
         vectors[RAY_DIRECTION, :n].copy(),
-        float(report[3]),
-        float(report[2]),
+        float(report[RAY_Z0]),
+        float(report[RAY_DZ0]),
         1.0 / vectors[ROW_SCALE, :n],
     )

@@ -9,7 +9,7 @@ from typing import Any
 
 from lcpstep.lcp.principal import clip, solve_chosen
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-from lcpstep.lcp.workspace import CHOSEN, TRIAL
+from lcpstep.lcp.workspace import CHOSEN, ITERATIONS, RESIDUAL, TRIAL
 
 
 def enumerate_bases(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
@@ -22,10 +22,10 @@ def enumerate_bases(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: 
             return MAX_ITERATIONS
         for i in range(n):
             work.indices[CHOSEN, i] = (subset >> i) & 1
-        work.report[1] += 1.0
+        work.report[ITERATIONS] += 1.0
         if (
             solve_chosen(W, b, z, tolerance, work)
-            and work.report[0] <= tolerance
+            and work.report[RESIDUAL] <= tolerance
             and clip(W, b, z, work) <= tolerance
         ):
             return SOLVED

@@ -1,10 +1,11 @@
 """Factors of W + diag(d) on a set of indices, with the library that suits the structure of W.
 
+    tridiagonal   LAPACK's LDL^T, if symmetric
     narrow band   LAPACK's band LU, after reverse Cuthill-McKee reordering if that makes the band narrow
     sparse        SuperLU, ordered by minimum degree
     dense         LAPACK's LU
 
-All three return a function that solves for a right-hand side of full length; off the set the answer is zero.
+They return a function that solves for a right-hand side of full length; off the set the answer is zero.
 """
 
 from __future__ import annotations
@@ -36,7 +37,10 @@ def factoriser(W: Any) -> Factoriser:
     """The factoriser that suits W."""
     if not is_sparse(W):
         return Dense(W)
-    if half_bandwidth(W) <= NARROW:
+    k = half_bandwidth(W)
+    if k <= 1 and (W.diagonal(1) == W.diagonal(-1)).all():
+        return Tridiagonal(W)
+    if k <= NARROW:
         return Banded(W, None)
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -92,6 +96,24 @@ class General:
         except RuntimeError:
             raise Singular from None
         return lambda rhs: spread(lu.solve(rhs[chosen]), chosen, len(rhs))
+
+
+class Tridiagonal:
+    """LAPACK on a symmetric tridiagonal matrix; indices off the set have a row of the unit matrix."""
+
+    def __init__(self, W: Any) -> None:
+        self.diagonal, self.next = W.diagonal(), W.diagonal(1)
+
+    def factor(self, active: Any, d: Any) -> Solve:
+        """See Factoriser."""
+        from scipy.linalg import lapack
+
+        middle = np.where(active, self.diagonal + d, 1.0)
+        beside = np.where(active[1:] & active[:-1], self.next, 0.0)
+        D, L, info = lapack.dpttrf(middle, beside, overwrite_d=True, overwrite_e=True)
+        if info != 0:
+            raise Singular
+        return lambda rhs: lapack.dpttrs(D, L, np.where(active, rhs, 0.0), overwrite_b=True)[0]
 
 
 class Banded:

@@ -115,8 +115,8 @@ def _sparse(W: Any, b: Any, z: Any) -> float:
     if not np.all(s < np.inf):
         return float("inf")
     relative = np.divide(w, s, out=np.zeros_like(s), where=s > 0.0)
-    doubtful = (z < 0.0) | ((z > 0.0) & (relative > 0.0))
-    parts = shares(W, z, s) if np.max(relative[doubtful], initial=0.0) > EPSILON else np.ones_like(z)
+    doubtful = (z < 0.0) | ((z > 0.0) & (relative > EPSILON))
+    parts = shares(W, z, s) if doubtful.any() else np.ones_like(z)
     return float(compiled(_worst)(z, relative, parts))
 
 

@@ -20,7 +20,19 @@ from lcpstep.lcp.principal import exchange_indices
 from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.small import solve_one, solve_two
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, TOLERANCE
-from lcpstep.lcp.workspace import BEST, CHOSEN, RAY_DIRECTION, RAY_START, SIZE, SLACK, Workspace, workspace
+from lcpstep.lcp.workspace import (
+    BEST,
+    BEST_RESIDUAL,
+    CHOSEN,
+    ITERATIONS,
+    RAY_DIRECTION,
+    RAY_START,
+    RESIDUAL,
+    SIZE,
+    SLACK,
+    Workspace,
+    workspace,
+)
 
 __all__ = ["Workspace", "solve_small", "workspace"]
 
@@ -54,12 +66,12 @@ def solve_small(W: Any, b: Any, z: Any, work: Any) -> int:
 def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
     """`solve_small` with the judge's tolerance and the limit on pivots."""
     n = b.shape[0]
-    work.report[0] = work.report[1] = 0.0
+    work.report[RESIDUAL] = work.report[ITERATIONS] = 0.0
     if n == 1:
         return solve_one(W, b, z, tolerance, work)
     if n == 2 and solve_two(W, b, z, tolerance, work):
         return SOLVED
-    work.report[4] = tolerance
+    work.report[BEST_RESIDUAL] = tolerance
     strict = min(tolerance, STRICT)
     if not choose_positive(z, work):
         choose_negative(b, work)
@@ -78,7 +90,7 @@ def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: An
         ended = lemke(n, max_pivots, smallest, attempt == 0, work)
         if ended == SOLVED and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
             return SOLVED
-        if work.report[4] < tolerance:
+        if work.report[BEST_RESIDUAL] < tolerance:
             break
         if attempt == 0:
             status = ended
@@ -91,10 +103,10 @@ def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: An
 def conclude(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -> int:
     """The best answer that passes; or every basis of a few unknowns; or why there is none."""
     n = b.shape[0]
-    if status != INFEASIBLE and not work.report[4] < tolerance and n <= TINY:
-        if enumerate_bases(W, b, z, tolerance, 2**n, work) == SOLVED:
-            return SOLVED
-    if work.report[4] < tolerance:
+    open_question = status != INFEASIBLE and not work.report[BEST_RESIDUAL] < tolerance
+    if open_question and n <= TINY and enumerate_bases(W, b, z, tolerance, 2**n, work) == SOLVED:
+        return SOLVED
+    if work.report[BEST_RESIDUAL] < tolerance:
         copy(z, work.vectors[BEST], n)
         status = SOLVED
     elif status in (RAY, INFEASIBLE):
@@ -103,7 +115,7 @@ def conclude(W: Any, b: Any, z: Any, tolerance: float, status: int, work: Any) -
         status = FAILED if status == SOLVED else status
         for i in range(n):
             z[i] = max(z[i], 0.0)
-    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
     return status
 
 

@@ -29,9 +29,13 @@ from lcpstep.lcp.workspace import (
     COLUMN_SCALE,
     DSLACK,
     DX,
+    ITERATIONS,
     RAY_DIRECTION,
+    RAY_DZ0,
     RAY_START,
+    RAY_Z0,
     SLACK,
+    SMALLEST,
     TIED,
     TIGHT,
     W_PLACE,
@@ -63,7 +67,7 @@ def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Any) -> in
                 keep_ray(entering, m, n, work)
             return RAY
         m = advance(entering, leaving, m, n, work)
-        work.report[1] += 1.0
+        work.report[ITERATIONS] += 1.0
         if leaving == n:
             for j in range(n):
                 work.indices[CHOSEN, j] = 1 if work.indices[Z_PLACE, j] >= 0 else 0
@@ -126,7 +130,7 @@ def ratio_test(m: int, n: int, smallest: float, work: Any) -> int:
 def first_zero(m: int, n: int, smallest: float, work: Any) -> float:
     """Growth of the entering variable at which a basic one is surely zero; infinite if none falls.
 
-    Leaves in report[2] the size above which a component of the direction counts.
+    Leaves in report[SMALLEST] the size above which a component of the direction counts.
     """
     x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
     steepest, largest = 1.0, 0.0
@@ -141,14 +145,14 @@ def first_zero(m: int, n: int, smallest: float, work: Any) -> float:
     for i in range(n):
         if dw[i] < -smallest and work.indices[W_PLACE, i] < 0:
             bound = min(bound, (max(w[i], 0.0) + slack) / -dw[i])
-    work.report[2] = smallest
+    work.report[SMALLEST] = smallest
     return bound
 
 
 def list_ties(bound: float, m: int, n: int, work: Any) -> int:
     """List in TIED the variables that reach zero within the bound; returns how many."""
     x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
-    listed, smallest, tied = work.indices[TIED], work.report[2], 0
+    listed, smallest, tied = work.indices[TIED], work.report[SMALLEST], 0
     for q in range(m):
         if dx[q] < -smallest and x[q] <= -bound * dx[q]:
             listed[tied] = work.indices[BASIC, q]
@@ -214,12 +218,12 @@ def keep_ray(entering: int, m: int, n: int, work: Any) -> None:
     direction, begin = work.vectors[RAY_DIRECTION], work.vectors[RAY_START]
     for i in range(n):
         direction[i] = begin[i] = 0.0
-    work.report[2] = work.report[3] = 0.0
+    work.report[RAY_DZ0] = work.report[RAY_Z0] = 0.0
     for q in range(m):
         j, dx, x = work.indices[BASIC, q], max(work.vectors[DX, q], 0.0), max(work.vectors[X, q], 0.0)
         if j < n:
             direction[j], begin[j] = dx * work.vectors[COLUMN_SCALE, j], x * work.vectors[COLUMN_SCALE, j]
         else:
-            work.report[2], work.report[3] = dx, x
+            work.report[RAY_DZ0], work.report[RAY_Z0] = dx, x
     if entering < n:
         direction[entering] = work.vectors[COLUMN_SCALE, entering]

@@ -25,6 +25,7 @@ PATIENCE = 5  # exchanges that may pass without fewer indices on the wrong side
 STRICT = 1e-13  # relative size of a negative z or w that is rounding
 PROXIMAL = 1e-10  # d, relative to the diagonal of W
 REFINEMENTS = 4
+DECISIVE = 0.001  # part of the indices whose exchange needs no refined answer
 NOISE = 1e-13  # share of z below which it may be rounding
 
 
@@ -54,14 +55,15 @@ def exchange(W: Any, b: Any, z: Any, active: Any, limit: int, factors: Factorise
             solve = factors.factor(active, d)
         except Singular:
             break
-        z, w, size = settle(W, b, np.where(active, z, 0.0), active, size_of, solve)
-        if not np.isfinite(size).all():
-            return np.zeros_like(b), used
-        leaves = active & (z < 0.0)
-        if leaves.any():
-            leaves &= shares(W, z, size) > STRICT
-        enters = ~active & (w < -STRICT * size)
-        wrong = int(np.count_nonzero(leaves) + np.count_nonzero(enters))
+        z = np.where(active, z, 0.0) if used == 1 else np.zeros_like(b)
+        for steps in (1, REFINEMENTS):  # one decides, unless it leaves nothing to exchange
+            z, w, size = settle(W, b, z, active, size_of, solve, steps)
+            if not np.isfinite(size).all():
+                return np.zeros_like(b), used
+            leaves, enters = wrong_side(W, z, w, size, active)
+            wrong = int(np.count_nonzero(leaves) + np.count_nonzero(enters))
+            if wrong > DECISIVE * len(b):
+                break
         if wrong == 0:
             break
         patience = PATIENCE if wrong < fewest else patience - 1
@@ -70,13 +72,22 @@ def exchange(W: Any, b: Any, z: Any, active: Any, limit: int, factors: Factorise
     return np.maximum(z, 0.0), used
 
 
-def settle(W: Any, b: Any, z: Any, active: Any, size_of: Any, solve: Any) -> tuple[Any, Any, Any]:
-    """Proximal steps until W z + b = 0 on the set up to rounding; returns z, w and the sizes of w's terms."""
-    before = np.inf
-    w = W @ z + b
-    for _ in range(1 + REFINEMENTS):
+def wrong_side(W: Any, z: Any, w: Any, size: Any, active: Any) -> tuple[Any, Any]:
+    """Which indices leave the set, their z negative beyond rounding, and which enter it, w being so."""
+    leaves = active & (z < 0.0)
+    if leaves.any():
+        leaves &= shares(W, z, size) > STRICT
+    return leaves, ~active & (w < -STRICT * size)
+
+
+def settle(W: Any, b: Any, z: Any, active: Any, size_of: Any, solve: Any, steps: int) -> tuple[Any, Any, Any]:
+    """Proximal steps towards W z + b = 0 on the set; returns z, w and the sizes of the terms of w."""
+    w, before = W @ z + b if z.any() else b, np.inf
+    for step in range(steps):
         z = z - np.where(active, solve(w), 0.0)
         w, size = W @ z + b, size_of @ np.abs(z) + np.abs(b)
+        if step + 1 == steps:
+            break
         relative = np.abs(w[active]) / np.where(size[active] > 0.0, size[active], 1.0)
         error = float(np.max(relative, initial=0.0))
         if not STRICT / 100 < error < 0.5 * before:

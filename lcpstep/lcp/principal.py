@@ -14,7 +14,21 @@ from typing import Any
 from lcpstep.lcp.elimination import back_substitute, copy, factorise
 from lcpstep.lcp.judge import judge, share
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-from lcpstep.lcp.workspace import ACTIVE, BEST, CHOSEN, DX, LEFT, ORDER, SIZE, SLACK, TRIAL, X
+from lcpstep.lcp.workspace import (
+    ACTIVE,
+    BEST,
+    BEST_RESIDUAL,
+    CHOSEN,
+    DX,
+    ITERATIONS,
+    LEFT,
+    ORDER,
+    RESIDUAL,
+    SIZE,
+    SLACK,
+    TRIAL,
+    X,
+)
 
 REFINEMENTS = 3
 ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine
@@ -26,19 +40,19 @@ PATIENCE = 2  # exchanges that may pass without fewer indices on the wrong side
 def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
     """Principal pivoting from the set marked in CHOSEN; every answer is judged. Returns a status.
 
-    The last answer is in z, its residual in report[0]; iterations are added to report[1].
+    The last answer is in z, its residual in report[RESIDUAL]; iterations are added to report[ITERATIONS].
     """
     n = b.shape[0]
     copy(work.vectors[TRIAL], b, n)
     fewest, patience = n + 1, PATIENCE
     for _ in range(limit):
-        work.report[1] += 1.0
+        work.report[ITERATIONS] += 1.0
         if not solve_chosen(W, b, z, tolerance, work):
             return FAILED
-        if work.report[0] <= tolerance and clip(W, b, z, work) <= tolerance:
+        if work.report[RESIDUAL] <= tolerance and clip(W, b, z, work) <= tolerance:
             return SOLVED
         wrong = change_sides(W, z, tolerance, work)
-        if work.report[0] <= work.report[4]:
+        if work.report[RESIDUAL] <= work.report[BEST_RESIDUAL]:
             keep_best(W, b, z, work)
         if wrong < fewest:
             fewest, patience = wrong, PATIENCE
@@ -67,12 +81,12 @@ def solve_chosen(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
         for q in range(k):
             j = work.indices[ACTIVE, q]
             z[j] -= change[q] * work.vectors[DX, j]
-        work.report[0] = judge(W, b, z, w, work.vectors[SIZE])
+        work.report[RESIDUAL] = judge(W, b, z, w, work.vectors[SIZE])
         before, error = error, row_error(k, work)
-        good_enough = error <= (ROUNDING if work.report[0] <= tolerance else UNDECIDED)
+        good_enough = error <= (ROUNDING if work.report[RESIDUAL] <= tolerance else UNDECIDED)
         if good_enough or error > 0.5 * before:
             break
-    if work.report[0] > tolerance:
+    if work.report[RESIDUAL] > tolerance:
         drop_noise(W, b, z, k, work)
     return True
 
@@ -82,7 +96,7 @@ def drop_noise(W: Any, b: Any, z: Any, k: int, work: Any) -> None:
 
     Only if the judge does not object.
     """
-    largest, some, kept, before = 0.0, False, work.vectors[LEFT], work.report[0]
+    largest, some, kept, before = 0.0, False, work.vectors[LEFT], work.report[RESIDUAL]
     for q in range(k):
         j = work.indices[ACTIVE, q]
         kept[q] = z[j]
@@ -93,11 +107,11 @@ def drop_noise(W: Any, b: Any, z: Any, k: int, work: Any) -> None:
             z[j], some = 0.0, True
     if not some:
         return
-    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    if work.report[0] > before:
+    work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    if work.report[RESIDUAL] > before:
         for q in range(k):
             z[work.indices[ACTIVE, q]] = kept[q]
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+        work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
 
 
 def load(W: Any, n: int, work: Any) -> int:
@@ -176,8 +190,8 @@ def clip(W: Any, b: Any, z: Any, work: Any) -> float:
         if z[i] < 0.0:
             z[i], cut = 0.0, True
     if cut:
-        work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return float(work.report[0])
+        work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return float(work.report[RESIDUAL])
 
 
 def keep_best(W: Any, b: Any, z: Any, work: Any) -> None:
@@ -186,7 +200,7 @@ def keep_best(W: Any, b: Any, z: Any, work: Any) -> None:
     for i in range(n):
         work.vectors[LEFT, i], z[i] = z[i], max(z[i], 0.0)
     found = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    if found <= work.report[4]:
-        work.report[4] = found
+    if found <= work.report[BEST_RESIDUAL]:
+        work.report[BEST_RESIDUAL] = found
         copy(best, z, n)
     copy(z, work.vectors[LEFT], n)

@@ -37,6 +37,8 @@ ITERATIONS = {
     "scs": "max_iters",
     "clarabel": "max_iter",
 }
+NEEDS_DEFINITE = ("quadprog",)
+DEFINITE = 1e-10  # added to the unit diagonal for these; the polishing solves without it
 EXCHANGES = 40  # of the polishing
 
 
@@ -80,18 +82,28 @@ def call_solver(name: str, P: Any, q: Any, guess: Any, max_iterations: int | Non
     options = dict(TIGHT.get(name, {}))
     if max_iterations is not None and name in ITERATIONS:
         options[ITERATIONS[name]] = max_iterations
-    if is_sparse(P):
-        P.sort_indices()  # piqp takes them as they come
-    elif name in qpsolvers.sparse_solvers and name not in qpsolvers.dense_solvers:
-        from scipy.sparse import csc_matrix
-
-        P = csc_matrix(P)
+    if name in NEEDS_DEFINITE:
+        P = P + DEFINITE * np.eye(len(q))
+    if name not in qpsolvers.sparse_solvers:
+        P = P.toarray() if is_sparse(P) else np.asarray(P)
+    elif is_sparse(P) or name not in qpsolvers.dense_solvers:
+        P = _column_form(P)
     size = float(np.max(np.abs(q), initial=0.0)) or 1.0
     problem = qpsolvers.Problem(P, q / size, lb=np.zeros_like(q))
     with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")  # what they say of their tolerances; the judge decides here
         try:
             x = qpsolvers.solve_problem(problem, name, initvals=guess / size, **options).x
-        except (ValueError, ArithmeticError, qpsolvers.SolverError):
+        except (ValueError, ArithmeticError, qpsolvers.exceptions.QPError):
             return None
     return None if x is None or not np.isfinite(x).all() else np.asarray(x) * size
+
+
+def _column_form(P: Any) -> Any:
+    """CSC as the solvers expect it: piqp reads indices in the order they come, osqp has 32 bits for them."""
+    from scipy.sparse import csc_matrix
+
+    P = csc_matrix(P)
+    P.sort_indices()
+    indices, indptr = P.indices.astype(np.int32), P.indptr.astype(np.int32)
+    return csc_matrix((P.data, indices, indptr), shape=P.shape)

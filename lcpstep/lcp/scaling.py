@@ -32,8 +32,8 @@ def equilibrate(W: Any, b: Any, work: Any) -> None:
     for i in range(n):
         for j in range(n):
             columns[j, i] = W[i, j] * r[i] * c[j]
-    for j in range(n):
-        c[j] *= unit
+    for i in range(n):
+        r[i], c[i] = r[i] / unit, c[i] * unit
 
 
 def balance(W: Any, r: Any, c: Any, n: int, largest: Any) -> None:

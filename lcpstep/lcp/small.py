@@ -10,32 +10,27 @@ from typing import Any
 
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import FAILED, INFEASIBLE, SOLVED
-from lcpstep.lcp.workspace import RAY_DIRECTION, SIZE, SLACK
+from lcpstep.lcp.workspace import RAY_DIRECTION, RESIDUAL, SIZE, SLACK
 
 ROUNDING = 1e-14  # residual up to which Cramer's rule is accurate enough
 
 
 def solve_one(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
     """0 <= z complementary to W z + b >= 0 for numbers W and b."""
-    if b[0] >= 0.0:
-        z[0] = 0.0
-    elif W[0, 0] > 0.0:
-        z[0] = -b[0] / W[0, 0]
-    else:
-        z[0] = 0.0
-        work.vectors[RAY_DIRECTION, 0] = 1.0
-        work.report[0] = 1.0
-        return INFEASIBLE if b[0] < 0.0 else FAILED
-    work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return SOLVED if work.report[0] <= tolerance else FAILED
+    z[0] = -b[0] / W[0, 0] if b[0] < 0.0 < W[0, 0] else 0.0
+    work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    if work.report[RESIDUAL] <= tolerance:
+        return SOLVED
+    work.vectors[RAY_DIRECTION, 0] = 1.0  # W <= 0 and b < 0: it proves itself
+    return INFEASIBLE if b[0] < 0.0 and W[0, 0] <= 0.0 else FAILED
 
 
 def solve_two(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
     """Whether one of the four bases is right up to rounding; z is then its answer, else zero."""
     for basis in range(4):
         if cramer(W, b, z, basis):
-            work.report[0] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-            if work.report[0] <= ROUNDING and work.report[0] <= tolerance:
+            work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+            if work.report[RESIDUAL] <= ROUNDING and work.report[RESIDUAL] <= tolerance:
                 return True
     z[0], z[1] = 0.0, 0.0
     return False

@@ -24,7 +24,13 @@ RAY_DIRECTION, RAY_START = (
 )  # the ray that pivoting left along, in the units of z
 BEST = 12  # the best answer so far that passes the tolerance asked for
 VECTORS = 13
-REPORT = 5
+
+# entries of Workspace.report
+RESIDUAL, ITERATIONS = 0, 1  # of the last problem
+RAY_DZ0, RAY_Z0 = 2, 3  # the covering variable's share in the ray
+BEST_RESIDUAL = 4  # of the answer in BEST
+SMALLEST = 5  # size above which a component of Lemke's direction counts
+REPORT = 6
 
 # rows of Workspace.indices
 BASIC, TIGHT = 0, 1  # by position: index of the basic z; index of the row whose w is not basic
@@ -43,8 +49,7 @@ class Workspace(NamedTuple):
     factor : (n, n)      LU factors of a principal submatrix
     vectors : (13, n+1)  see the names of its rows in this module
     indices : (8, 2n+1)  likewise
-    report : (5,)        of the last problem: residual, number of iterations, the covering variable's share
-                         in a ray, direction and start, and the residual of the best answer so far
+    report : (6,)        likewise: residual, number of iterations, ...
     """
 
     columns: Any
