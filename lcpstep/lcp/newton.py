@@ -20,12 +20,12 @@ from lcpstep.lcp.judge import residual, shares
 from lcpstep.lcp.problem import Solution, check_finite
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED, Status
 
-EXCHANGES = 40
+EXCHANGES = 100
 PATIENCE = 5  # exchanges that may pass without fewer indices on the wrong side
 STRICT = 1e-13  # relative size of a negative z or w that is rounding
-PROXIMAL = 1e-10  # d, relative to the diagonal of W
-REFINEMENTS = 4
-DECISIVE = 0.001  # part of the indices whose exchange needs no refined answer
+PROXIMAL = (1e-13, 1e-10)  # d, relative to the diagonal of W; the second for a set that may be singular
+REFINEMENTS = 6
+DECISIVE = 0.001  # part of the indices whose entering needs no refined answer
 NOISE = 1e-13  # share of z below which it may be rounding
 
 
@@ -38,16 +38,28 @@ def newton(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> So
     error = residual(W, b, z)
     if error > tol:
         inner, steps = interior_point(W, b, factors)
-        polished, more = exchange(W, b, inner, positive_set(W, b, inner), limit, factors)
+        polished, more = polish(W, b, inner, limit, factors)
         used += steps + more
-        z, error = best_of(W, b, z, inner, polished)
+        z, error = best_of(W, b, z, polished)
     status = SOLVED if error <= tol else MAX_ITERATIONS if used >= limit else FAILED
     return Solution(z, W @ z + b, Status(status), used, error, "newton")
 
 
-def exchange(W: Any, b: Any, z: Any, active: Any, limit: int, factors: Factoriser) -> tuple[Any, int]:
+def polish(W: Any, b: Any, z: Any, limit: int, factors: Factoriser) -> tuple[Any, int]:
+    """The best that exchanges make of an approximate answer, whose set may have a singular matrix."""
+    active, candidates, used = positive_set(W, b, z), [z], 0
+    for proximal in PROXIMAL:
+        answer, more = exchange(W, b, z, active, limit, factors, proximal)
+        candidates.append(answer)
+        used += more
+    return best_of(W, b, *candidates)[0], used
+
+
+def exchange(
+    W: Any, b: Any, z: Any, active: Any, limit: int, factors: Factoriser, proximal: float = PROXIMAL[0]
+) -> tuple[Any, int]:
     """Exchange indices from the set `active`; returns the last answer, z >= 0, and the number of systems."""
-    d = PROXIMAL * diagonal_scale(W)
+    d = proximal * diagonal_scale(W)
     size_of, used, fewest, patience = abs(W), 0, len(b) + 1, PATIENCE
     while used < limit and patience >= 0:
         used += 1
@@ -56,13 +68,13 @@ def exchange(W: Any, b: Any, z: Any, active: Any, limit: int, factors: Factorise
         except Singular:
             break
         z = np.where(active, z, 0.0) if used == 1 else np.zeros_like(b)
-        for steps in (1, REFINEMENTS):  # one decides, unless it leaves nothing to exchange
+        for steps in (1, REFINEMENTS):  # one decides, if many enter and none leaves
             z, w, size = settle(W, b, z, active, size_of, solve, steps)
             if not np.isfinite(size).all():
                 return np.zeros_like(b), used
             leaves, enters = wrong_side(W, z, w, size, active)
             wrong = int(np.count_nonzero(leaves) + np.count_nonzero(enters))
-            if wrong > DECISIVE * len(b):
+            if wrong > DECISIVE * len(b) and not leaves.any():
                 break
         if wrong == 0:
             break
@@ -84,9 +96,9 @@ def settle(W: Any, b: Any, z: Any, active: Any, size_of: Any, solve: Any, steps:
     """Proximal steps towards W z + b = 0 on the set; returns z, w and the sizes of the terms of w."""
     w, before = W @ z + b if z.any() else b, np.inf
     for step in range(steps):
-        z = z - np.where(active, solve(w), 0.0)
+        z = z - solve(w)
         w, size = W @ z + b, size_of @ np.abs(z) + np.abs(b)
-        if step + 1 == steps:
+        if step + 1 == steps or not np.isfinite(size).all():
             break
         relative = np.abs(w[active]) / np.where(size[active] > 0.0, size[active], 1.0)
         error = float(np.max(relative, initial=0.0))

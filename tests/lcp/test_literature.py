@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lcpstep.lcp import Ray, Status, residual, solve_lcp
-from tests.lcp.known import INFEASIBLE, KNOWN, UNSOLVABLE, fathi, murty
+from .known import INFEASIBLE, KNOWN, UNSOLVABLE, fathi, murty
 
 
 def natural_map(W, b, z):
