@@ -24,6 +24,7 @@ from lcpstep import EventDriven, Moreau, __version__, simulate
 from lcpstep.compare import Comparison, compare
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted, UnknownName
 from lcpstep.maps import Sections, sections
+from lcpstep.simulate import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
@@ -135,7 +136,7 @@ def _stepping_arguments(p: argparse.ArgumentParser) -> None:
 
 def run_scenes(options: argparse.Namespace) -> int:
     """`lcpstep scenes`."""
-    lines = [
+    lines: list[dict[str, Any]] = [
         {"scene": name, "about": (inspect.getdoc(make) or "").splitlines()[0], "parameters": _defaults(make)}
         for name, make in CATALOGUE.items()
     ]
@@ -335,8 +336,10 @@ def _table(rows: list[dict[str, Any]]) -> str:
 def _maps(options: argparse.Namespace) -> dict[str, Sections]:
     """Impact and stroboscopic maps of the cam-follower from both methods."""
     scene = _scene(options, rpm=options.map_rpm)
-    periods, found = options.map_periods, {}
-    for name, method in {"time-stepping": _method(options), "event-driven": _reference(options)}.items():
+    periods = options.map_periods
+    found: dict[str, Sections] = {}
+    methods: dict[str, Method] = {"time-stepping": _method(options), "event-driven": _reference(options)}
+    for name, method in methods.items():
         with progress_bar(scene, f"maps, {name}") as progress:
             found[name] = sections(scene, method, periods, math.ceil(DROPPED * periods), progress)
     return found

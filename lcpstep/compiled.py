@@ -17,6 +17,7 @@ from __future__ import annotations
 import dis
 import functools
 import hashlib
+import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -25,6 +26,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
+LOG = logging.getLogger(__name__)
 Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
@@ -138,6 +140,8 @@ def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
     compilable.enable_caching()
     cache_file = compilable._cache._cache_file
     cache_file._source_stamp = (cache_file._source_stamp, _digest(f))
+    if f.__module__.startswith("lcpstep.") and not cache_file._load_index():
+        LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__qualname__)
 
 
 def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) -> FunctionType:

@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lcpstep.trajectory import records
+from lcpstep.trajectory import IMPACT_DTYPE
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 EVENT_CAPACITY = 4096
-STATE_COLUMNS = ("t", "q", "v", "impulse", "mode", "dense", "length")
-EVENT_COLUMNS = ("event_time", "event_contact", "event", "event_kind")
+# Places in a row: its time, whether the contact is closed, duration of the step that follows; then q, v, impulses
+TIME, MODE, LENGTH, LEAD = range(4)
 
 
 @dataclass(frozen=True)
@@ -61,60 +61,76 @@ class Record(NamedTuple):
     every: int  # keep every so many steps; 0: none
     on_events: bool
     times: Any  # keep the states at these times
-    t: Any
-    q: Any
-    v: Any
-    impulse: Any
-    event_time: Any
-    event: Any  # (capacity, 3): before, after, impulse
-    event_contact: Any
-    event_kind: Any
-    mode: Any  # of each kept state: whether its contact is closed
-    dense: Any  # (rows, 7, 2 n_q) dense output of the step after each kept state, or no rows
-    length: Any  # duration of that step
+    rows: Any  # (rows, LEAD + 2 n_q + n_c): time, mode, duration, q, v, impulses since the row before
+    events: Any  # (events, 6): time, contact, gap velocity before and after, impulse, kind
+    dense: Any  # (rows, 7, 2 n_q) dense output of the step after each row; no rows where there is none
+
+
+def write_row(row: Any, t: float, mode: float, q: Any, v: Any, impulse: Any) -> None:
+    """Kernel: one kept state; the impulses summed up to it start anew."""
+    n = len(q)
+    row[TIME], row[MODE] = t, mode
+    for i in range(n):
+        row[LEAD + i], row[LEAD + n + i] = q[i], v[i]
+    for c in range(len(impulse)):
+        row[LEAD + 2 * n + c] = impulse[c]
+        impulse[c] = 0.0
+
+
+def write_event(event: Any, t: float, contact: int, before: float, after: float, p: float, kind: int) -> None:
+    """Kernel: one line of the impact log."""
+    event[0], event[1], event[5] = t, contact, kind
+    event[2], event[3], event[4] = before, after, p
+
+
+class States(NamedTuple):
+    """Kept states: times t (n,), q and v (n, n_q), impulses (n, n_c), modes and durations (n,)."""
+
+    t: Array
+    q: Array
+    v: Array
+    impulse: Array
+    mode: Array
+    length: Array
 
 
 class Recorder:
     """Buffers of one run, and what they held when they were emptied."""
 
     def __init__(self, n_q: int, n_c: int, kept: Kept, rows: int, dense: bool = False) -> None:
-        events = EVENT_CAPACITY + 2 * n_c
+        self.n_q = n_q
         self.buffers = Record(
             every=kept.every,
             on_events=kept.on_events,
             times=kept.times,
-            t=np.zeros(rows),
-            q=np.zeros((rows, n_q)),
-            v=np.zeros((rows, n_q)),
-            impulse=np.zeros((rows, n_c)),
-            event_time=np.zeros(events),
-            event=np.zeros((events, 3)),
-            event_contact=np.zeros(events, dtype=np.int64),
-            event_kind=np.zeros(events, dtype=np.int64),
-            mode=np.zeros(rows, dtype=np.int64),
+            rows=np.zeros((rows, LEAD + 2 * n_q + n_c)),
+            events=np.zeros((EVENT_CAPACITY + 2 * n_c, len(IMPACT_DTYPE.names or ()))),
             dense=np.zeros((rows if dense else 0, 7, 2 * n_q)),
-            length=np.zeros(rows if dense else 0),
         )
-        self._states: list[dict[str, Array]] = []
-        self._events: list[dict[str, Array]] = []
+        b = self.buffers
+        self._parts = {"rows": [b.rows[:0]], "events": [b.events[:0]], "dense": [b.dense[:0]]}
 
     def empty(self, rows: int, events: int) -> None:
         """Take over the first rows and events of the buffers."""
-        if rows:
-            self._states.append({name: getattr(self.buffers, name)[:rows].copy() for name in STATE_COLUMNS})
-        if events:
-            self._events.append({name: getattr(self.buffers, name)[:events].copy() for name in EVENT_COLUMNS})
+        self._parts["rows"].append(self.buffers.rows[:rows].copy())
+        self._parts["dense"].append(self.buffers.dense[:rows].copy())
+        self._parts["events"].append(self.buffers.events[:events].copy())
 
-    def states(self) -> dict[str, Array]:
-        """All kept states, by the names of `STATE_COLUMNS`."""
-        return self._joined(self._states, STATE_COLUMNS)
+    def states(self) -> States:
+        """All states kept so far."""
+        rows, n = np.concatenate(self._parts["rows"]), self.n_q
+        q, v, impulse = np.split(rows[:, LEAD:], [n, 2 * n], axis=1)
+        t, mode, length = rows[:, TIME], rows[:, MODE], rows[:, LENGTH]
+        return States(*(np.ascontiguousarray(x) for x in (t, q, v, impulse, mode, length)))
+
+    def dense(self) -> Array:
+        """Dense output of the steps after the kept states."""
+        return np.concatenate(self._parts["dense"])
 
     def events(self) -> Any:
-        """The impact log."""
-        e = self._joined(self._events, EVENT_COLUMNS)
-        before, after, impulse = e["event"].T
-        return records(e["event_time"], e["event_contact"], before, after, impulse, e["event_kind"])
-
-    def _joined(self, parts: list[dict[str, Array]], names: tuple[str, ...]) -> dict[str, Array]:
-        nothing = {name: getattr(self.buffers, name)[:0] for name in names}
-        return {name: np.concatenate([part[name] for part in [nothing, *parts]]) for name in names}
+        """The impact log, a record array of `trajectory.IMPACT_DTYPE`."""
+        events = np.concatenate(self._parts["events"])
+        log = np.empty(len(events), dtype=IMPACT_DTYPE)
+        for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
+            log[name] = column
+        return log.view(np.recarray)

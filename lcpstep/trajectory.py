@@ -116,12 +116,3 @@ class Trajectory:
             f"Trajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
             f"{len(self.t)} states, {len(self.impacts)} events, {self.status.name})"
         )
-
-
-def records(time: Any, contact: Any, before: Any, after: Any, impulse: Any, kind: Any) -> Any:
-    """Impact log as a record array of `IMPACT_DTYPE`."""
-    log = np.empty(len(time), dtype=IMPACT_DTYPE)
-    columns = (time, contact, before, after, impulse, kind)
-    for name, column in zip(IMPACT_DTYPE.names or (), columns, strict=True):
-        log[name] = column
-    return log.view(np.recarray)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ from lcpstep.events import integrator as loop
 from lcpstep.events.flow import FREE, MODE, N_NUMBERS, SCALE, Piece, closed_form_state, gap_speed_along
 from lcpstep.events.oscillator import Oscillator, oscillator
 from lcpstep.model import ABSENT, Model, culprit, model
-from lcpstep.recording import Kept, Recorder
+from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -155,23 +154,21 @@ class _Run:
         """Move the buffers' contents to the recorder, but for the last row, whose step is still to come."""
         rows = int(self.count[loop.ROW])
         self.recorder.empty(max(rows - 1, 0), int(self.count[loop.EVENT]))
-        for name in ("t", "q", "v", "impulse", "mode"):
-            column = getattr(self.recorder.buffers, name)
-            column[0] = column[max(rows - 1, 0)]
+        self.recorder.buffers.rows[0] = self.recorder.buffers.rows[max(rows - 1, 0)]
         self.count[loop.ROW], self.count[loop.EVENT] = min(rows, 1), 0
 
     def trajectory(self, status: Status) -> Trajectory:
         """Everything computed so far."""
+        if (
+            len(self.kept.times) == 0
+            and self.x[loop.NOW] > self.recorder.buffers.rows[self.count[loop.ROW] - 1, 0]
+        ):
+            loop.keep(self.piece, self.recorder.buffers, self.count, self.x, float(self.x[loop.NOW]))
         self.recorder.empty(int(self.count[loop.ROW]), int(self.count[loop.EVENT]))
         s = self.recorder.states()
-        now = float(self.x[loop.NOW])
-        if len(self.kept.times) == 0 and now > s["t"][-1]:
-            last = {"t": now, "q": self.piece.q, "v": self.piece.v, "mode": self.piece.x[MODE]}
-            last["impulse"] = np.full(self.scene.n_c, self.x[loop.IMPULSE])
-            s |= {name: np.concatenate([s[name], [value]]) for name, value in last.items()}
         count = self.count
         return Trajectory(
-            scene=self.scene, method=self.method, t=s["t"], q=s["q"], v=s["v"], impulse=s["impulse"],
+            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=s.impulse,
             impacts=self.recorder.events(), status=status, message=self.message(status),
             counts=Counts(
                 steps=int(count[loop.STEP]), force_evaluations=int(count[loop.FORCES]),
@@ -180,20 +177,19 @@ class _Run:
             dense=self.dense_output(s),
         )  # fmt: skip
 
-    def dense_output(self, s: dict[str, Array]) -> Callable[[Array], tuple[Array, Array]]:
+    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the pieces of motion that start there."""
         complete = self.kept.all or (self.flow.closed_form and self.kept.on_events)
-        evaluate: Any = compiled(loop.evaluate, self.never) if self.fast else loop.evaluate
+        evaluate = compiled(loop.evaluate, self.never) if self.fast else loop.evaluate
+        dense, n_q = self.recorder.dense(), self.scene.n_q
 
         def at(times: Array) -> tuple[Array, Array]:
-            if not complete and not np.all(np.isin(times, s["t"])):
+            if not complete and not np.all(np.isin(times, s.t)):
                 raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-            n_q = self.scene.n_q
-            row = np.maximum(np.searchsorted(s["t"], times, side="right") - 1, 0)
-            out = loop.States(times, row, np.zeros((len(times), n_q)), np.zeros((len(times), n_q)))
-            columns = (s[name] for name in ("t", "q", "v", "mode", "dense", "length"))
+            row = np.maximum(np.searchsorted(s.t, times, side="right") - 1, 0)
+            out = loop.Wanted(times, row, np.zeros((len(times), n_q)), np.zeros((len(times), n_q)))
             evaluate(
-                self.model, self.flow, piece(self.scene, self.model), dop853.work(2 * n_q), *columns, out
+                self.model, self.flow, piece(self.scene, self.model), dop853.work(2 * n_q), s, dense, out
             )
             return out.q, out.v
 
@@ -215,7 +211,13 @@ class _Run:
 
 
 # Kernels that one kind of smooth motion leaves aside
-NEVER_CLOSED_FORM = (loop.runge_kutta_interval, loop.shorten, loop.project, loop.interpolate, gap_speed_along)
+NEVER_CLOSED_FORM = (
+    loop.runge_kutta_interval,
+    loop.shorten,
+    loop.project,
+    dop853.interpolate,
+    gap_speed_along,
+)
 NEVER_RUNGE_KUTTA = (loop.closed_form_interval, closed_form_state)
 STATUS = {
     loop.FINISHED: Status.DONE,

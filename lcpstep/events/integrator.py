@@ -18,9 +18,9 @@ import math
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import call
-from lcpstep.dense import assign, join, split
+from lcpstep.dense import assign, join
 from lcpstep.dynamics import gap_rates, gaps, product
-from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor, interpolate
+from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor
 from lcpstep.events.flow import (
     CLOSED,
     FREE,
@@ -49,6 +49,8 @@ from lcpstep.events.flow import (
 )
 from lcpstep.events.locate import NONE, first_contact, first_release, short_hop
 from lcpstep.model import ABSENT
+from lcpstep.recording import LEAD, write_event, write_row
+from lcpstep.recording import LENGTH as STEP_LENGTH
 
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL = range(5)
@@ -117,7 +119,7 @@ def run(
     if count[ROW] == 0 and count[STEP] == 0 and not begin(model, flow, piece, w, record, count, x, x[NOW]):
         return NOT_FINITE
     while x[NOW] < flow.t_end and count[STEP] < goal:
-        if count[EVENT] + SLACK > len(record.event_time) or count[ROW] + SLACK > len(record.t):
+        if count[EVENT] + SLACK > len(record.events) or count[ROW] + SLACK > len(record.rows):
             return BUFFER_FULL
         if count[EVENTS] > flow.max_events:
             return TOO_MANY_EVENTS
@@ -451,11 +453,7 @@ def contact_impulse(model: Any, flow: Any, piece: Any, w: Any, a: float, b: floa
 
 def log(record: Any, count: Any, t: float, kind: int, before: float, after: float, p: float) -> None:
     """Note an event."""
-    k = count[EVENT]
-    record.event_time[k] = t
-    record.event_kind[k] = kind
-    record.event_contact[k] = 0
-    record.event[k, 0], record.event[k, 1], record.event[k, 2] = before, after, p
+    write_event(record.events[count[EVENT]], t, 0, before, after, p, kind)
     count[EVENT] += 1
     count[EVENTS] += 1
 
@@ -464,7 +462,7 @@ def keep_times(
     model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, stop: float, last: bool
 ) -> None:
     """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
-    while count[NEXT_TIME] < len(record.times) and count[ROW] < len(record.t):
+    while count[NEXT_TIME] < len(record.times) and count[ROW] < len(record.rows):
         t = record.times[count[NEXT_TIME]]
         if t > stop or (t == stop and not last):
             return
@@ -489,14 +487,9 @@ def keep_event(piece: Any, record: Any, count: Any, x: Any) -> None:
 
 def keep(piece: Any, record: Any, count: Any, x: Any, t: float) -> None:
     """Keep the state piece.q, piece.v at time t, and the impulse since the one before."""
-    row = count[ROW]
-    record.t[row] = t
-    assign(record.q[row], piece.q)
-    assign(record.v[row], piece.v)
-    record.mode[row] = piece.x[MODE]
-    if record.impulse.shape[1] > 0:
-        record.impulse[row, 0] = x[IMPULSE]
-        x[IMPULSE] = 0.0
+    contacts = record.rows.shape[1] - LEAD - 2 * len(piece.q)
+    impulse = x[IMPULSE : IMPULSE + contacts]
+    write_row(record.rows[count[ROW]], t, piece.x[MODE], piece.q, piece.v, impulse)
     count[ROW] += 1
 
 
@@ -504,41 +497,28 @@ def store_dense(piece: Any, w: Any, record: Any, count: Any) -> None:
     """Keep the dense output of the step that began at the last kept state."""
     if len(record.dense) > 0:
         assign(record.dense[count[ROW] - 1], w.F)
-        record.length[count[ROW] - 1] = piece.x[LENGTH]
+        record.rows[count[ROW] - 1, STEP_LENGTH] = piece.x[LENGTH]
 
 
-def evaluate(
-    model: Any,
-    flow: Any,
-    piece: Any,
-    w: Any,
-    t: Any,
-    q: Any,
-    v: Any,
-    mode: Any,
-    dense: Any,
-    length: Any,
-    out: Any,
-) -> None:
-    """States at the times out.t, from the kept states out.row before them and the pieces that start there."""
-    for k in range(len(out.t)):
-        row = out.row[k]
-        assign(piece.q, q[row])
-        assign(piece.v, v[row])
-        tau = out.t[k] - t[row]
-        if tau > 0.0 and flow.closed_form:
-            rebase(model, flow, piece, w, t[row])
-            piece.x[MODE] = mode[row]
+def evaluate(model: Any, flow: Any, piece: Any, w: Any, kept: Any, dense: Any, wanted: Any) -> None:
+    """States at the times wanted, from the kept states before them and the pieces that start there."""
+    for k in range(len(wanted.t)):
+        row = wanted.row[k]
+        assign(piece.q, kept.q[row])
+        assign(piece.v, kept.v[row])
+        tau = wanted.t[k] - kept.t[row]
+        rebase(model, flow, piece, w, kept.t[row])
+        piece.x[MODE] = kept.mode[row]
+        if tau > 0.0 and not flow.closed_form:
+            assign(w.F, dense[row])
+            piece.x[LENGTH] = kept.length[row]
+        if tau > 0.0:
             state_at(model, flow, piece, w, tau)
-        elif tau > 0.0:
-            join(w.y, q[row], v[row])
-            interpolate(dense[row], w.y, tau / length[row], piece.y)
-            split(piece.y, piece.q, piece.v)
-        assign(out.q[k], piece.q)
-        assign(out.v[k], piece.v)
+        assign(wanted.q[k], piece.q)
+        assign(wanted.v[k], piece.v)
 
 
-class States(NamedTuple):
+class Wanted(NamedTuple):
     """Times asked for, and the states found there."""
 
     t: Any  # (m,)

@@ -84,7 +84,18 @@ def plan(m: Model, h: float, theta: float) -> loop.Plan:
 def start(scene: Scene, fast: bool) -> loop.State:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
-    vectors = {name: np.zeros(n_q) for name in ("force", "next_force", "next_q", "next_v", "v_free")}
+    vectors = {
+        name: np.zeros(n_q)
+        for name in (
+            "force",
+            "next_force",
+            "next_q",
+            "next_v",
+            "v_free",
+            "q_between",
+            "v_between",
+        )
+    }
     contacts = {name: np.zeros(n_c) for name in ("g", "u", "impulse", "p", "g_t", "b", "z")}
     newton = Newton(
         **{name: np.zeros(n_q) for name in ("R", "R_shifted", "v", "q", "f")},
@@ -201,7 +212,7 @@ class _Run:
         """Everything computed so far."""
         self.empty()
         kept = self.recorder.states()
-        t, q, v, impulse = (kept[name] for name in ("t", "q", "v", "impulse"))
+        t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
             impulse = np.vstack([impulse, self.state.impulse])

@@ -21,6 +21,7 @@ from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, product, total_force
 from lcpstep.lcp.small import solve_one
 from lcpstep.lcp.status import TOLERANCE
+from lcpstep.recording import write_event, write_row
 from lcpstep.stepping.newton import linearise
 
 # Why the loop returned
@@ -60,6 +61,8 @@ class State(NamedTuple):
     next_q: Any
     next_v: Any
     v_free: Any
+    q_between: Any  # a state within the step
+    v_between: Any
     p: Any  # (n_c,) impulses of this step
     G: Any  # (n_c, n_q)
     g_t: Any
@@ -86,9 +89,9 @@ def begin(m: Any, state: Any, record: Any, count: Any, t: float) -> None:
     count[FORCES] += 1
     measure(m, state, t)
     if len(record.times) == 0:
-        keep(state, record, count, t, state.q, state.v)
+        keep(state, record, count, t)
     elif record.times[0] == t:
-        keep(state, record, count, t, state.q, state.v)
+        keep(state, record, count, t)
         count[NEXT_TIME] = 1
 
 
@@ -110,7 +113,7 @@ def run(
     """
     n_c = len(state.u)
     while count[STEP] < last:
-        if count[EVENT] + 2 * n_c > len(record.event_time):
+        if count[EVENT] + 2 * n_c > len(record.events):
             return LOG_FULL
         t, t_next = t0 + plan.h * (count[STEP] - first), t0 + plan.h * (count[STEP] + 1 - first)
         code = step(model, plan, state, count, t, t_next, external, solved)
@@ -122,7 +125,7 @@ def run(
         advance(model, state, t_next)
         count[STEP] += 1
         if (record.every > 0 and count[STEP] % record.every == 0) or (record.on_events and events):
-            keep(state, record, count, t_next, state.q, state.v)
+            keep(state, record, count, t_next)
     return FINISHED
 
 
@@ -277,15 +280,10 @@ def log_events(model: Any, plan: Any, state: Any, record: Any, count: Any, t_nex
                 kind = RELEASE
             state.closed[c] = 0
         if kind >= 0:
-            k = count[EVENT]
-            record.event_time[k] = t_next
-            record.event_contact[k] = c
-            record.event_kind[k] = kind
-            record.event[k, 0] = state.u[c]
             if kind == RELEASE:
                 gap_rates(model, t_next, state.next_q, state.next_v, state.G, state.g_t)
-            record.event[k, 1] = product(state.G, state.next_v, c) + state.g_t[c]
-            record.event[k, 2] = state.p[c]
+            u = product(state.G, state.next_v, c) + state.g_t[c]
+            write_event(record.events[count[EVENT]], t_next, c, state.u[c], u, state.p[c], kind)
             count[EVENT] += 1
             happened = True
     return happened
@@ -322,25 +320,16 @@ def keep_times(plan: Any, state: Any, record: Any, count: Any, t: float, t_next:
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] <= t_next:
         share = (record.times[count[NEXT_TIME]] - t) / (t_next - t)
         for i in range(len(state.q)):
-            record.q[count[ROW], i] = (1.0 - share) * state.q[i] + share * state.next_q[i]
-            record.v[count[ROW], i] = (1.0 - share) * state.v[i] + share * state.next_v[i]
-        keep_impulse(state, record, count, record.times[count[NEXT_TIME]])
+            state.q_between[i] = (1.0 - share) * state.q[i] + share * state.next_q[i]
+            state.v_between[i] = (1.0 - share) * state.v[i] + share * state.next_v[i]
+        row = record.rows[count[ROW]]
+        write_row(row, record.times[count[NEXT_TIME]], 0.0, state.q_between, state.v_between, state.impulse)
+        count[ROW] += 1
         count[NEXT_TIME] += 1
 
 
 @inline
-def keep(state: Any, record: Any, count: Any, t: float, q: Any, v: Any) -> None:
-    """Keep the state (q, v) at time t."""
-    assign(record.q[count[ROW]], q)
-    assign(record.v[count[ROW]], v)
-    keep_impulse(state, record, count, t)
-
-
-@inline
-def keep_impulse(state: Any, record: Any, count: Any, t: float) -> None:
-    """Finish a kept row: its time, and the impulses since the row before."""
-    record.t[count[ROW]] = t
-    for c in range(len(state.u)):
-        record.impulse[count[ROW], c] = state.impulse[c]
-        state.impulse[c] = 0.0
+def keep(state: Any, record: Any, count: Any, t: float) -> None:
+    """Keep the current state."""
+    write_row(record.rows[count[ROW]], t, 0.0, state.q, state.v, state.impulse)
     count[ROW] += 1
