@@ -140,7 +140,12 @@ def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
     compilable.enable_caching()
     cache_file = compilable._cache._cache_file
     cache_file._source_stamp = (cache_file._source_stamp, _digest(f))
-    if f.__module__.startswith("lcpstep.") and not cache_file._load_index():
+    try:
+        known = cache_file._load_index()
+    except Exception:  # an entry of another version, whose types are no longer there
+        cache_file.flush()
+        known = {}
+    if f.__module__.startswith("lcpstep.") and not known:
         LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__qualname__)
 
 

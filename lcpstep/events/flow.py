@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call
+from lcpstep.compiled import call, inline
 from lcpstep.dense import assign, factorise, solve, split
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.events.dop853 import STAGES, combine, interpolant, interpolate
@@ -55,6 +55,7 @@ class Piece(NamedTuple):
     q_shifted: Any
 
 
+@inline
 def inside(piece: Any, t: float) -> float:
     """A time moved off the ends of its smooth interval, where accelerations jump."""
     margin = NUDGE * max(abs(t), piece.x[SCALE])
@@ -181,6 +182,7 @@ def state_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> None:
         split(piece.y, piece.q, piece.v)
 
 
+@inline
 def closed_form_state(model: Any, osc: Any, piece: Any, tau: float) -> None:
     """q, v (and, free, the acceleration) of the one linear degree of freedom."""
     t = piece.x[T0] + tau
@@ -203,21 +205,30 @@ def closed_form_state(model: Any, osc: Any, piece: Any, tau: float) -> None:
         piece.a[0] -= model.frame_now[0, 2]
 
 
+@inline
 def contact_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> tuple[float, float, float]:
     """Gap, gap velocity and gap acceleration of the free motion, at tau after the base of the piece."""
+    if not osc.closed_form or piece.x[MODE] == CLOSED:
+        return general_contact_at(model, osc, piece, w, tau)
+    closed_form_state(model, osc, piece, tau)
+    G = model.G[0, 0]
+    g, u, alpha = model.offset[0] + G * piece.q[0], G * piece.v[0], G * piece.a[0]
+    if model.motion != ABSENT:
+        t = piece.x[T0] + tau
+        side = inside(piece, t)
+        call(model.motion, t, piece.q0, piece.v0, model.p, model.motion_now)
+        g -= model.motion_now[0, 0]
+        u -= model.motion_now[0, 1]
+        if side != t:
+            call(model.motion, side, piece.q0, piece.v0, model.p, model.motion_now)
+        alpha -= model.motion_now[0, 2]
+    return g, u, alpha
+
+
+def general_contact_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> tuple[float, float, float]:
+    """The same by the equations of the model, at whatever state the piece has there."""
     t = piece.x[T0] + tau
     state_at(model, osc, piece, w, tau)
-    if osc.closed_form and piece.x[MODE] == FREE:
-        G, side = model.G[0, 0], inside(piece, t)
-        g, u, alpha = model.offset[0] + G * piece.q[0], G * piece.v[0], G * piece.a[0]
-        if model.motion != ABSENT:
-            call(model.motion, t, piece.q0, piece.v0, model.p, model.motion_now)
-            g -= model.motion_now[0, 0]
-            u -= model.motion_now[0, 1]
-            if side != t:
-                call(model.motion, side, piece.q0, piece.v0, model.p, model.motion_now)
-            alpha -= model.motion_now[0, 2]
-        return g, u, alpha
     gaps(model, t, piece.q, piece.v, piece.g)
     gap_rates(model, t, piece.q, piece.v, piece.G, piece.g_t)
     u = product(piece.G, piece.v, 0) + piece.g_t[0]

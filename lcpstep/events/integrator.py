@@ -218,28 +218,41 @@ def finish_interval(
         x[IMPULSE] += contact_impulse(model, flow, piece, w, a, stop)
     keep_times(model, flow, piece, w, record, count, x, t_stop, tau == NONE and t_stop >= flow.t_end)
     store_dense(piece, w, record, count)
-    u, alpha = x[EDGE_U], x[EDGE_ALPHA]
-    if flow.contact:
-        _, u, alpha = contact_at(model, flow, piece, w, stop)
-        if alpha - alpha + u - u != 0.0:
-            return NOT_FINITE
-        if hop:
-            _, u = near_surface(model, flow, piece, w, tau)
-    state_at(model, flow, piece, w, stop)
     x[NOW] = t_stop
     if tau == NONE:
-        if not flow.closed_form:
-            if closed:
-                project(model, piece, t_stop)
-            rebase(model, flow, piece, w, t_stop)
-        if closed:
-            x[EDGE_ALPHA] = min(alpha, 0.0)
-        keep_step(piece, record, count, x)
-    elif closed:
+        return pass_end(model, flow, piece, w, record, count, x, stop, closed)
+    _, u, alpha = contact_at(model, flow, piece, w, stop)
+    if alpha - alpha + u - u != 0.0:
+        return NOT_FINITE
+    if hop:
+        _, u = near_surface(model, flow, piece, w, tau)
+    state_at(model, flow, piece, w, stop)
+    if closed:
         release(model, flow, piece, w, record, count, x, JUST_RELEASED)
         keep_event(piece, record, count, x)
     else:
         impact(model, flow, piece, w, record, count, x, min(u, 0.0))
+    return FINISHED
+
+
+def pass_end(
+    model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, stop: float, closed: bool
+) -> int:
+    """Go on beyond the end of an interval without an event."""
+    if closed:
+        _, u, alpha = contact_at(model, flow, piece, w, stop)
+        if alpha - alpha + u - u != 0.0:
+            return NOT_FINITE
+        x[EDGE_ALPHA] = min(alpha, 0.0)
+    kept = record.every > 0 and count[STEP] % record.every == 0
+    if kept or not flow.closed_form or x[NOW] >= flow.t_end:
+        state_at(model, flow, piece, w, stop)
+    if not flow.closed_form:
+        if closed:
+            project(model, piece, x[NOW])
+        rebase(model, flow, piece, w, x[NOW])
+    if kept:
+        keep(piece, record, count, x, x[NOW])
     return FINISHED
 
 
@@ -469,12 +482,6 @@ def keep_times(
         state_at(model, flow, piece, w, t - piece.x[T0])
         keep(piece, record, count, x, t)
         count[NEXT_TIME] += 1
-
-
-def keep_step(piece: Any, record: Any, count: Any, x: Any) -> None:
-    """Keep the state at the end of a step, if steps are kept."""
-    if record.every > 0 and count[STEP] % record.every == 0:
-        keep(piece, record, count, x, x[NOW])
 
 
 def keep_event(piece: Any, record: Any, count: Any, x: Any) -> None:

@@ -16,6 +16,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from lcpstep.compiled import inline
+
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
 TERMS = 16  # of the series; the first neglected one is below rounding
 NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
@@ -48,6 +50,7 @@ def oscillator(
     )
 
 
+@inline
 def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """S, S' and P at tau >= 0."""
     if delta == 0.0 and w2 == 0.0:
@@ -97,6 +100,7 @@ def overdamped(delta: float, w2: float, tau: float) -> tuple[float, float, float
     return S, dS, (e_fast / fast - P_slow) / gap
 
 
+@inline
 def flow(o: Any, t0: float, y0: float, w0: float, tau: float) -> tuple[float, float, float]:
     """Position, velocity and acceleration at t0 + tau of the motion that starts at t0 with y0, w0."""
     S, dS, P = fundamental(o.delta, o.w2, tau)
