@@ -1,0 +1,357 @@
+"""Scenes: trial of every callback, the start outside of obstacles, times and corners, and the scenes ready to use."""
+
+import inspect
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
+
+NOT_FINITE = st.sampled_from([math.nan, math.inf, -math.inf])
+
+
+def scene(**changes):
+    """A ball above a floor, changed here and there."""
+    usual = {"system": LinearSystem(M=1.0), "q0": 1.0, "v0": 0.0, "t_span": (0.0, 1.0)}
+    return Scene(**{**usual, "contacts": LinearContacts(G=1.0), **changes})
+
+
+# --- numbers
+
+
+@given(st.sampled_from(["q0", "v0"]), NOT_FINITE)
+def test_the_initial_state_must_be_finite(name, bad):
+    with pytest.raises(ValueError, match=f"^{name}: .*finite"):
+        scene(**{name: bad})
+
+
+@pytest.mark.parametrize("name", ["q0", "v0"])
+@pytest.mark.parametrize("bad", [[1.0, 2.0], [], [[1.0, 2.0]], "up", 1j, [[1.0], [2.0, 3.0]]])
+def test_the_initial_state_must_have_one_entry_per_coordinate(name, bad):
+    with pytest.raises(ValueError, match=f"^{name}: "):
+        scene(**{name: bad})
+
+
+@given(st.floats(-1e6, 1e6), st.floats(0.0, 1e6))
+def test_the_span_must_not_be_empty_or_reversed(t_start, length):
+    with pytest.raises(ValueError, match="^t_span: .*t_start < t_end"):
+        scene(t_span=(t_start, t_start - length))
+
+
+@pytest.mark.parametrize("bad", [(0.0, math.nan), (math.inf, 1.0), (0.0, math.inf), 5.0, (0.0, 1.0, 2.0), (1.0,), "ab"])
+def test_the_span_must_be_two_times(bad):
+    with pytest.raises(ValueError, match="^t_span: "):
+        scene(t_span=bad)
+
+
+@pytest.mark.parametrize("period", [0.0, -1.0, math.nan, "daily"])
+def test_the_period_must_be_positive(period):
+    with pytest.raises(ValueError, match="^period: "):
+        scene(period=period)
+
+
+@pytest.mark.parametrize("corners", [[-0.1], [0.5, 1.0], [2.0], [math.nan], [[0.1, 0.2]], ["noon"]])
+def test_corners_must_lie_within_the_period(corners):
+    with pytest.raises(ValueError, match="^corners: "):
+        scene(corners=corners, period=1.0)
+
+
+def test_corners_are_sorted():
+    np.testing.assert_array_equal(scene(corners=[0.7, 0.2], period=1.0).corners, [0.2, 0.7])
+
+
+@pytest.mark.parametrize("p", [[math.nan], [[1.0, 2.0], [3.0]], ["stiff"]])
+def test_parameters_must_be_finite_numbers(p):
+    with pytest.raises(ValueError, match="^p: "):
+        scene(p=p)
+
+
+def test_parameters_are_the_values_of_the_named_ones_unless_given():
+    np.testing.assert_array_equal(scene(parameters={"a": 2.0, "b": "x", "c": 3}).p, [2.0, 3.0])
+    np.testing.assert_array_equal(scene(parameters={"a": 2.0}, p=[5.0]).p, [5.0])
+
+
+# --- contacts
+
+
+@given(st.one_of(st.floats(max_value=0.0, exclude_max=True), st.floats(min_value=1.0, exclude_min=True)))
+def test_restitution_lies_between_zero_and_one(r):
+    with pytest.raises(ValueError, match="^restitution: "):
+        LinearContacts(G=1.0, restitution=r)
+    with pytest.raises(ValueError, match="^restitution: "):
+        Contacts(n_c=1, gap=height, jacobian=upward, restitution=r)
+
+
+@pytest.mark.parametrize("bad", [math.nan, [0.5, 0.5, 0.5], "hard", [[0.5, 0.5]], [0.5, 1.1]])
+def test_restitution_has_one_number_for_each_contact(bad):
+    with pytest.raises(ValueError, match="^restitution: "):
+        LinearContacts(G=np.eye(2), restitution=bad)
+
+
+@pytest.mark.parametrize("G", [[[math.nan]], "up", np.zeros((1, 1, 2)), [[1.0], [1.0, 2.0]], [[1j]]])
+def test_the_gap_jacobian_is_a_real_matrix(G):
+    with pytest.raises(ValueError, match="^G: "):
+        LinearContacts(G=G)
+
+
+def test_the_gap_jacobian_has_a_column_for_each_coordinate():
+    with pytest.raises(ValueError, match=r"contacts\.G: expected 1 columns"):
+        scene(contacts=LinearContacts(G=[[1.0, 0.0]]))
+
+
+@pytest.mark.parametrize("offset", [math.nan, [1.0, 2.0], "far"])
+def test_the_offset_has_one_number_for_each_contact(offset):
+    with pytest.raises(ValueError, match="^offset: "):
+        LinearContacts(G=1.0, offset=offset)
+
+
+@pytest.mark.parametrize("n_c", [0, -1, 1.5, None])
+def test_the_number_of_contacts_is_a_positive_integer(n_c):
+    with pytest.raises(ValueError, match="^n_c: "):
+        Contacts(n_c=n_c, gap=height, jacobian=upward)
+
+
+# --- the start
+
+
+@given(st.floats(1e-12, 1e6))
+def test_a_start_inside_the_obstacle_is_refused_with_its_depth(depth):
+    with pytest.raises(ValueError, match=r"^q0: .*inside the obstacle.*contact 0 is -.*t = 0, q = "):
+        scene(q0=-depth)
+
+
+def test_the_obstacle_that_is_entered_is_named():
+    system = LinearSystem(M=np.eye(2))
+    with pytest.raises(ValueError, match=r"^q0: .*contact 1 is -0\.25 m"):
+        scene(system=system, q0=[0.0, -0.25], v0=[0.0, 0.0], contacts=LinearContacts(G=np.eye(2)))
+
+
+def test_a_start_inside_a_moving_obstacle_is_refused():
+    with pytest.raises(ValueError, match=r"^q0: .*inside the obstacle"):
+        scene(contacts=LinearContacts(G=1.0, motion=risen))
+    with pytest.raises(ValueError, match=r"^q0: .*inside the obstacle"):
+        scenes.cam_follower(q0=-1e-6)
+    with pytest.raises(ValueError, match=r"^q0: .*inside the obstacle"):
+        scenes.cam_follower(q0=-1e-6, coordinates="absolute")
+
+
+@pytest.mark.parametrize("where", [1e-3, 1.0, 1e6])
+def test_a_start_on_the_obstacle_is_taken_up_to_rounding(where):
+    contacts = LinearContacts(G=1.0, offset=-where)
+    assert scene(q0=where, contacts=contacts).gap(0.0, where, 0.0)[0][0] == 0.0
+    scene(q0=np.nextafter(where, 0.0), contacts=contacts)
+    with pytest.raises(ValueError, match=r"^q0: "):
+        scene(q0=where * (1 - 1e-9) - 1e-9, contacts=contacts)
+
+
+def test_a_start_that_falls_towards_the_obstacle_on_it_is_taken():
+    g, u = scene(q0=0.0, v0=-1.0).gap(0.0, 0.0, -1.0)
+    assert (g[0], u[0]) == (0.0, -1.0)
+
+
+# --- callbacks
+
+
+def height(t, q, v, p, out):
+    out[0] = q[0]
+
+
+def upward(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+def risen(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 1.5, 0.0, 0.0
+
+
+def returns(t, q, v, p, out):
+    out.fill(1.0)
+    return out
+
+
+def not_a_number(t, q, v, p, out):
+    out.fill(math.nan)
+
+
+def forgets(t, q, v, p, out):
+    pass
+
+
+def too_many(t, q, v, p, out):
+    out.fill(1.0)
+    out.flat[out.size] = 1.0
+
+
+def wrong_shape(t, q, v, p, out):
+    out[:] = np.ones(out.size + 1)
+
+
+def wrong_dimension(t, q, v, p, out):
+    out[0, 0, 0] = 1.0
+
+
+def reads_too_far(t, q, v, p, out):
+    out.fill(q[len(q)])
+
+
+def reads_missing_parameter(t, q, v, p, out):
+    out.fill(p[0])
+
+
+def wrong_signature(t, q):
+    pass
+
+
+def divides_by_zero(t, q, v, p, out):
+    out.fill(1.0 / (t * 0.0))
+
+
+BAD = [
+    returns, not_a_number, forgets, too_many, wrong_shape, wrong_dimension, reads_too_far, reads_missing_parameter,
+    wrong_signature, divides_by_zero,
+]  # fmt: skip
+
+
+def one(t, q, v, p, out):
+    out.fill(1.0)
+
+
+PLACES = {
+    "system.force": lambda f: {"system": LinearSystem(M=1.0, force=f)},
+    "system.frame": lambda f: {"system": LinearSystem(M=1.0, frame=f)},
+    "contacts.motion": lambda f: {"contacts": LinearContacts(G=1.0, motion=f)},
+    "contacts.gap": lambda f: {"contacts": Contacts(n_c=1, gap=f, jacobian=upward)},
+    "contacts.jacobian": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=f)},
+    "contacts.gap_t": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=upward, gap_t=f)},
+    "contacts.bias": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=upward, bias=f)},
+    "system.mass": lambda f: {"system": System(n_q=1, mass=f, force=one)},
+    "system.force_q": lambda f: {"system": System(n_q=1, mass=1.0, force=one, force_q=f)},
+    "system.force_v": lambda f: {"system": System(n_q=1, mass=1.0, force=one, force_v=f)},
+}
+
+
+@pytest.mark.parametrize("bad", BAD, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("place", PLACES)
+def test_a_callback_that_does_not_fit_is_named(place, bad):
+    with pytest.raises(ValueError, match=f"^{place}: "):
+        scene(**PLACES[place](bad))
+
+
+def test_a_callback_of_a_general_system_is_named():
+    with pytest.raises(ValueError, match=r"^system\.force: "):
+        scene(system=System(n_q=1, mass=1.0, force=returns))
+
+
+def test_errors_of_callbacks_say_time_and_state():
+    with pytest.raises(ValueError, match=r"^system\.force: .*t = 0, q = \[1\.0\], v = \[0\.0\]"):
+        scene(system=LinearSystem(M=1.0, force=not_a_number))
+
+
+def test_a_mass_function_must_be_definite_at_the_start():
+    def negative(t, q, v, p, out):
+        out[0, 0] = -1.0
+
+    with pytest.raises(ValueError, match=r"^system\.mass: .*positive definite"):
+        scene(system=System(n_q=1, mass=negative, force=one))
+
+
+def test_a_callback_cannot_change_the_state_that_it_is_shown():
+    def careless(t, q, v, p, out):
+        q[0] = -5.0
+        out[0] = 0.0
+
+    assert scene(system=LinearSystem(M=1.0, force=careless)).gap(0.0, 1.0, 0.0)[0][0] == 1.0
+
+
+# --- scenes ready to use
+
+
+@pytest.mark.parametrize("name", scenes.CATALOGUE)
+def test_every_scene_of_the_catalogue_starts_from_its_defaults(name):
+    made = scenes.CATALOGUE[name]()
+    assert made.name == name
+    assert np.all(made.gap(made.t_span[0], made.q0, made.v0)[0] >= 0.0)
+
+
+@pytest.mark.parametrize("name", scenes.CATALOGUE)
+def test_every_numeric_argument_of_every_scene_is_checked_by_name(name):
+    make = scenes.CATALOGUE[name]
+    for argument, parameter in inspect.signature(make).parameters.items():
+        if isinstance(parameter.default, float):
+            for bad in (math.nan, math.inf, "much"):
+                with pytest.raises(ValueError, match=f"^{argument}: "):
+                    make(**{argument: bad})
+
+
+@pytest.mark.parametrize(
+    ("make", "arguments"),
+    [
+        (scenes.bouncing_ball, {"h0": 1.0, "v0": 0.0, "g": 9.81, "restitution": 0.8, "t_end": 5.0}),
+        (
+            scenes.cam_follower,
+            {"rpm": 358.0, "q0": 0.4, "v0": 0.4, "t_end": 2.0, "coordinates": "relative"},
+        ),
+        (
+            scenes.impact_oscillator,
+            {
+                "zeta": 0.05, "omega": 2.0, "amplitude": 1.0, "stop": 0.0, "restitution": 0.8,
+                "q0": -0.5, "v0": 0.0, "t_end": 100.0,
+            },
+        ),
+    ],
+)  # fmt: skip
+def test_scenes_have_the_documented_arguments_in_order(make, arguments):
+    parameters = list(inspect.signature(make).parameters.values())[: len(arguments)]
+    assert {x.name: x.default for x in parameters} == arguments
+    assert [x.name for x in parameters] == list(arguments)
+
+
+@pytest.mark.parametrize("make", scenes.CATALOGUE.values())
+@pytest.mark.parametrize("r", [-0.1, 1.1])
+def test_scenes_refuse_a_restitution_outside_zero_and_one(make, r):
+    with pytest.raises(ValueError, match="^restitution: "):
+        make(restitution=r)
+
+
+@pytest.mark.parametrize("make", scenes.CATALOGUE.values())
+@pytest.mark.parametrize("t_end", [0.0, -1.0])
+def test_scenes_refuse_an_end_before_their_start(make, t_end):
+    with pytest.raises(ValueError, match="^t_end: "):
+        make(t_end=t_end)
+
+
+def test_the_oscillator_refuses_a_start_beyond_its_stop():
+    with pytest.raises(ValueError, match="^q0: .*inside"):
+        scenes.impact_oscillator(q0=0.1)
+
+
+def test_the_follower_refuses_coordinates_that_it_does_not_have():
+    with pytest.raises(ValueError, match=r'^coordinates: .*"relative" or "absolute", got \'polar\''):
+        scenes.cam_follower(coordinates="polar")
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0])
+@pytest.mark.parametrize("argument", ["rpm", "m"])
+def test_the_follower_refuses_a_cam_or_a_mass_that_is_not_positive(argument, bad):
+    with pytest.raises(ValueError, match=f"^{argument}: "):
+        scenes.cam_follower(**{argument: bad})
+
+
+def test_the_follower_starts_at_the_first_corner_relative_to_the_cam():
+    relative, absolute = (scenes.cam_follower(coordinates=c) for c in ("relative", "absolute"))
+    assert relative.corners[0] == 0.0
+    for made in (relative, absolute):
+        g, u = made.gap(0.0, made.q0, made.v0)
+        # the lift there is 0.1 m up to rounding, at rest
+        np.testing.assert_allclose([g[0], u[0]], [0.4, 0.4], rtol=1e-15)
+    assert absolute.q0[0] == pytest.approx(0.5, rel=1e-15)
+    assert relative.period == pytest.approx(60.0 / 358.0, rel=1e-15)
+
+
+def test_a_harmonic_force_is_what_its_name_says():
+    made = scenes.impact_oscillator(omega=3.0, amplitude=2.0)
+    assert isinstance(made.system.force, Harmonic)
+    assert made.period == pytest.approx(2 * math.pi / 3.0, rel=1e-15)
