@@ -12,6 +12,7 @@ class Problem(NamedTuple):
     """W, b and where they are from; `symmetric` says that a quadratic programme may be tried."""
 
     family: str
+    size: int  # as asked for; the friction problems have the next smaller multiple of 6 unknowns
     n: int
     W: Any
     b: Any
@@ -176,4 +177,4 @@ def problems(sizes: tuple[int, ...], repeats: int, seed: int = 1) -> Iterator[Pr
         for n in sizes:
             for repeat in range(repeats if n <= largest else 0):
                 W, b = make(n, np.random.default_rng((seed, number, n, repeat)))
-                yield Problem(family, len(b), W, b, symmetric)
+                yield Problem(family, n, len(b), W, b, symmetric)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -14,6 +15,7 @@ from lcpstep.lcp.infeasible import farkas
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
+from lcpstep.lcp.small import solve_one, solve_two
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
 from lcpstep.lcp.workspace import (
     BEST_RESIDUAL,
@@ -33,6 +35,7 @@ from lcpstep.lcp.workspace import (
 
 NOT_FINITE = -1
 STATUS = tuple(Status)
+LARGEST_KEPT = 100  # unknowns up to which work arrays are kept: 250 kB at most
 LARGEST_ENUMERATION = 20  # unknowns; a million bases
 
 
@@ -40,6 +43,26 @@ LARGEST_ENUMERATION = 20  # unknowns; a million bases
 def kernel(entry: Callable[..., Any]) -> Callable[..., Any]:
     """The compiled twin of an entry, looked up once."""
     return compiled(entry)
+
+
+class _Kept(threading.local):
+    """Work arrays of small problems by size, kept from call to call; every thread has its own."""
+
+    def __init__(self) -> None:
+        self.blocks: dict[int, tuple[Any, Any]] = {}
+
+
+_kept = _Kept()
+
+
+def blocks(n: int) -> tuple[Any, Any]:
+    """Blocks for the work arrays of n unknowns."""
+    found = _kept.blocks.get(n)
+    if found is None:
+        found = np.empty(numbers_needed(n)), np.zeros(integers_needed(n), np.int64)
+        if n <= LARGEST_KEPT:
+            _kept.blocks[n] = found
+    return found
 
 
 def pivot_once(
@@ -51,6 +74,15 @@ def pivot_once(
     work = carve(numbers, integers, b.shape[0])
     status = solve_dense(W, b, z, tolerance, max_pivots, work)
     return finish(status, w, work)
+
+
+def closed_form(W: Any, b: Any, out: Any, tolerance: float) -> float:
+    """Residual of the closed form for one or two unknowns, infinite if it has none; out holds z, w and sizes."""
+    if not all_finite(W, b):
+        return np.inf
+    if b.shape[0] == 1:
+        return solve_one(W, b, out[0], out[1], out[2])
+    return solve_two(W, b, out[0], out[1], out[2], tolerance)
 
 
 def enumerate_once(
@@ -88,8 +120,15 @@ def all_finite(W: Any, b: Any) -> bool:
 
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Principal and Lemke's pivoting; where they end in a ray, the search for a proof of infeasibility."""
-    n = b.shape[0]
-    limit = max(ENOUGH, PER_UNKNOWN * n) if max_iterations is None else max_iterations
+    n = len(b)
+    if n <= 2:
+        out = np.empty((3, n))
+        residual = kernel(closed_form)(W, b, out, tol)
+        if residual <= tol:
+            return Solution(out[0], out[1], STATUS[SOLVED], 0, residual, "lemke")
+    limit = max_iterations
+    if limit is None:
+        limit = ENOUGH if n < ENOUGH // PER_UNKNOWN else PER_UNKNOWN * n
     return _call(pivot_once, "lemke", W, b, z, tol, limit)
 
 
@@ -103,11 +142,11 @@ def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) 
 
 
 def _call(entry: Callable[..., Any], method: str, W: Any, b: Any, z: Any, tol: float, limit: int) -> Solution:
-    n = b.shape[0]
-    w, numbers, integers = np.empty(n), np.empty(numbers_needed(n)), np.empty(integers_needed(n), np.int64)
+    n = len(b)
+    w, (numbers, integers) = np.empty(n), blocks(n)
     status, iterations, residual = kernel(entry)(W, b, z, w, numbers, integers, tol, limit)
     if status == SOLVED:
-        return Solution(z, w, Status.SOLVED, iterations, residual, method)
+        return Solution(z, w, STATUS[SOLVED], iterations, residual, method)
     if status == NOT_FINITE:
         check_finite(W, b)
     certificate: Any = None

@@ -81,11 +81,12 @@ def factorise(F: Any, k: int, indices: Any) -> int:
         if abs(F[s, s]) < PREFERENCE * abs(F[row, s]):
             swap_rows(F, s, row, k)
             order[s], order[row] = order[row], order[s]
+        reciprocal = 1.0 / F[s, s]
         for p in range(s + 1, k):
-            factor = F[p, s] / F[s, s]
-            if factor != 0.0:
-                subtract(F[p, s:], F[s, s:], factor, k - s)
+            factor = F[p, s] * reciprocal
             F[p, s] = factor
+            if factor != 0.0:
+                subtract(F[p, s + 1 :], F[s, s + 1 :], factor, k - s - 1)
         s += 1
     return k
 

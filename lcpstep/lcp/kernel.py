@@ -3,8 +3,8 @@
     status = solve_small(W, b, z, work)
 
 z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
-beyond, principal pivoting starts from the positive z of the guess, or where b is negative; where a few
-exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and b. Every
+beyond, principal pivoting starts from the positive z of the guess, or where b is negative if n is small;
+where a few exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and b. Every
 answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
 """
 
@@ -36,6 +36,7 @@ from lcpstep.lcp.workspace import (
 
 __all__ = ["Workspace", "solve_small", "workspace"]
 
+FEW = 20  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 STARTS = 12  # times that Lemke's method is started
@@ -67,17 +68,29 @@ def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work:
     """`solve_small` with the judge's tolerance and the limit on pivots."""
     n = b.shape[0]
     work.report[RESIDUAL] = work.report[ITERATIONS] = 0.0
-    if n == 1:
-        return solve_one(W, b, z, tolerance, work)
-    if n == 2 and solve_two(W, b, z, tolerance, work):
+    if n <= 2 and solve_closed(W, b, z, tolerance, work):
         return SOLVED
+    if n == 1:
+        work.vectors[RAY_DIRECTION, 0] = 1.0  # W <= 0 and b < 0: it proves itself
+        return INFEASIBLE if b[0] < 0.0 and W[0, 0] <= 0.0 else FAILED
     work.report[BEST_RESIDUAL] = tolerance
     strict = min(tolerance, STRICT)
-    if not choose_positive(z, work):
+    guessed = choose_positive(z, work)
+    if not guessed:
         choose_negative(b, work)
-    if exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
+    if (guessed or n <= FEW) and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
         return SOLVED
     return pivot_on(W, b, z, tolerance, max_pivots, work)
+
+
+def solve_closed(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
+    """Whether the closed form for one or two unknowns passes the judge."""
+    w, s = work.vectors[SLACK], work.vectors[SIZE]
+    if b.shape[0] == 1:
+        work.report[RESIDUAL] = solve_one(W, b, z, w, s)
+    else:
+        work.report[RESIDUAL] = solve_two(W, b, z, w, s, tolerance)
+    return bool(work.report[RESIDUAL] <= tolerance)
 
 
 def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:

@@ -12,8 +12,6 @@ from typing import Any
 
 from lcpstep.lcp.workspace import COLUMN_SCALE, DSLACK, ROW_SCALE, SCALED_B
 
-SWEEPS = 2
-
 
 def equilibrate(W: Any, b: Any, work: Any) -> None:
     """Fill columns, b, rows_by and columns_by of the work arrays with the scaled problem."""
@@ -21,8 +19,7 @@ def equilibrate(W: Any, b: Any, work: Any) -> None:
     columns, r, c = work.columns, work.vectors[ROW_SCALE], work.vectors[COLUMN_SCALE]
     for j in range(n):
         c[j] = 1.0
-    for _ in range(SWEEPS):
-        balance(W, r, c, n, work.vectors[DSLACK])
+    balance(W, r, c, n, work.vectors[DSLACK])
     largest = 0.0
     for i in range(n):
         largest = max(largest, abs(r[i] * b[i]))

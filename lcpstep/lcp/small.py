@@ -8,32 +8,28 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from lcpstep.lcp.judge import judge
-from lcpstep.lcp.status import FAILED, INFEASIBLE, SOLVED
-from lcpstep.lcp.workspace import RAY_DIRECTION, RESIDUAL, SIZE, SLACK
 
 ROUNDING = 1e-14  # residual up to which Cramer's rule is accurate enough
 
 
-def solve_one(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> int:
-    """0 <= z complementary to W z + b >= 0 for numbers W and b."""
+def solve_one(W: Any, b: Any, z: Any, w: Any, s: Any) -> float:
+    """Residual of z = max(0, -b / W) for numbers W and b; large where there is no solution."""
     z[0] = -b[0] / W[0, 0] if b[0] < 0.0 < W[0, 0] else 0.0
-    work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    if work.report[RESIDUAL] <= tolerance:
-        return SOLVED
-    work.vectors[RAY_DIRECTION, 0] = 1.0  # W <= 0 and b < 0: it proves itself
-    return INFEASIBLE if b[0] < 0.0 and W[0, 0] <= 0.0 else FAILED
+    return judge(W, b, z, w, s)
 
 
-def solve_two(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
-    """Whether one of the four bases is right up to rounding; z is then its answer, else zero."""
+def solve_two(W: Any, b: Any, z: Any, w: Any, s: Any, tolerance: float) -> float:
+    """Residual of the basis that is right up to rounding; infinite, with z = 0, if none of the four is."""
     for basis in range(4):
         if cramer(W, b, z, basis):
-            work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-            if work.report[RESIDUAL] <= ROUNDING and work.report[RESIDUAL] <= tolerance:
-                return True
+            residual = judge(W, b, z, w, s)
+            if residual <= ROUNDING and residual <= tolerance:
+                return residual
     z[0], z[1] = 0.0, 0.0
-    return False
+    return np.inf
 
 
 def cramer(W: Any, b: Any, z: Any, basis: int) -> bool:

@@ -13,7 +13,7 @@ from lcpstep.lcp.automatic import automatic, dense
 from lcpstep.lcp.dense import enumeration, pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.pgs import pgs
-from lcpstep.lcp.problem import Solution, as_arrays, as_guess, is_sparse
+from lcpstep.lcp.problem import Solution, as_arrays, as_guess
 from lcpstep.lcp.qp import DEFAULT, known_solvers, quadratic, require_solver
 from lcpstep.lcp.status import TOLERANCE, Status
 
@@ -73,7 +73,7 @@ def solve_lcp(
         check_method(method)
         return Solution(z, z.copy(), Status.SOLVED, 0, 0.0, method)
     solver = METHODS.get(method) or find_method(method)
-    if method in NEEDS_DENSE and is_sparse(W):
+    if type(W) is not np.ndarray and method in NEEDS_DENSE:
         W = dense(W)
     return solver(W, b, z, tol, max_iterations)
 

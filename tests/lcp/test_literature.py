@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lcpstep.lcp import Ray, Status, residual, solve_lcp
+
 from .known import INFEASIBLE, KNOWN, UNSOLVABLE, fathi, murty
 
 
