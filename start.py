@@ -5,12 +5,12 @@ python3 start.py test     the checks: lint, types, import rules, tests
 """
 
 import hashlib
-import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
+import urllib.parse
 import urllib.request
 import venv
 from pathlib import Path
@@ -85,18 +85,21 @@ def works(pip: list) -> bool:
 def fetch_pip(folder: Path) -> Path:
     """Newest wheel of pip from the package index, its checksum verified."""
     index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
-    request = urllib.request.Request(index, headers={"Accept": "application/vnd.pypi.simple.v1+json"})
-    with urllib.request.urlopen(request) as answer:
-        files = json.load(answer)["files"]
-    wheels = [f for f in files if re.fullmatch(r"pip-[\d.]+-py3-none-any\.whl", f["filename"])]
-    newest = max(wheels, key=lambda f: [int(x) for x in f["filename"].split("-")[1].split(".")])
-    with urllib.request.urlopen(newest["url"]) as answer:
-        content = answer.read()
-    if hashlib.sha256(content).hexdigest() != newest["hashes"]["sha256"]:
-        sys.exit(f"{newest['filename']}: the checksum does not fit")
-    wheel = folder / newest["filename"]
+    page = download(urllib.request.Request(index, headers={"Accept": "text/html"})).decode()
+    wheels = re.findall(r'href="([^"]*/(pip-([\d.]+)-py3-none-any\.whl))#sha256=([0-9a-f]+)"', page)
+    link, name, _, checksum = max(wheels, key=lambda found: [int(x) for x in found[2].split(".")])
+    content = download(urllib.parse.urljoin(index, link))
+    if hashlib.sha256(content).hexdigest() != checksum:
+        sys.exit(f"{name}: the checksum does not fit")
+    wheel = folder / name
     wheel.write_bytes(content)
     return wheel
+
+
+def download(what: str | urllib.request.Request) -> bytes:
+    """Content of a web address."""
+    with urllib.request.urlopen(what) as answer:
+        return answer.read()
 
 
 if __name__ == "__main__":
