@@ -193,7 +193,9 @@ def _next_corner(body: Body, t: Any) -> Any:
     if not times:
         return mp.inf
     turn = mp.floor(t / period)
-    return min(c + (turn + k) * period for k in (-1, 0, 1, 2) for c in times if c + (turn + k) * period > t + DUST)
+    return min(
+        c + (turn + k) * period for k in (-1, 0, 1, 2) for c in times if c + (turn + k) * period > t + DUST
+    )
 
 
 def _after(body: Body, t: Any, t_end: Any) -> Any:

@@ -11,7 +11,7 @@ GRAVITY = 9.81
 # --- one coordinate
 
 
-def TABLE(t, q, v, p, out):  # noqa: N802
+def TABLE(t, q, v, p, out):
     """Obstacle A sin(w t); p = (A, w)."""
     out[0, 0] = p[0] * math.sin(p[1] * t)
     out[0, 1] = p[0] * p[1] * math.cos(p[1] * t)

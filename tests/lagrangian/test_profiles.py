@@ -15,7 +15,9 @@ from tests.differences import derivative, second_derivative
 from tests.exact import cam_lift
 
 CORNERS = PROFILE.corners()
-MIDDLES = [(a + b) / 2 for a, b in zip(CORNERS, np.append(CORNERS[1:], CORNERS[0] + 2 * math.pi), strict=True)]
+MIDDLES = [
+    (a + b) / 2 for a, b in zip(CORNERS, np.append(CORNERS[1:], CORNERS[0] + 2 * math.pi), strict=True)
+]
 ANGLES = np.array([m % (2 * math.pi) for m in MIDDLES])
 angles = st.floats(0.0, 2 * math.pi, exclude_max=True).filter(lambda b: np.min(np.abs(CORNERS - b)) > 1e-9)
 ONE_SIDED = 1e-12  # how far off a corner its two sides are looked at [rad]
@@ -55,7 +57,9 @@ def test_the_cam_has_six_corners_symmetric_about_its_nose():
     assert len(CORNERS) == 6
     np.testing.assert_allclose(CORNERS + CORNERS[::-1], 2 * math.pi, rtol=1e-15)
     np.testing.assert_allclose(
-        CORNERS[:3], [math.pi / 2, math.pi / 2 + 1.050328174371336, math.pi / 2 + 1.22173047639603], rtol=1e-15
+        CORNERS[:3],
+        [math.pi / 2, math.pi / 2 + 1.050328174371336, math.pi / 2 + 1.22173047639603],
+        rtol=1e-15,
     )
 
 
@@ -84,7 +88,9 @@ def test_the_turning_cam_gives_time_derivatives(rpm, turns):
         rotating_cam(t, nothing, nothing, p, out)
         c, dc, ddc = PROFILE.lift(beta)
         rounding = 8e-16 * 2 * math.pi * (abs(turns) + 1) * 5  # of the angle, times |c'''| < 5 .. 40
-        np.testing.assert_allclose(out[0] / [1, omega, omega**2], [c, dc, ddc], rtol=0, atol=8 * rounding + 1e-13)
+        np.testing.assert_allclose(
+            out[0] / [1, omega, omega**2], [c, dc, ddc], rtol=0, atol=8 * rounding + 1e-13
+        )
 
 
 def test_a_cam_without_symmetry_uses_all_its_arcs():

@@ -41,7 +41,9 @@ def test_the_span_must_not_be_empty_or_reversed(t_start, length):
         scene(t_span=(t_start, t_start - length))
 
 
-@pytest.mark.parametrize("bad", [(0.0, math.nan), (math.inf, 1.0), (0.0, math.inf), 5.0, (0.0, 1.0, 2.0), (1.0,), "ab"])
+@pytest.mark.parametrize(
+    "bad", [(0.0, math.nan), (math.inf, 1.0), (0.0, math.inf), 5.0, (0.0, 1.0, 2.0), (1.0,), "ab"]
+)
 def test_the_span_must_be_two_times(bad):
     with pytest.raises(ValueError, match="^t_span: "):
         scene(t_span=bad)

@@ -56,11 +56,13 @@ def test_elastic_impacts_keep_the_energy_with_one_half():
 def test_impacts_never_create_kinetic_energy(r):
     contacts = LinearContacts(G=np.eye(3), offset=0.2, restitution=r)
     scene = Scene(
-        system=LinearSystem(M=M), q0=[0.3, 0.2, 0.5], v0=[-1.0, -0.5, -1.0], t_span=(0.0, 3.0), contacts=contacts
+        system=LinearSystem(M=M),
+        q0=[0.3, 0.2, 0.5],
+        v0=[-1.0, -0.5, -1.0],
+        t_span=(0.0, 3.0),
+        contacts=contacts,
     )
     m = simulate(scene, Moreau(0.01))
     T = 0.5 * np.einsum("ti,ij,tj->t", m.v, M, m.v)
     assert len(m.impacts) >= 3
     assert np.all(np.diff(T) <= 1e-15 * T[0])
-
-

@@ -33,7 +33,9 @@ def test_moreau_reaches_its_order(known, theta, smooth_order):
 SCENES = [
     pytest.param(scenes.impact_oscillator(t_end=15.0), (500, 1000, 2000, 4000, 8000), id="impact-oscillator"),
     # five impacts; each of them multiplies differences, and chaos makes later ones useless
-    pytest.param(scenes.cam_follower(rpm=358.0, t_end=0.35), (1000, 2000, 4000, 8000, 16000), id="cam-follower"),
+    pytest.param(
+        scenes.cam_follower(rpm=358.0, t_end=0.35), (1000, 2000, 4000, 8000, 16000), id="cam-follower"
+    ),
 ]
 
 

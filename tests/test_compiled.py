@@ -1,0 +1,128 @@
+"""Kernels are compiled once: one signature for all scenes, kept on disk for the next process."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven, Moreau, simulate
+from lcpstep.compiled import compiled, jit_disabled
+from lcpstep.events import driven
+from lcpstep.events import integrator as events
+from lcpstep.stepping import theta
+from tests.models import ball_on_table, bowl_scene, pendulum
+from tests.processes import python
+
+pytestmark = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+
+
+def free(t, q, v, p, out):
+    out[0] = -p[0]
+
+
+def swing(t, q, v, p, out):
+    out[0], out[1], out[2] = math.sin(p[0] * t), -p[1] * q[1], p[2]
+
+
+def varied():
+    """Linear scenes with other sizes, callbacks, parameters and numbers of contacts."""
+    yield ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 0.05)
+    yield Scene(
+        system=LinearSystem(M=1.0, force=free), q0=1.0, v0=0.0, t_span=(0.0, 0.05), parameters={"g": 9.81}
+    )
+    yield Scene(
+        system=LinearSystem(M=np.eye(3), K=np.eye(3), force=swing), q0=np.zeros(3), v0=np.zeros(3), p=[1.0, 2.0, 3.0],
+        t_span=(0.0, 0.05), contacts=LinearContacts(G=np.eye(3), restitution=[0.1, 0.5, 0.9]),
+    )  # fmt: skip
+    yield bowl_scene([0.5, 0.0], [0.0, 0.0], 0.05)
+
+
+def general():
+    """General systems, the same way."""
+    yield pendulum(1.0, 0.5, 0.05)
+    yield pendulum(0.3, 0.0, 0.05, jacobians=False)
+    yield Scene(system=System(3, np.eye(3), swing), q0=np.zeros(3), v0=np.zeros(3), p=[1.0, 2.0, 3.0],
+                t_span=(0.0, 0.05))  # fmt: skip
+    curved = bowl_scene([0.5, 0.0], [0.0, 0.0], 0.05, bias=False).contacts
+    yield Scene(
+        system=System(2, np.eye(2), two_forces), contacts=Contacts(1, curved.gap, curved.jacobian), q0=[0.1, 0.1],
+        v0=[0.0, 0.0], t_span=(0.0, 0.05),
+    )  # fmt: skip
+
+
+def two_forces(t, q, v, p, out):
+    out[0], out[1] = -v[0], -9.81
+
+
+@pytest.mark.parametrize("keep", [1, 7, [0.01, 0.02], "impacts"])
+@pytest.mark.parametrize(
+    ("scenes", "without"), [(varied, (theta.linearise,)), (general, ())], ids=["linear", "general"]
+)
+def test_the_time_stepping_kernel_has_one_signature_for_all_scenes(scenes, without, keep):
+    kernel = compiled(theta.run, without)
+    for scene in scenes():
+        simulate(scene, Moreau(1e-3, theta=0.75), keep=keep)
+        assert len(kernel.signatures) == 1
+
+
+@pytest.mark.parametrize("keep", [1, 7, [0.01, 0.02], "impacts"])
+def test_the_event_driven_kernels_have_one_signature_for_all_scenes(keep):
+    for scene in [*varied(), *general()]:
+        if scene.n_c <= 1:
+            simulate(scene, EventDriven(1e-8, 1e-8), keep=keep)
+    for never in (driven.NEVER_CLOSED_FORM, driven.NEVER_RUNGE_KUTTA):
+        assert len(compiled(events.run, never).signatures) == 1
+
+
+WHOLE_RUN = """
+from lagrangian import scenes
+from lcpstep import Moreau, simulate
+from lcpstep.compiled import compiled
+from lcpstep.stepping import theta
+simulate(scenes.cam_follower(t_end=0.01), Moreau(1e-3))
+stats = compiled(theta.run, (theta.linearise,)).stats
+print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
+"""
+SMALL_KERNEL = """
+from lcpstep.compiled import compiled
+from lcpstep.events.oscillator import flow, oscillator
+kernel = compiled(flow)
+kernel(oscillator(1.0, 0.1, 1.0, 0.0, 1.0, 0.0, 2.0), 0.0, 1.0, 0.0, 0.5)
+print(sum(kernel.stats.cache_hits.values()), sum(kernel.stats.cache_misses.values()))
+"""
+
+
+@pytest.mark.parametrize("program", [SMALL_KERNEL, pytest.param(WHOLE_RUN, marks=pytest.mark.slow)])
+def test_the_next_process_finds_the_kernel_on_disk(tmp_path, program):
+    first, second = (python(program, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
+    assert first.split("\n")[-1] == "0 1"
+    assert second.split("\n")[-1] == "1 0"
+
+
+SCENE_FILE = """
+from lagrangian import Scene, System
+import numpy as np
+import os
+NUMBER = float(os.environ["NUMBER"])
+ARRAY = np.array([NUMBER])
+
+def helper(x):
+    return NUMBER * x
+
+def force(t, q, v, p, out):
+    out[0] = {expression}
+
+scene = Scene(system=System(1, 1.0, force), q0=1.0, v0=0.0, t_span=(0.0, 1.0))
+"""
+
+
+@pytest.mark.parametrize("expression", ["NUMBER", "helper(1.0)", "ARRAY[0]"])
+def test_a_callback_kept_on_disk_is_not_taken_for_another(tmp_path, expression):
+    (tmp_path / "scene.py").write_text(SCENE_FILE.replace("{expression}", expression))
+    run = (
+        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from scene import scene; "
+        "from lcpstep import Moreau, simulate; print(simulate(scene, Moreau(0.5)).v[-1, 0])"
+    )
+    for number in ("2.0", "3.0", "2.0"):
+        assert float(python(run, NUMBER=number).split("\n")[-1]) == float(number)

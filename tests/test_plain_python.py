@@ -1,0 +1,132 @@
+"""The same kernels in plain Python: for callbacks that cannot be compiled, and with NUMBA_DISABLE_JIT=1."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Moreau, simulate
+from lcpstep.model import UncompiledCallback
+from tests.models import ball_on_table, bowl_scene, pendulum
+from tests.processes import python
+
+SEEN = {}
+
+
+def remembering(f):
+    """The callback f, made impossible to compile."""
+
+    def plain(t, q, v, p, out):
+        SEEN[f.__name__] = t
+        f(t, q, v, p, out)
+
+    return plain
+
+
+def plain(scene):
+    """The same scene with callbacks that numba cannot compile."""
+    s, c = scene.system, scene.contacts
+    if isinstance(s, System):
+        s = System(s.n_q, s.mass, remembering(s.force), s.force_q, s.force_v)
+    elif isinstance(c, LinearContacts) and c.motion is not None:
+        c = LinearContacts(c.G, c.offset, c.restitution, remembering(c.motion))
+    elif isinstance(c, Contacts):
+        c = Contacts(c.n_c, remembering(c.gap), c.jacobian, c.gap_t, c.bias, c.restitution)
+    else:
+        s = LinearSystem(s.M, s.C, s.K, s.force, frame=remembering(s.frame))
+    return Scene(
+        system=s, contacts=c, q0=scene.q0, v0=scene.v0, t_span=scene.t_span, p=scene.p, corners=scene.corners,
+        period=scene.period, name=scene.name,
+    )  # fmt: skip
+
+
+SCENES = [
+    pytest.param(scenes.cam_follower(t_end=0.1), id="cam-follower"),
+    pytest.param(ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 0.2), id="table"),
+    pytest.param(pendulum(1.0, 0.5, 3.0), id="pendulum"),
+    pytest.param(bowl_scene([0.5, -0.2], [0.0, 0.0], 2.0), id="bowl"),
+]
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("method", [Moreau(1e-3), EventDriven(1e-9, 1e-9)], ids=["moreau", "event-driven"])
+def test_plain_python_gives_the_same_motion_with_a_notice(scene, method):
+    expected = simulate(scene, method)
+    with pytest.warns(
+        UncompiledCallback, match=f"{scene.name!r} cannot be compiled and runs in plain Python"
+    ):
+        m = simulate(plain(scene), method)
+    # one source, but compilers contract and reorder: rounding, a few times magnified
+    assert len(m.t) == len(expected.t)
+    np.testing.assert_allclose(m.t, expected.t, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(m.q, expected.q, rtol=0, atol=1e-11)
+    np.testing.assert_array_equal(m.impacts.kind, expected.impacts.kind)
+    middle = 0.5 * (m.t[0] + m.t[-1])
+    np.testing.assert_allclose(m.at(middle), expected.at(middle), rtol=0, atol=1e-10)
+
+
+def test_the_notice_names_the_callback():
+    with pytest.warns(UncompiledCallback, match=r"^motion of scene 'table'"):
+        simulate(plain(ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 0.01)), Moreau(1e-3))
+
+
+def test_callbacks_that_read_variables_around_them_are_compiled():
+    stiffness = 7.0
+
+    def spring(t, q, v, p, out):
+        out[0] = -stiffness * q[0]
+
+    scene = Scene(system=System(1, 1.0, spring), q0=1.0, v0=0.0, t_span=(0.0, 1.0))
+    m = simulate(scene, Moreau(1e-3))  # a warning would be an error here
+    assert m.q[-1, 0] == pytest.approx(math.cos(math.sqrt(7.0)), abs=1e-6)
+
+
+def test_every_callback_of_a_closure_has_its_own_numbers():
+    def scene(k):
+        def spring(t, q, v, p, out):
+            out[0] = -k * q[0]
+
+        return Scene(system=System(1, 1.0, spring), q0=1.0, v0=0.0, t_span=(0.0, 1.0))
+
+    for k in (1.0, 4.0, 9.0):
+        assert simulate(scene(k), Moreau(1e-3)).q[-1, 0] == pytest.approx(math.cos(math.sqrt(k)), abs=1e-5)
+
+
+GRAVITY = 8.0
+
+
+def fall(t, q, v, p, out):
+    out[0] = -GRAVITY
+
+
+def test_a_changed_global_is_seen_by_the_next_run(monkeypatch):
+    scene = Scene(system=System(1, 1.0, fall), q0=0.0, v0=0.0, t_span=(0.0, 1.0))
+    assert simulate(scene, Moreau(0.5)).v[-1, 0] == -8.0
+    monkeypatch.setitem(globals(), "GRAVITY", 2.0)
+    assert simulate(scene, Moreau(0.5)).v[-1, 0] == -2.0
+
+
+RUN = """
+import numpy as np
+from lagrangian import scenes
+from lcpstep import EventDriven, Moreau, simulate
+import sys
+made = scenes.cam_follower(t_end=0.1), scenes.bouncing_ball(t_end=1.0)
+for scene in made:
+    for method in Moreau(1e-3), EventDriven():
+        m = simulate(scene, method)
+        print(*(x.hex() for x in m.at(0.09)[0]), len(m.t), len(m.impacts))
+print("numba" in sys.modules)
+"""
+
+
+def test_the_environment_can_ask_for_plain_python():
+    plain, fast = (python(RUN, NUMBA_DISABLE_JIT=x) for x in "10")
+    *plain, without = plain.split("\n")
+    *fast, with_numba = fast.split("\n")
+    assert (without, with_numba) == ("False", "True")
+    for a, b in zip(plain, fast, strict=True):
+        (q, *counts), (q_fast, *counts_fast) = a.split(), b.split()
+        assert counts == counts_fast
+        assert float.fromhex(q) == pytest.approx(float.fromhex(q_fast), abs=1e-13)
