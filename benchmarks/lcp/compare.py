@@ -23,6 +23,7 @@ from benchmarks.lcp.solvers import SOLVERS, Answer, siconos, timed
 from lcpstep.lcp import residual, solve_lcp, solve_lcp_batch
 
 SIZES = (1, 2, 3, 5, 10, 20, 50, 100, 200, 500)
+REPEATS = 2  # problems of each family and size
 ACCURATE, CRUDE = 1e-8, 1e-3  # residuals: solved up to the first, wrong beyond the second
 REFERENCE = "quantecon lcp_lemke"
 PACKAGES = (
@@ -183,7 +184,7 @@ def main() -> None:
     arguments = parser.parse_args()
     sizes = tuple(n for n in SIZES if n <= (50 if arguments.quick else SIZES[-1]))
     start = time.time()
-    set_of = list(problems(sizes, 3))
+    set_of = list(problems(sizes, REPEATS))
     outcome = collect(set_of)
     versions = ", ".join(f"{name} {importlib.metadata.version(name)}" for name in PACKAGES)
     report = f"""# Complementarity solvers, measured

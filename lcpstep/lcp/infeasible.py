@@ -11,6 +11,7 @@ which is positive semidefinite, so Lemke's method solves it or leaves along a ra
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,12 +19,22 @@ import numpy as np
 from lcpstep.compiled import compiled
 from lcpstep.lcp.judge import proves_infeasible
 from lcpstep.lcp.lemke import lemke
+from lcpstep.lcp.problem import Solution, is_sparse
 from lcpstep.lcp.scaling import equilibrate
-from lcpstep.lcp.status import RAY
+from lcpstep.lcp.status import RAY, Status
 from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, workspace
 
 PIVOTS = 50  # per unknown
+LARGEST = 200  # unknowns up to which the proof is looked for where the method itself gives no ray
 SMALLEST_PIVOT = 1e-11
+
+
+def explained(W: Any, b: Any, solution: Solution) -> Solution:
+    """The solution as it is, or as infeasible where a method that cannot tell has failed for that reason."""
+    if solution.solved or len(b) > LARGEST:
+        return solution
+    y = farkas(W.toarray() if is_sparse(W) else W, b)
+    return solution if y is None else replace(solution, status=Status.INFEASIBLE, certificate=y)
 
 
 def farkas(W: Any, b: Any) -> Any:

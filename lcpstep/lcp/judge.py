@@ -19,6 +19,9 @@ import numpy as np
 from lcpstep.compiled import compiled
 
 EPSILON = 2.220446049250313e-16
+ROUNDING = 1e-14  # relative error that may be rounding
+LITTLE = 1e-2  # part of the size of its row that b keeps as a rule
+LOST = 1e-12  # part of the size of its row below which b is lost in rounding
 
 
 def judge(W: Any, b: Any, z: Any, w: Any, s: Any) -> float:
@@ -36,7 +39,7 @@ def judge(W: Any, b: Any, z: Any, w: Any, s: Any) -> float:
             worst = max(worst, violation(z[i], relative, share(W, z, s, i)))
         else:
             worst = max(worst, -relative)
-    return worst
+    return weighed(worst, b, s)
 
 
 def row_sums(row: Any, z: Any, n: int) -> tuple[float, float]:
@@ -57,6 +60,21 @@ def row_sums(row: Any, z: Any, n: int) -> tuple[float, float]:
 def violation(z: float, relative: float, part: float) -> float:
     """|min(z, w)| in relative terms: part is the share of |z|, relative is w / s."""
     return max(part, -relative) if z < 0.0 else max(min(part, relative), -relative)
+
+
+def weighed(worst: float, b: Any, s: Any) -> float:
+    """The residual, relative to what is left of b in the rows that z enters, if that is little.
+
+    An infeasible problem with singular W has "solutions" of any size, in which W z + b is as negative as b
+    but small next to its terms. Only an error that is rounding may hide behind large terms.
+    """
+    left, some = 0.0, False
+    for i in range(b.shape[0]):
+        if b[i] != 0.0 and s[i] > abs(b[i]):
+            left, some = max(left, abs(b[i]) / s[i]), True
+    if not some or left >= LITTLE or (worst <= ROUNDING and left >= LOST):
+        return worst
+    return min(1.0, worst / left) if left >= LOST else 1.0
 
 
 def share(W: Any, z: Any, s: Any, i: int) -> float:
@@ -117,7 +135,7 @@ def _sparse(W: Any, b: Any, z: Any) -> float:
     relative = np.divide(w, s, out=np.zeros_like(s), where=s > 0.0)
     doubtful = (z < 0.0) | ((z > 0.0) & (relative > EPSILON))
     parts = shares(W, z, s) if doubtful.any() else np.ones_like(z)
-    return float(compiled(_worst)(z, relative, parts))
+    return float(compiled(_worst)(z, relative, parts, b, s))
 
 
 def shares(W: Any, z: Any, s: Any) -> Any:
@@ -134,8 +152,8 @@ def shares(W: Any, z: Any, s: Any) -> Any:
     return np.where(largest > 0.0, largest * np.abs(z), 1.0)
 
 
-def _worst(z: Any, relative: Any, parts: Any) -> float:
+def _worst(z: Any, relative: Any, parts: Any, b: Any, s: Any) -> float:
     worst = 0.0
     for i in range(z.shape[0]):
         worst = max(worst, violation(z[i], relative[i], parts[i] if z[i] != 0.0 else 0.0))
-    return worst
+    return weighed(worst, b, s)

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.lcp.factor import Factoriser, Singular, factoriser
+from lcpstep.lcp.infeasible import explained
 from lcpstep.lcp.interior import interior_point
 from lcpstep.lcp.judge import residual, shares
 from lcpstep.lcp.problem import Solution, check_finite
@@ -32,6 +33,11 @@ NOISE = 1e-13  # share of z below which it may be rounding
 def newton(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Solve by exchanges of the active set, then by an interior point; dense or sparse W."""
     check_finite(W, b)
+    with np.errstate(all="ignore"):  # a diverging attempt may overflow; the judge sees to it
+        return explained(W, b, _newton(W, b, z, tol, max_iterations))
+
+
+def _newton(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     limit = EXCHANGES if max_iterations is None else max_iterations
     factors = factoriser(W)
     z, used = exchange(W, b, z, z > 0.0 if z.any() else b < 0.0, limit, factors)

@@ -18,6 +18,7 @@ import numpy as np
 from lcpstep.errors import MissingSolver, UnknownName
 from lcpstep.lcp.definite import require_semidefinite, scaled, unit_diagonal
 from lcpstep.lcp.factor import factoriser
+from lcpstep.lcp.infeasible import explained
 from lcpstep.lcp.newton import best_of, polish
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import FAILED, SOLVED, Status
@@ -69,10 +70,11 @@ def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int
     d = unit_diagonal(W)
     found = call_solver(name, scaled(W, d), d * b, z / d, max_iterations)
     raw = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
-    polished, used = polish(W, b, raw, EXCHANGES, factoriser(W))
-    best, error = best_of(W, b, polished)
+    with np.errstate(all="ignore"):  # a diverging attempt may overflow; the judge sees to it
+        polished, used = polish(W, b, raw, EXCHANGES, factoriser(W))
+        best, error = best_of(W, b, polished)
     status = SOLVED if error <= tol else FAILED
-    return Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}")
+    return explained(W, b, Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}"))
 
 
 def call_solver(name: str, P: Any, q: Any, guess: Any, max_iterations: int | None) -> Any:

@@ -31,6 +31,15 @@ def test_an_unknown_that_no_row_feels_must_be_zero():
     assert residual([[0.0]], [0.0], [3.0]) == 0.0
 
 
+def test_an_answer_in_which_b_is_lost_is_refused():
+    """z = (t, t) leaves w = b = -1 for this infeasible problem, yet w is small next to its terms."""
+    A, q = np.array([[1.0, -1.0], [-1.0, 1.0]]), np.array([-1.0, -1.0])
+    for t in (1e6, 1e9, 1e11, 1e13, 1e18):
+        assert residual(A, q, [t, t]) == 1.0
+        assert residual(sp.csr_array(A), q, np.array([t, t])) == 1.0
+        assert residual(A, 0 * q, [t, t]) == 0.0
+
+
 def test_sparse_and_dense_agree():
     rng = np.random.default_rng(3)
     for _ in range(200):

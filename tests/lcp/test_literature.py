@@ -48,7 +48,7 @@ def test_others_never_lie(known, method):
 
 
 @pytest.mark.parametrize("known", INFEASIBLE, ids=lambda k: k.name)
-@pytest.mark.parametrize("method", ["lemke", "enumeration"])
+@pytest.mark.parametrize("method", ["lemke", "enumeration", "newton", "auto"])
 def test_infeasible_is_proved(known, method):
     s = solve_lcp(known.W, known.b, method)
     W, b, y = np.asarray(known.W, float), np.asarray(known.b, float), s.certificate
@@ -57,6 +57,12 @@ def test_infeasible_is_proved(known, method):
     assert y.min() >= 0
     assert np.all(W.T @ y <= 1e-14 * (np.abs(W).T @ y))
     assert b @ y < -1e-14 * (np.abs(b) @ y)
+
+
+def test_unbounded_quadratic_programme_is_infeasible():
+    s = solve_lcp([[1.0, -1], [-1, 1]], [-1.0, -1], "qp")
+    assert s.status == Status.INFEASIBLE
+    assert s.certificate == pytest.approx([1.0, 1.0])
 
 
 @pytest.mark.parametrize("known", UNSOLVABLE, ids=lambda k: k.name)
