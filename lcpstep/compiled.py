@@ -21,7 +21,7 @@ import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from types import FunctionType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -31,7 +31,8 @@ Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
 OPTIONS = {"error_model": "numpy", "_nrt": False}
-PLAIN = (int, float, str, tuple)  # constants that numba freezes into the machine code
+FINGERPRINT = 12  # digits of it in a name
+UNKNOWN = "<unknown>"  # a value of which nobody can tell whether it has changed
 
 
 def call(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
@@ -84,7 +85,8 @@ def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
     from numba import typeof
 
     types = tuple(typeof(x) for x in arguments)
-    return cast(int, _cfunc(cast(FunctionType, f), types, typeof(returned)).address)
+    function = cast(FunctionType, f)
+    return cast(int, _cfunc(function, types, typeof(returned), _dependencies(function)).address)
 
 
 def absent(*arguments: Any) -> int:
@@ -97,10 +99,9 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     import numba
 
     copy = _with_compiled_callees(f, without)
-    # The name is that of the file in the cache, where every variant has its own.
-    copy.__qualname__ = "_without_".join([f.__qualname__, *sorted(g.__name__ for g in without)])
     dispatcher = numba.njit(nogil=True, **OPTIONS)(copy)
-    _keep_on_disk(dispatcher, f)
+    if _keep_on_disk(dispatcher, f) and not dispatcher._cache._cache_file._load_index():
+        LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__name__)
     return dispatcher
 
 
@@ -118,7 +119,8 @@ def _callee(f: FunctionType, without: frozenset[FunctionType]) -> Any:
 
 
 @functools.cache
-def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any) -> Any:
+def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any, dependencies: str) -> Any:
+    """C function of f; compiled anew where what f depends on has changed since."""
     from numba.core.ccallback import CFunc
 
     c_function = CFunc(_with_compiled_callees(f, frozenset()), (arguments, returned), {}, OPTIONS)
@@ -127,36 +129,39 @@ def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any) -> Any:
     return c_function
 
 
-def _keep_on_disk(compilable: Any, f: FunctionType) -> None:
-    """Cache the machine code of f beside its source.
+def _keep_on_disk(compilable: Any, f: FunctionType) -> bool:
+    """Cache the machine code of f beside its source; False where it would not be found again.
 
-    numba judges a cached entry by the age of f's own file; its callees may live in others, so the entry is
-    stamped with a fingerprint of all of them. A function that cannot be found again by its file and module
-    (typed into a terminal, made by exec) is compiled afresh in each process.
+    That is so for functions typed into a terminal or made by exec, and for those that read objects of which
+    nobody can tell whether they have changed. They are compiled afresh in each process.
     """
     home = sys.modules.get(f.__module__)
     if not os.path.exists(f.__code__.co_filename) or vars(home or os) is not f.__globals__:
-        return
+        return False
+    if UNKNOWN in _dependencies(f):
+        return False
     compilable.enable_caching()
-    cache_file = compilable._cache._cache_file
-    cache_file._source_stamp = (cache_file._source_stamp, _digest(f))
     try:
-        known = cache_file._load_index()
+        compilable._cache._cache_file._load_index()
     except Exception:  # an entry of another version, whose types are no longer there
-        cache_file.flush()
-        known = {}
-    if f.__module__.startswith("lcpstep.") and not known:
-        LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__qualname__)
+        compilable._cache._cache_file.flush()
+    return True
 
 
 def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) -> FunctionType:
-    """A copy of f in which every plain function that it names is replaced by its compiled twin."""
+    """A copy of f in which every plain function that it names is replaced by its compiled twin.
+
+    Its name carries a fingerprint of all that its machine code depends on. For machine code from the cache is
+    linked by name, and judged by the age of f's own file alone: two variants must never share a name.
+    """
     callees = {
         name: _callee(*((absent, frozenset()) if g in without else (g, without))) for name, g in _callees(f)
     }
     copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)
     copy.__kwdefaults__ = f.__kwdefaults__
-    copy.__module__, copy.__qualname__ = f.__module__, f.__qualname__
+    left_out = sorted(g.__qualname__ for g in without)
+    fingerprint = hashlib.sha256(f"{_dependencies(f)} {left_out}".encode()).hexdigest()[:FINGERPRINT]
+    copy.__module__, copy.__qualname__ = f.__module__, f"{f.__qualname__}_{fingerprint}"
     return copy
 
 
@@ -173,9 +178,8 @@ def _global_names(f: FunctionType) -> list[str]:
     return sorted({i.argval for i in dis.get_instructions(f) if i.opname == "LOAD_GLOBAL"})
 
 
-@functools.cache
-def _digest(f: FunctionType) -> str:
-    """Fingerprint of the code that f's machine code depends on."""
+def _dependencies(f: FunctionType) -> str:
+    """All that the machine code of f depends on, as a text: the code of f and its callees, and what they read."""
     seen: dict[FunctionType, None] = {}
     todo = [f]
     while todo:
@@ -183,14 +187,31 @@ def _digest(f: FunctionType) -> str:
         if g not in seen:
             seen[g] = None
             todo += [callee for _, callee in _callees(g)]
-    return hashlib.sha256("\n".join(sorted(map(_code_text, seen))).encode()).hexdigest()
+    return "\n".join(sorted(map(_code_text, seen)))
 
 
 def _code_text(f: FunctionType) -> str:
     code = f.__code__
     literals = [c for c in code.co_consts if not hasattr(c, "co_code")]
-    named = [(n, f.__globals__[n]) for n in _global_names(f) if isinstance(f.__globals__.get(n), PLAIN)]
-    return f"{f.__module__}.{f.__qualname__} {code.co_code.hex()} {code.co_names} {literals} {named}"
+    names = [(name, f.__globals__[name]) for name in _global_names(f) if name in f.__globals__]
+    cells = zip(code.co_freevars, (cell.cell_contents for cell in f.__closure__ or ()), strict=True)
+    read = [f"{name}={_value_text(value)}" for name, value in [*names, *cells]]
+    return f"{f.__module__}.{f.__qualname__} {code.co_code.hex()} {code.co_names} {literals} {read}"
+
+
+def _value_text(value: Any) -> str:
+    """What numba freezes into machine code, as a text that is the same exactly if the value is."""
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, tuple):
+        return str([_value_text(item) for item in value])
+    if isinstance(value, (bool, int, float, complex, str, np.generic, type(None))):
+        return repr(value)
+    if isinstance(value, (ModuleType, type, FunctionType, BuiltinFunctionType, np.ufunc)):
+        return value.__name__
+    if isinstance(getattr(value, "py_func", None), FunctionType):
+        return _dependencies(value.py_func)
+    return f"{UNKNOWN} {id(value)}"
 
 
 @functools.cache

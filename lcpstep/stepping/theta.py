@@ -20,7 +20,8 @@ from lcpstep.compiled import call_solver, inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, product, total_force
 from lcpstep.lcp.small import solve_one
-from lcpstep.lcp.status import TOLERANCE
+from lcpstep.lcp.status import FAILED, SOLVED, TOLERANCE
+from lcpstep.lcp.workspace import SIZE, SLACK
 from lcpstep.recording import write_event, write_row
 from lcpstep.stepping.newton import linearise
 
@@ -77,7 +78,8 @@ class State(NamedTuple):
 
 def solve_single(W: Any, b: Any, z: Any, work: Any) -> int:
     """The complementarity problem of a scene with one contact: a division."""
-    return solve_one(W, b, z, TOLERANCE, work)
+    residual = solve_one(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
+    return SOLVED if residual <= TOLERANCE else FAILED
 
 
 def begin(m: Any, state: Any, record: Any, count: Any, t: float) -> None:
