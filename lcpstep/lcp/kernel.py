@@ -4,8 +4,8 @@
 
 z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
 beyond, principal pivoting starts from the positive z of the guess, or where b is negative if n is small;
-where a few exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and b. Every
-answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
+where a few exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and
+b. Every answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
 """
 
 from __future__ import annotations
@@ -75,10 +75,8 @@ def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work:
         return INFEASIBLE if b[0] < 0.0 and W[0, 0] <= 0.0 else FAILED
     work.report[BEST_RESIDUAL] = tolerance
     strict = min(tolerance, STRICT)
-    guessed = choose_positive(z, work)
-    if not guessed:
-        choose_negative(b, work)
-    if (guessed or n <= FEW) and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
+    promising = choose_positive(z, work) or not choose_negative(b, work) or n <= FEW
+    if promising and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
         return SOLVED
     return pivot_on(W, b, z, tolerance, max_pivots, work)
 
@@ -156,7 +154,10 @@ def choose_positive(z: Any, work: Any) -> bool:
     return some
 
 
-def choose_negative(b: Any, work: Any) -> None:
-    """Mark the indices with b < 0, where w would be negative without z."""
+def choose_negative(b: Any, work: Any) -> bool:
+    """Mark the indices with b < 0, where w would be negative without z; False if there is none."""
+    some = False
     for i in range(b.shape[0]):
         work.indices[CHOSEN, i] = 1 if b[i] < 0.0 else 0
+        some = some or b[i] < 0.0
+    return some
