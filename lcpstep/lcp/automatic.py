@@ -15,7 +15,7 @@ from lcpstep.lcp.dense import pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.problem import Solution, is_sparse
 
-SMALL = 150  # unknowns up to which compiled pivoting is the fastest on a dense W
+SMALL = 400  # unknowns up to which compiled pivoting is the fastest on the whole
 SPARSE = 0.1  # part of nonzero entries below which a large dense W is treated as sparse
 LARGEST_DENSE = 3000  # unknowns up to which pivoting on a dense copy is worth its time
 

@@ -165,7 +165,7 @@ def test_gauss_seidel_is_approximate_and_says_so():
 def test_automatic_choice_falls_back_to_pivoting():
     """A bimatrix game has no monotone matrix, so Newton's method may not end; pivoting does."""
     rng = np.random.default_rng(8)
-    k = 40
+    k = 210
     W = np.zeros((2 * k, 2 * k))
     W[:k, k:], W[k:, :k] = rng.uniform(1, 2, (k, k)), rng.uniform(1, 2, (k, k))
     s = solve_lcp(W, -np.ones(2 * k), "auto")
