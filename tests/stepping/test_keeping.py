@@ -170,7 +170,7 @@ def test_times_outside_the_run_are_refused(full, t):
 def test_states_that_were_not_kept_are_not_made_up():
     part = simulate(SCENE, Moreau(H), keep=100)
     np.testing.assert_array_equal(part.at(part.t)[0], part.q)
-    with pytest.raises(ValueError, match="^t: .*not known"):
+    with pytest.raises(ValueError, match=r"^t: .*not known"):
         part.at(0.05)
 
 

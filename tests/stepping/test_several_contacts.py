@@ -1,4 +1,4 @@
-"""Scenes with several contacts: laws of simultaneous impact, piles, and the solvers of their complementarity problems."""
+"""Several contacts: laws of simultaneous impact, piles, and the solvers of their complementarity problems."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What every single step obeys: balance of momentum, complementarity, the active set, and the velocity's share in q."""
+"""What every single step obeys: balance of momentum, complementarity on its active set, and how positions move."""
 
 import numpy as np
 import pytest

@@ -1,0 +1,307 @@
+"""What goes wrong during a run: named, with time and state, and without losing what was computed before."""
+
+import math
+
+import numpy as np
+import pytest
+import qpsolvers
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import (
+    EventDriven,
+    LcpStepError,
+    MissingSolver,
+    Moreau,
+    SimulationError,
+    SimulationInterrupted,
+    UnknownName,
+    simulate,
+)
+from lcpstep.trajectory import Status
+
+T_BAD = 0.3  # from here on callbacks go wrong
+
+
+def bad_force(t, q, v, p, out):
+    out[0] = -8.0 if t < 0.3 else math.nan
+
+
+def infinite_force(t, q, v, p, out):
+    out[0] = -8.0 if t < 0.3 else math.inf
+
+
+def bad_mass(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.3 else math.nan
+
+
+def singular_mass(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.3 else 0.0
+
+
+def negative_mass(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.3 else -1.0
+
+
+def weight(t, q, v, p, out):
+    out[0] = -8.0
+
+
+def bad_frame(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 0.0, 0.0, 0.0 if t < 0.3 else math.nan
+
+
+def bad_motion(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 0.0 if t < 0.3 else math.nan, 0.0, 0.0
+
+
+def bad_motion_speed(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 0.0, 0.0 if t < 0.3 else math.nan, 0.0
+
+
+def gap(t, q, v, p, out):
+    out[0] = q[0]
+
+
+def bad_gap(t, q, v, p, out):
+    out[0] = q[0] if t < 0.3 else math.nan
+
+
+def jacobian(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+def bad_jacobian(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.3 else math.nan
+
+
+def bad_gap_t(t, q, v, p, out):
+    out[0] = 0.0 if t < 0.3 else math.nan
+
+
+def bad_force_q(t, q, v, p, out):
+    out[0, 0] = 0.0 if t < 0.3 else math.nan
+
+
+def zero(t, q, v, p, out):
+    out[0, 0] = 0.0
+
+
+FLOOR = LinearContacts(G=1.0, restitution=0.5)
+FALLING = LinearSystem(M=1.0, force=-8.0)
+CULPRITS = [
+    ("system.force", LinearSystem(M=1.0, force=bad_force), FLOOR),
+    ("system.force", LinearSystem(M=1.0, force=infinite_force), FLOOR),
+    ("system.force", LinearSystem(M=1.0, force=bad_force), None),
+    ("system.force", System(1, 1.0, bad_force), FLOOR),
+    ("system.frame", LinearSystem(M=1.0, force=-8.0, frame=bad_frame), FLOOR),
+    ("system.mass", System(1, bad_mass, weight), FLOOR),
+    ("system.mass", System(1, singular_mass, weight), FLOOR),
+    ("system.mass", System(1, negative_mass, weight), FLOOR),
+    ("contacts.motion", FALLING, LinearContacts(G=1.0, restitution=0.5, motion=bad_motion)),
+    ("contacts.motion", FALLING, LinearContacts(G=1.0, restitution=0.5, motion=bad_motion_speed)),
+    ("contacts.gap", FALLING, Contacts(1, bad_gap, jacobian)),
+    ("contacts.jacobian", FALLING, Contacts(1, gap, bad_jacobian)),
+    ("contacts.gap_t", FALLING, Contacts(1, gap, jacobian, gap_t=bad_gap_t)),
+]
+IDS = [
+    "force", "infinite force", "force without contact", "force of a general system", "frame", "mass",
+    "singular mass", "negative mass", "motion", "speed of the motion", "gap", "jacobian", "gap_t",
+]  # fmt: skip
+METHODS = [
+    pytest.param(Moreau(1e-2), id="moreau"),
+    pytest.param(Moreau(1e-2, theta=0.0), id="moreau, explicit"),
+    pytest.param(EventDriven(), id="event-driven"),
+]
+
+
+def run(system, contacts, method, q0=1.0):
+    return simulate(Scene(system, q0, 0.0, (0.0, 1.0), contacts), method)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("name", "system", "contacts"), CULPRITS, ids=IDS)
+def test_a_callback_that_goes_wrong_is_named_with_time_and_state(name, system, contacts, method):
+    with pytest.raises(SimulationError, match=rf"{name}: .*t = 0\.\d+.*q = \[.*v = \[") as caught:
+        run(system, contacts, method)
+    m = caught.value.trajectory
+    assert m.status is Status.NOT_FINITE
+    assert str(caught.value) == m.message
+    # up to a step before it: of Moreau 0.01 s, of the event-driven run a fiftieth of the span
+    assert 0.25 <= m.t[-1] <= T_BAD + 1e-2
+    assert np.all(np.isfinite(m.q))
+    assert np.all(np.isfinite(m.v))
+    # free fall, which the method knows exactly for theta = 1/2, to order h for theta = 0
+    np.testing.assert_allclose(m.q[:, 0], 1.0 - 4.0 * m.t**2, rtol=0, atol=4 * 1e-2 * 0.3 + 1e-12)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_state_in_the_message_is_that_of_the_time_in_the_message(method):
+    with pytest.raises(SimulationError) as caught:
+        run(FALLING, LinearContacts(G=1.0, motion=bad_motion), method)
+    m = caught.value.trajectory
+    assert f"at t = {m.t[-1]:.9g} s, q = {m.q[-1].tolist()}, v = {m.v[-1].tolist()}" in m.message
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_jacobian_that_only_steers_is_named_too(method):
+    if isinstance(method, EventDriven) or method.theta == 0.0:
+        return  # it is not asked for
+    with pytest.raises(SimulationError, match=r"system\.force_q: "):
+        run(System(1, 1.0, weight, bad_force_q, zero), FLOOR, method)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_callback_that_raises_in_plain_python_does_not_lose_the_motion(method):
+    seen = []
+
+    def breaks(t, q, v, p, out):
+        seen.append(t)  # cannot be compiled
+        if t > 0.3:
+            raise RuntimeError("the spring broke")
+        out[0] = -8.0
+
+    with (
+        pytest.warns(UserWarning, match="plain Python"),
+        pytest.raises(SimulationError, match="spring broke") as caught,
+    ):
+        run(LinearSystem(M=1.0, force=breaks), FLOOR, method)
+    assert 0.25 <= caught.value.trajectory.t[-1] <= 0.31
+
+
+def root_of_time(t, q, v, p, out):
+    out[0] = -8.0 * math.sqrt(0.3 - t)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_function_outside_of_its_domain_is_named(method):
+    with pytest.raises(SimulationError, match=r"system\.force: "):
+        run(LinearSystem(M=1.0, force=root_of_time), FLOOR, method)
+
+
+# --- interrupts
+
+
+class StopAt:
+    """Progress callback that interrupts after a number of calls."""
+
+    def __init__(self, calls):
+        self.left, self.times = calls, []
+
+    def __call__(self, t):
+        self.times.append(t)
+        self.left -= 1
+        if self.left <= 0:
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(
+    ("scene", "method"),
+    [
+        (scenes.impact_oscillator(t_end=100.0), Moreau(1e-4)),
+        (scenes.bouncing_ball(restitution=1.0, t_end=1e5), EventDriven()),
+        (scenes.impact_oscillator(t_end=1e5), EventDriven()),
+    ],
+)
+@pytest.mark.parametrize("keep", [1, 100, "impacts"])
+def test_an_interrupt_hands_over_the_motion_so_far(scene, method, keep):
+    stop = StopAt(3)
+    with pytest.raises(SimulationInterrupted) as caught:
+        simulate(scene, method, keep=keep, progress=stop)
+    assert isinstance(caught.value, KeyboardInterrupt)
+    m = caught.value.trajectory
+    assert m.status is Status.INTERRUPTED
+    assert "interrupted" in m.message
+    assert len(stop.times) == 3
+    assert m.t[-1] == pytest.approx(stop.times[-1], rel=1e-12)
+    assert 0.0 < m.t[-1] < scene.t_span[1]
+    whole = simulate(scene, method, keep=[m.t[-1] / 2, float(m.t[-1])])
+    np.testing.assert_allclose(m.q[-1], whole.q[-1], rtol=0, atol=1e-9)
+    known = m.impacts.time <= m.t[-1]
+    np.testing.assert_array_equal(m.impacts[known], whole.impacts[: np.count_nonzero(known)])
+
+
+def test_progress_rises_to_the_end():
+    for method in (Moreau(1e-5), EventDriven()):
+        times = []
+        simulate(scenes.impact_oscillator(t_end=5.0), method, progress=times.append)
+        assert times == sorted(times)
+        assert times[-1] == pytest.approx(5.0, rel=1e-12)
+
+
+def test_an_error_of_the_progress_callback_is_not_swallowed():
+    def broken(t):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        simulate(scenes.bouncing_ball(), Moreau(1e-2), progress=broken)
+
+
+# --- methods and solvers
+
+
+@pytest.mark.parametrize("h", [0.0, -1e-3, math.nan, math.inf, "small", None])
+def test_the_step_is_positive(h):
+    with pytest.raises(ValueError, match="^h: "):
+        Moreau(h)
+
+
+@pytest.mark.parametrize("theta", [-0.1, 1.1, math.nan, "half", None])
+def test_theta_lies_between_zero_and_one(theta):
+    with pytest.raises(ValueError, match="^theta: "):
+        Moreau(1e-3, theta)
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [("lemk", "lemke"), ("Lemke", "lemke"), ("qp:osqb", "qp:osqp"), ("qp:dqp", "qp:daqp"), ("osqp", "osqp")],
+)
+def test_an_unknown_solver_suggests_near_ones(name, near):
+    with pytest.raises(UnknownName, match=f"unknown LCP solver '{name}'; did you mean .*{near}") as caught:
+        Moreau(1e-3, lcp=name)
+    assert isinstance(caught.value, ValueError)
+    assert isinstance(caught.value, LcpStepError)
+
+
+def test_a_solver_like_no_other_is_answered_with_all_of_them():
+    with pytest.raises(UnknownName, match=r"known: .*lemke.*qp"):
+        Moreau(1e-3, lcp="zzzzzz")
+
+
+def test_a_solver_that_is_not_installed_is_answered_with_the_command_that_installs_it():
+    from importlib.metadata import metadata
+
+    from lcpstep.lcp.qp import known_solvers
+
+    missing = [n for n in known_solvers() if n not in qpsolvers.available_solvers]
+    extras = set(metadata("qpsolvers").get_all("Provides-Extra"))
+    assert missing
+    for name in missing:
+        with pytest.raises(MissingSolver, match=f"'{name}' is not installed: .*pip install") as caught:
+            Moreau(1e-3, lcp=f"qp:{name}")
+        assert isinstance(caught.value, ImportError)
+        # a command that installs it: an extra of qpsolvers where there is one
+        assert f"qpsolvers[{name}]" not in str(caught.value) or name in extras
+
+
+def test_neither_scene_nor_method_may_be_something_else():
+    with pytest.raises(TypeError, match="^scene: "):
+        simulate("cam-follower", Moreau(1e-3))
+    for method in (Moreau, EventDriven, "moreau", None):
+        with pytest.raises(TypeError, match="^method: "):
+            simulate(scenes.bouncing_ball(), method)
+
+
+# --- statuses
+
+
+def never_converges(t, q, v, p, out):
+    # steep and bent: the velocity of the next step has no solution
+    out[0] = 1e6 * q[0] ** 2 + 1e6
+
+
+def test_a_step_that_does_not_converge_is_a_status_with_the_part_before():
+    m = simulate(Scene(System(1, 1.0, never_converges), 1.0, 0.0, (0.0, 1.0)), Moreau(1e-2))
+    assert m.status is Status.NEWTON_FAILED
+    assert "smaller h" in m.message
+    assert "t = 0" in m.message
+    assert m.t[-1] < 1.0
