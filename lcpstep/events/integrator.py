@@ -53,7 +53,7 @@ from lcpstep.recording import LEAD, write_event, write_row
 from lcpstep.recording import LENGTH as STEP_LENGTH
 
 # Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL = range(5)
+FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
 # Places in the array of counters
 STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS = range(6)
 N_COUNTERS = 6
@@ -133,6 +133,9 @@ def run(
             code = runge_kutta_interval(model, flow, piece, tab, w, count, x)
         if code == FINISHED:
             code = finish_interval(model, flow, piece, tab, w, record, count, x)
+        elif code == NEVER_LEFT:
+            settle_again(model, flow, piece, w, record, count, x)
+            code = FINISHED
         if code != FINISHED:
             return code
     return FINISHED
@@ -158,6 +161,8 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
             if at_b[0] - at_b[0] != 0.0:
                 return NOT_FINITE
             tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
+            if tau == NONE and x[EDGE_G] <= 0.0 and at_b[0] < 0.0:
+                return NEVER_LEFT
         if tau == NONE:
             x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_b
     x[FROM], x[TO], x[END], x[FOUND], x[HOP] = a, b, end, tau, 1.0 if hop else 0.0
@@ -185,6 +190,8 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
                 if at_b[0] - at_b[0] != 0.0:
                     return NOT_FINITE
                 tau = first_contact(model, flow, piece, w, a, at_a, b, at_b)
+                if tau == NONE and at_a[0] <= 0.0 and at_b[0] < 0.0:
+                    return NEVER_LEFT
                 a, at_a = b, at_b
         if tau == NONE:
             x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_a
@@ -230,9 +237,21 @@ def finish_interval(
     if closed:
         release(model, flow, piece, w, record, count, x, JUST_RELEASED)
         keep_event(piece, record, count, x)
-    else:
+    elif hop or -u > velocity_noise(piece):
         impact(model, flow, piece, w, record, count, x, min(u, 0.0))
+    else:  # a touch without impact
+        rebase(model, flow, piece, w, t_stop)
+        settle(model, flow, piece, w, record, count, x, 0.0)
+        keep_event(piece, record, count, x)
     return FINISHED
+
+
+def velocity_noise(piece: Any) -> float:
+    """Rounding of the gap velocity at the state of the piece [m/s]."""
+    speed = abs(piece.x[W0])
+    for i in range(len(piece.v)):
+        speed = max(speed, abs(piece.v[i]))
+    return ON_THE_SURFACE * speed
 
 
 def pass_end(
@@ -414,6 +433,14 @@ def stick(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
         project(model, piece, x[NOW])
     rebase(model, flow, piece, w, x[NOW])
     log(record, count, t_log, STICK, 0.0, 0.0, 0.0)
+
+
+def settle_again(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any) -> None:
+    """The contact that seemed to open did so by less than rounding: it is closed."""
+    state_at(model, flow, piece, w, x[NOW] - piece.x[T0])
+    rebase(model, flow, piece, w, x[NOW])
+    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, 0.0
+    stick(model, flow, piece, w, record, count, x, x[NOW])
 
 
 def release(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, alpha: float) -> None:

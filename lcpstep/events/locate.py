@@ -83,10 +83,10 @@ def first_in_half(
     if at_a[1] * at_b[1] < 0.0:
         middle = root(model, osc, piece, w, 1, a, at_a[1], b, at_b[1])
         g, _, _ = contact_at(model, osc, piece, w, middle)
-        if at_a[0] > 0.0 and g <= 0.0:
+        if at_a[1] < 0.0 and at_a[0] > 0.0 and g <= 0.0:
             return root(model, osc, piece, w, 0, a, at_a[0], middle, g)
-        if g > 0.0 and at_b[0] <= 0.0:
-            return root(model, osc, piece, w, 0, middle, g, b, at_b[0])
+        if at_a[1] > 0.0 and at_b[0] <= 0.0:
+            return middle if g <= 0.0 else root(model, osc, piece, w, 0, middle, g, b, at_b[0])
         return NONE
     if at_a[0] > 0.0 and at_b[0] <= 0.0:
         return root(model, osc, piece, w, 0, a, at_a[0], b, at_b[0])
