@@ -26,6 +26,9 @@ def at_rest(height: float) -> Callable[[Any, Any], tuple[Any, Any, Any]]:
     return lambda t, within: (mpf(height), mpf(0), mpf(0))
 
 
+FLOOR = at_rest(0.0)
+
+
 def table(A: float, w: float) -> Callable[[Any, Any], tuple[Any, Any, Any]]:
     """The obstacle A sin(w t)."""
     A, w = mpf(A), mpf(w)
@@ -87,9 +90,9 @@ class Body:
     Omega: Any = 0
     r: Any = 0
     side: int = 1
-    s: Callable[[Any, Any], tuple[Any, Any, Any]] = at_rest(0)
+    s: Callable[[Any, Any], tuple[Any, Any, Any]] = FLOOR
     corners: tuple[list[Any], Any] = ([], mp.inf)
-    scan: Any = mpf("0.05")  # no two roots of the gap velocity lie closer [s]
+    scan: Any = 0.05  # no two roots of the gap velocity lie closer [s]
 
     def __post_init__(self) -> None:
         for name in ("m", "c", "k", "f0", "fc", "Omega", "r", "scan"):

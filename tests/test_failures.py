@@ -1,6 +1,7 @@
 """What goes wrong during a run: named, with time and state, and without losing what was computed before."""
 
 import math
+from importlib.metadata import metadata
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from lcpstep import (
     UnknownName,
     simulate,
 )
+from lcpstep.lcp.qp import known_solvers
 from lcpstep.trajectory import Status
 
 T_BAD = 0.3  # from here on callbacks go wrong
@@ -88,6 +90,7 @@ def zero(t, q, v, p, out):
 
 FLOOR = LinearContacts(G=1.0, restitution=0.5)
 FALLING = LinearSystem(M=1.0, force=-8.0)
+SPEED = LinearContacts(G=1.0, restitution=0.5, motion=bad_motion_speed)
 CULPRITS = [
     ("system.force", LinearSystem(M=1.0, force=bad_force), FLOOR),
     ("system.force", LinearSystem(M=1.0, force=infinite_force), FLOOR),
@@ -98,7 +101,7 @@ CULPRITS = [
     ("system.mass", System(1, singular_mass, weight), FLOOR),
     ("system.mass", System(1, negative_mass, weight), FLOOR),
     ("contacts.motion", FALLING, LinearContacts(G=1.0, restitution=0.5, motion=bad_motion)),
-    ("contacts.motion", FALLING, LinearContacts(G=1.0, restitution=0.5, motion=bad_motion_speed)),
+    ("contacts.motion", FALLING, SPEED),
     ("contacts.gap", FALLING, Contacts(1, bad_gap, jacobian)),
     ("contacts.jacobian", FALLING, Contacts(1, gap, bad_jacobian)),
     ("contacts.gap_t", FALLING, Contacts(1, gap, jacobian, gap_t=bad_gap_t)),
@@ -126,12 +129,14 @@ def test_a_callback_that_goes_wrong_is_named_with_time_and_state(name, system, c
     m = caught.value.trajectory
     assert m.status is Status.NOT_FINITE
     assert str(caught.value) == m.message
-    # up to a step before it: of Moreau 0.01 s, of the event-driven run a fiftieth of the span
-    assert 0.25 <= m.t[-1] <= T_BAD + 1e-2
+    # up to a step before it (of Moreau 0.01 s, of the event-driven run a fiftieth of the span); what only a closed
+    # contact asks for is noticed at the impact at 0.5 s, which Moreau predicts half a step early or late
+    latest = 0.5 if name in ("contacts.jacobian", "contacts.gap_t") or contacts is SPEED else T_BAD
+    assert 0.25 <= m.t[-1] <= latest + 2e-2
     assert np.all(np.isfinite(m.q))
     assert np.all(np.isfinite(m.v))
-    # free fall, which the method knows exactly for theta = 1/2, to order h for theta = 0
-    np.testing.assert_allclose(m.q[:, 0], 1.0 - 4.0 * m.t**2, rtol=0, atol=4 * 1e-2 * 0.3 + 1e-12)
+    # free fall, which the method knows exactly for theta = 1/2, and to order h for theta = 0
+    np.testing.assert_allclose(m.q[:, 0], 1.0 - 4.0 * m.t**2, rtol=0, atol=4 * 1e-2 * latest + 1e-12)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -241,13 +246,13 @@ def test_an_error_of_the_progress_callback_is_not_swallowed():
 
 @pytest.mark.parametrize("h", [0.0, -1e-3, math.nan, math.inf, "small", None])
 def test_the_step_is_positive(h):
-    with pytest.raises(ValueError, match="^h: "):
+    with pytest.raises(ValueError, match=r"^h: "):
         Moreau(h)
 
 
 @pytest.mark.parametrize("theta", [-0.1, 1.1, math.nan, "half", None])
 def test_theta_lies_between_zero_and_one(theta):
-    with pytest.raises(ValueError, match="^theta: "):
+    with pytest.raises(ValueError, match=r"^theta: "):
         Moreau(1e-3, theta)
 
 
@@ -268,10 +273,6 @@ def test_a_solver_like_no_other_is_answered_with_all_of_them():
 
 
 def test_a_solver_that_is_not_installed_is_answered_with_the_command_that_installs_it():
-    from importlib.metadata import metadata
-
-    from lcpstep.lcp.qp import known_solvers
-
     missing = [n for n in known_solvers() if n not in qpsolvers.available_solvers]
     extras = set(metadata("qpsolvers").get_all("Provides-Extra"))
     assert missing
@@ -284,10 +285,10 @@ def test_a_solver_that_is_not_installed_is_answered_with_the_command_that_instal
 
 
 def test_neither_scene_nor_method_may_be_something_else():
-    with pytest.raises(TypeError, match="^scene: "):
+    with pytest.raises(TypeError, match=r"^scene: "):
         simulate("cam-follower", Moreau(1e-3))
     for method in (Moreau, EventDriven, "moreau", None):
-        with pytest.raises(TypeError, match="^method: "):
+        with pytest.raises(TypeError, match=r"^method: "):
             simulate(scenes.bouncing_ball(), method)
 
 

@@ -169,7 +169,7 @@ def test_several_contacts_are_refused_with_a_way_out():
      ("atol", math.nan), ("max_events", 0), ("max_events", math.nan), ("rtol", "tight")],
 )  # fmt: skip
 def test_tolerances_out_of_range_are_refused_by_name(name, bad):
-    with pytest.raises(ValueError, match=f"^{name}: "):
+    with pytest.raises(ValueError, match=rf"^{name}: "):
         EventDriven(**{name: bad})
 
 

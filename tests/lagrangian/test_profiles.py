@@ -121,12 +121,12 @@ DWELL = Arc(end=math.pi, kappa=0.0, psi=0.0, rho=0.4)
     ids=["none", "open", "unordered", "empty", "step", "nan end", "nan radius", "no intersection"],
 )
 def test_chains_that_are_no_cam_are_refused_by_name(arcs):
-    with pytest.raises(ValueError, match="^arcs: "):
+    with pytest.raises(ValueError, match=r"^arcs: "):
         CamProfile(arcs=arcs)
 
 
 def test_the_cam_at_rest_is_refused_by_name():
-    with pytest.raises(ValueError, match="^rpm: "):
+    with pytest.raises(ValueError, match=r"^rpm: "):
         scenes.cam_follower(rpm=0.0)
-    with pytest.raises(ValueError, match="^omega: "):
+    with pytest.raises(ValueError, match=r"^omega: "):
         PROFILE.pack(math.nan, 0.0)

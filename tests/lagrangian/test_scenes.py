@@ -24,20 +24,20 @@ def scene(**changes):
 
 @given(st.sampled_from(["q0", "v0"]), NOT_FINITE)
 def test_the_initial_state_must_be_finite(name, bad):
-    with pytest.raises(ValueError, match=f"^{name}: .*finite"):
+    with pytest.raises(ValueError, match=rf"^{name}: .*finite"):
         scene(**{name: bad})
 
 
 @pytest.mark.parametrize("name", ["q0", "v0"])
 @pytest.mark.parametrize("bad", [[1.0, 2.0], [], [[1.0, 2.0]], "up", 1j, [[1.0], [2.0, 3.0]]])
 def test_the_initial_state_must_have_one_entry_per_coordinate(name, bad):
-    with pytest.raises(ValueError, match=f"^{name}: "):
+    with pytest.raises(ValueError, match=rf"^{name}: "):
         scene(**{name: bad})
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0.0, 1e6))
 def test_the_span_must_not_be_empty_or_reversed(t_start, length):
-    with pytest.raises(ValueError, match="^t_span: .*t_start < t_end"):
+    with pytest.raises(ValueError, match=r"^t_span: .*t_start < t_end"):
         scene(t_span=(t_start, t_start - length))
 
 
@@ -45,19 +45,19 @@ def test_the_span_must_not_be_empty_or_reversed(t_start, length):
     "bad", [(0.0, math.nan), (math.inf, 1.0), (0.0, math.inf), 5.0, (0.0, 1.0, 2.0), (1.0,), "ab"]
 )
 def test_the_span_must_be_two_times(bad):
-    with pytest.raises(ValueError, match="^t_span: "):
+    with pytest.raises(ValueError, match=r"^t_span: "):
         scene(t_span=bad)
 
 
 @pytest.mark.parametrize("period", [0.0, -1.0, math.nan, "daily"])
 def test_the_period_must_be_positive(period):
-    with pytest.raises(ValueError, match="^period: "):
+    with pytest.raises(ValueError, match=r"^period: "):
         scene(period=period)
 
 
 @pytest.mark.parametrize("corners", [[-0.1], [0.5, 1.0], [2.0], [math.nan], [[0.1, 0.2]], ["noon"]])
 def test_corners_must_lie_within_the_period(corners):
-    with pytest.raises(ValueError, match="^corners: "):
+    with pytest.raises(ValueError, match=r"^corners: "):
         scene(corners=corners, period=1.0)
 
 
@@ -67,7 +67,7 @@ def test_corners_are_sorted():
 
 @pytest.mark.parametrize("p", [[math.nan], [[1.0, 2.0], [3.0]], ["stiff"]])
 def test_parameters_must_be_finite_numbers(p):
-    with pytest.raises(ValueError, match="^p: "):
+    with pytest.raises(ValueError, match=r"^p: "):
         scene(p=p)
 
 
@@ -81,21 +81,21 @@ def test_parameters_are_the_values_of_the_named_ones_unless_given():
 
 @given(st.one_of(st.floats(max_value=0.0, exclude_max=True), st.floats(min_value=1.0, exclude_min=True)))
 def test_restitution_lies_between_zero_and_one(r):
-    with pytest.raises(ValueError, match="^restitution: "):
+    with pytest.raises(ValueError, match=r"^restitution: "):
         LinearContacts(G=1.0, restitution=r)
-    with pytest.raises(ValueError, match="^restitution: "):
+    with pytest.raises(ValueError, match=r"^restitution: "):
         Contacts(n_c=1, gap=height, jacobian=upward, restitution=r)
 
 
 @pytest.mark.parametrize("bad", [math.nan, [0.5, 0.5, 0.5], "hard", [[0.5, 0.5]], [0.5, 1.1]])
 def test_restitution_has_one_number_for_each_contact(bad):
-    with pytest.raises(ValueError, match="^restitution: "):
+    with pytest.raises(ValueError, match=r"^restitution: "):
         LinearContacts(G=np.eye(2), restitution=bad)
 
 
 @pytest.mark.parametrize("G", [[[math.nan]], "up", np.zeros((1, 1, 2)), [[1.0], [1.0, 2.0]], [[1j]]])
 def test_the_gap_jacobian_is_a_real_matrix(G):
-    with pytest.raises(ValueError, match="^G: "):
+    with pytest.raises(ValueError, match=r"^G: "):
         LinearContacts(G=G)
 
 
@@ -106,13 +106,13 @@ def test_the_gap_jacobian_has_a_column_for_each_coordinate():
 
 @pytest.mark.parametrize("offset", [math.nan, [1.0, 2.0], "far"])
 def test_the_offset_has_one_number_for_each_contact(offset):
-    with pytest.raises(ValueError, match="^offset: "):
+    with pytest.raises(ValueError, match=r"^offset: "):
         LinearContacts(G=1.0, offset=offset)
 
 
 @pytest.mark.parametrize("n_c", [0, -1, 1.5, None])
 def test_the_number_of_contacts_is_a_positive_integer(n_c):
-    with pytest.raises(ValueError, match="^n_c: "):
+    with pytest.raises(ValueError, match=r"^n_c: "):
         Contacts(n_c=n_c, gap=height, jacobian=upward)
 
 
@@ -238,7 +238,7 @@ PLACES = {
 @pytest.mark.parametrize("bad", BAD, ids=lambda f: f.__name__)
 @pytest.mark.parametrize("place", PLACES)
 def test_a_callback_that_does_not_fit_is_named(place, bad):
-    with pytest.raises(ValueError, match=f"^{place}: "):
+    with pytest.raises(ValueError, match=rf"^{place}: "):
         scene(**PLACES[place](bad))
 
 
@@ -284,7 +284,7 @@ def test_every_numeric_argument_of_every_scene_is_checked_by_name(name):
     for argument, parameter in inspect.signature(make).parameters.items():
         if isinstance(parameter.default, float):
             for bad in (math.nan, math.inf, "much"):
-                with pytest.raises(ValueError, match=f"^{argument}: "):
+                with pytest.raises(ValueError, match=rf"^{argument}: "):
                     make(**{argument: bad})
 
 
@@ -314,19 +314,19 @@ def test_scenes_have_the_documented_arguments_in_order(make, arguments):
 @pytest.mark.parametrize("make", scenes.CATALOGUE.values())
 @pytest.mark.parametrize("r", [-0.1, 1.1])
 def test_scenes_refuse_a_restitution_outside_zero_and_one(make, r):
-    with pytest.raises(ValueError, match="^restitution: "):
+    with pytest.raises(ValueError, match=r"^restitution: "):
         make(restitution=r)
 
 
 @pytest.mark.parametrize("make", scenes.CATALOGUE.values())
 @pytest.mark.parametrize("t_end", [0.0, -1.0])
 def test_scenes_refuse_an_end_before_their_start(make, t_end):
-    with pytest.raises(ValueError, match="^t_end: "):
+    with pytest.raises(ValueError, match=r"^t_end: "):
         make(t_end=t_end)
 
 
 def test_the_oscillator_refuses_a_start_beyond_its_stop():
-    with pytest.raises(ValueError, match="^q0: .*inside"):
+    with pytest.raises(ValueError, match=r"^q0: .*inside"):
         scenes.impact_oscillator(q0=0.1)
 
 
@@ -338,7 +338,7 @@ def test_the_follower_refuses_coordinates_that_it_does_not_have():
 @pytest.mark.parametrize("bad", [0.0, -1.0])
 @pytest.mark.parametrize("argument", ["rpm", "m"])
 def test_the_follower_refuses_a_cam_or_a_mass_that_is_not_positive(argument, bad):
-    with pytest.raises(ValueError, match=f"^{argument}: "):
+    with pytest.raises(ValueError, match=rf"^{argument}: "):
         scenes.cam_follower(**{argument: bad})
 
 

@@ -79,7 +79,7 @@ def test_massless_coordinates_are_refused(M):
 def test_matrices_must_be_finite(name, bad, place):
     matrices = {"M": np.eye(2), "C": np.eye(2), "K": np.eye(2)}
     matrices[name].flat[place] = bad
-    with pytest.raises(ValueError, match=f"^{name}: .*finite"):
+    with pytest.raises(ValueError, match=rf"^{name}: .*finite"):
         LinearSystem(**matrices)
 
 
@@ -87,12 +87,12 @@ def test_matrices_must_be_finite(name, bad, place):
 @pytest.mark.parametrize("bad", [np.ones((2, 3)), np.ones((3, 3, 1)), "stiff", [[1, 2], [3]], np.eye(2) * 1j])
 def test_matrices_must_be_square_and_real(name, bad):
     matrices = {"M": np.eye(3), name: bad}
-    with pytest.raises(ValueError, match=f"^{name}: "):
+    with pytest.raises(ValueError, match=rf"^{name}: "):
         LinearSystem(**matrices)
 
 
 def test_a_system_without_coordinates_is_refused():
-    with pytest.raises(ValueError, match="^M: "):
+    with pytest.raises(ValueError, match=r"^M: "):
         LinearSystem(M=np.zeros((0, 0)))
 
 
@@ -109,7 +109,7 @@ def test_a_system_without_coordinates_is_refused():
     ],
 )
 def test_forces_are_checked_part_by_part(force, named):
-    with pytest.raises(ValueError, match=f"^{named}"):
+    with pytest.raises(ValueError, match=rf"^{named}"):
         LinearSystem(M=np.eye(2), force=force)
 
 
@@ -122,7 +122,7 @@ def test_a_number_stands_for_all_coordinates():
 
 @pytest.mark.parametrize("n_q", [0, -1, 1.5, "one", None])
 def test_the_number_of_coordinates_is_a_positive_integer(n_q):
-    with pytest.raises(ValueError, match="^n_q: "):
+    with pytest.raises(ValueError, match=r"^n_q: "):
         System(n_q=n_q, mass=1.0, force=fall)
 
 
@@ -132,7 +132,7 @@ def test_the_number_of_coordinates_may_come_from_numpy():
 
 
 def test_a_general_system_needs_a_function_for_its_force():
-    with pytest.raises(ValueError, match="^force: "):
+    with pytest.raises(ValueError, match=r"^force: "):
         System(n_q=1, mass=1.0, force=-9.81)
-    with pytest.raises(ValueError, match="^mass: "):
+    with pytest.raises(ValueError, match=r"^mass: "):
         System(n_q=2, mass=np.eye(3), force=fall)

@@ -93,7 +93,7 @@ def test_given_times_may_leave_out_start_and_end(full):
      [0.0, math.nan, 1.0], [math.nan], ["noon"], [1j]],
 )  # fmt: skip
 def test_what_cannot_be_kept_is_refused(keep):
-    with pytest.raises(ValueError, match="^keep: "):
+    with pytest.raises(ValueError, match=r"^keep: "):
         simulate(SCENE, Moreau(H), keep=keep)
 
 
@@ -163,7 +163,7 @@ def test_a_single_time_gives_a_single_state(full):
 
 @pytest.mark.parametrize("t", [-1e-9, 4.0 + 1e-9, math.nan, math.inf, [1.0, 5.0]])
 def test_times_outside_the_run_are_refused(full, t):
-    with pytest.raises(ValueError, match="^t: .*within"):
+    with pytest.raises(ValueError, match=r"^t: .*within"):
         full.at(t)
 
 
