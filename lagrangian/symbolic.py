@@ -10,7 +10,7 @@ written as M v' + N = F + G^T lambda, that is M v' = f + G^T lambda with f = F -
     G = g_q,      g_t = partial g / partial t,      bias = v^T g_qq v + 2 g_qt v + g_tt
 
 Source: E. T. Whittaker, A Treatise on the Analytical Dynamics of Particles and Rigid Bodies (4th ed., Cambridge
-1937), sections 26, 41 (Jacobi's integral) and 93 (dissipation function).
+1937), chapters II, III (integral of energy) and VIII (dissipation function).
 
 Needs sympy: pip install "lcpstep[symbolic]".
 """
@@ -45,6 +45,7 @@ except ImportError as error:
     raise ImportError('lagrangian.symbolic needs sympy: pip install "lcpstep[symbolic]"') from error
 
 SAMPLES = 8  # random states at which the mass matrix is looked at
+SINGULAR = 1e-13  # lowest eigenvalue of a mass matrix scaled to ones on its diagonal
 
 
 @dataclass(frozen=True, eq=False)
@@ -326,7 +327,7 @@ def _expression(name: str, value: Any) -> Expr:
         result = sympy.sympify(value, strict=True)
     except (sympy.SympifyError, TypeError):
         result = None
-    if not isinstance(result, Expr):
+    if not isinstance(result, Expr) or result.is_Matrix:
         raise ValueError(f"{name}: expected a sympy expression, got {value!r}")
     return result
 
@@ -430,16 +431,24 @@ def _check_mass(M: ImmutableMatrix, mass: Callback, x: _Variables, values: Mappi
     for _ in range(SAMPLES):
         t, q, v = random.uniform(0, 1), *random.uniform(-1, 1, (2, len(x.q)))
         try:
-            found = checks.evaluate("mass", mass, (t, q, v, np.array(list(values.values()))), M.shape)
-            lowest, highest = np.linalg.eigvalsh(found)[[0, -1]]
+            with np.errstate(all="ignore"):
+                found = checks.evaluate("mass", mass, (t, q, v, np.array(list(values.values()))), M.shape)
         except (ValueError, ArithmeticError):
             continue  # an expression that does not exist there
-        if lowest > 1e-13 * highest:
+        if _definite(found):
             return
-        reason = f"lowest eigenvalue {lowest:.3g}, highest {highest:.3g} at q = {q.tolist()}"
+        reason = f"at q = {q.tolist()} it is {found.tolist()}"
     if reason:
         written = M.applyfunc(x.written).tolist()
-        raise ValueError(f"lagrangian: singular or indefinite mass matrix {written}: {reason}")
+        raise ValueError(f"lagrangian: singular or indefinite mass matrix {written}; {reason}")
+
+
+def _definite(M: Array) -> bool:
+    """Whether a mass matrix is positive definite, whatever the units of its coordinates."""
+    inertia = np.diag(M)
+    return bool(
+        np.all(inertia > 0.0) and np.linalg.eigvalsh(M / np.sqrt(np.outer(inertia, inertia)))[0] > SINGULAR
+    )
 
 
 # --- from expressions to callbacks
@@ -484,11 +493,13 @@ def _source(found: Equations) -> str:
 
 def _function(name: str, expressions: list[Expr], places: list[str]) -> str:
     """Source of one callback; what its expressions share is computed once."""
+    origin = "gaps" if name in ("gap", "jacobian", "gap_t", "bias") else "lagrangian, dissipation, forces"
+    label = f"{origin}: {name}"
     shared: list[tuple[Symbol, Expr]] = []
     if not any(e.has(sympy.Piecewise) for e in expressions):  # whose cases must not be computed outside them
         shared, expressions = sympy.cse(expressions, sympy.numbered_symbols("a", real=True))
-    lines = [f"{x} = {_printed(name, e)}" for x, e in shared]
-    lines += [f"{place} = {_printed(name, e)}" for place, e in zip(places, expressions, strict=True)]
+    lines = [f"{x} = {_printed(label, e)}" for x, e in shared]
+    lines += [f"{place} = {_printed(label, e)}" for place, e in zip(places, expressions, strict=True)]
     body = "".join(f"    {line}\n" for line in lines)
     return f"def {name}(t, q, v, p, out):\n{body}"
 
@@ -498,7 +509,7 @@ def _printed(name: str, expression: Expr) -> str:
     printer = PythonCodePrinter({"fully_qualified_modules": True})
     try:
         text = str(printer.doprint(expression))
-    except NotImplementedError:
+    except (NotImplementedError, ValueError):  # no such function; the derivative of one that has none
         text = "None"
     # "None" stands where a Piecewise has no last case, "Not supported" for unknown functions
     if "None" in text or "Not supported" in text or printer.module_imports.keys() - {"math"}:
