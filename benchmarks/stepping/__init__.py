@@ -1,0 +1,1 @@
+"""Speed against error of both integrators: `python -m benchmarks.stepping`."""
