@@ -15,7 +15,8 @@ from lcpstep.lcp.dense import pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.problem import Solution, is_sparse
 
-SMALL = 400  # unknowns up to which compiled pivoting is the fastest on the whole
+SMALL = 400  # unknowns up to which compiled pivoting is as fast as sparse factors
+SMALL_DENSE = 1500  # the same for a matrix without structure
 SPARSE = 0.1  # part of nonzero entries below which a large dense W is treated as sparse
 LARGEST_DENSE = 3000  # unknowns up to which pivoting on a dense copy is worth its time
 
@@ -23,9 +24,10 @@ LARGEST_DENSE = 3000  # unknowns up to which pivoting on a dense copy is worth i
 def automatic(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Solve with the method that suits W, and with pivoting where that fails."""
     n = len(b)
-    if n <= SMALL:
+    full = not is_sparse(W) and np.count_nonzero(W) > SPARSE * n * n
+    if n <= (SMALL_DENSE if full else SMALL):
         return pivoting(dense(W), b, z, tol, max_iterations)
-    suited = W if is_sparse(W) or np.count_nonzero(W) > SPARSE * n * n else _csr(W)
+    suited = W if full or is_sparse(W) else _csr(W)
     solution = newton(suited, b, z, tol, max_iterations)
     if solution.solved or n > LARGEST_DENSE:
         return solution

@@ -163,12 +163,13 @@ def test_gauss_seidel_is_approximate_and_says_so():
 
 
 def test_automatic_choice_falls_back_to_pivoting():
-    """A bimatrix game has no monotone matrix, so Newton's method may not end; pivoting does."""
-    rng = np.random.default_rng(8)
-    k = 210
-    W = np.zeros((2 * k, 2 * k))
-    W[:k, k:], W[k:, :k] = rng.uniform(1, 2, (k, k)), rng.uniform(1, 2, (k, k))
-    s = solve_lcp(W, -np.ones(2 * k), "auto")
+    """A bimatrix game is not monotone, so Newton's method does not end; its neighbours make it large."""
+    rng, k, n = np.random.default_rng(8), 30, 500
+    game = np.zeros((2 * k, 2 * k))
+    game[:k, k:], game[k:, :k] = rng.uniform(1, 2, (k, k)), rng.uniform(1, 2, (k, k))
+    W, b = sp.block_diag([game, sp.eye_array(n - 2 * k)], format="csr"), -np.ones(n)
+    assert not solve_lcp(W, b, "newton").solved
+    s = solve_lcp(W, b, "auto")
     assert s.solved
     assert s.residual <= 1e-13
 
