@@ -31,11 +31,14 @@ from lcpstep.events.flow import (
     MODE,
     NUDGE,
     ON_SURFACE,
+    REST,
     SCALE,
     SPEED0,
     T0,
+    T0_REST,
     W0,
     Y0,
+    after,
     contact_at,
     contact_response,
     free_acceleration,
@@ -176,7 +179,7 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
     h = take_step(model, flow, piece, tab, w, count, x, min(longest, flow.scan, 4.0 * guess))
     if h < 0.0:
         return int(-h)
-    end = x[NOW] + h if h < longest else min(flow.t_end, piece.x[HIGH])
+    end = after(piece, h) if h < longest else min(flow.t_end, piece.x[HIGH])
     tau, hop = NONE, False
     if flow.contact and piece.x[MODE] == FREE:
         if guess < h:
@@ -218,7 +221,7 @@ def finish_interval(
     if closed:
         tau = first_release(model, flow, piece, w, a, min(x[EDGE_ALPHA], 0.0), b)
     stop = b if tau == NONE else tau
-    t_stop = end if tau == NONE else min(piece.x[T0] + tau, end)
+    t_stop = end if tau == NONE else min(after(piece, tau), end)
     if tau != NONE and not flow.closed_form and (closed or hop):
         shorten(model, piece, tab, w, tau)
     if closed:
@@ -341,6 +344,7 @@ def rebase(model: Any, flow: Any, piece: Any, w: Any, t: float) -> None:
     assign(piece.v0, piece.v)
     join(w.y, piece.q, piece.v)
     piece.x[T0], piece.x[ON_SURFACE], piece.x[SPEED0] = t, 0.0, 0.0
+    piece.x[T0_REST], piece.x[REST] = piece.x[REST], 0.0
     if flow.closed_form:
         piece.x[Y0], piece.x[W0] = piece.q[0], piece.v[0]
         if model.frame != ABSENT:
