@@ -30,7 +30,10 @@ DETACHMENT_AT_THE_END = parting_speed(NOSE_END, NOSE_END - TINY)
 def run(rpm, start=0.0, turns=1.0, coordinates="relative"):
     """Follower that starts at rest on the cam, `start` turns after the beginning of the lift."""
     made = scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0, t_end=1.0, coordinates=coordinates)
-    return simulate(replace(made, t_span=(start * made.period, (start + turns) * made.period)), EventDriven())
+    span = (start * made.period, (start + turns) * made.period)
+    m = simulate(replace(made, t_span=span), EventDriven(max_events=10_000))
+    assert m.status is Status.DONE, m.message
+    return m
 
 
 def released(m):
