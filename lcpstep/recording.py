@@ -41,7 +41,7 @@ class Kept:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
             return cls(int(keep), False, nothing)
         times = np.array(keep, dtype=float)
-        if times.ndim != 1 or len(times) == 0 or np.any(np.diff(times) <= 0.0):
+        if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(

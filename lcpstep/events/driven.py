@@ -26,6 +26,7 @@ from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world
+QUADRATURE = 10  # nodes per interval of the contact forces' impulse
 LEAST_TOLERANCE = 1e-14  # relative; below it rounding decides
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
@@ -75,7 +76,10 @@ def flow(scene: Scene, m: Model, method: EventDriven) -> loop.Flow:
         mass, damping, stiffness = (float(x[0, 0]) for x in (m.M, m.C, m.K))
         constant, cosine, sine = (float(x[0]) for x in (m.constant, m.cosine, m.sine))
         closed_form = oscillator(mass, damping, stiffness, constant, cosine, sine, m.omega)
+    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
     return loop.Flow(
+        nodes=0.5 * (1.0 + nodes),
+        weights=0.5 * weights,
         closed_form=closed_form is not None,
         oscillator=closed_form or Oscillator(0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         contact=scene.n_c > 0,
@@ -130,6 +134,7 @@ class _Run:
         self.count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
         self.x = np.zeros(loop.N_NUMBERS)
         self.x[loop.NOW] = scene.t_span[0]
+        self.x[loop.HOLD] = self.x[loop.LAST_EVENT] = -math.inf
         self.x[loop.NEXT_STEP] = 0.1 * self.flow.scan
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:

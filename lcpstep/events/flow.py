@@ -22,8 +22,8 @@ from lcpstep.model import ABSENT
 
 FREE, CLOSED = 0, 1  # modes of the contact
 # Places in the array of a piece's numbers
-T0, T0_REST, LENGTH, LOW, HIGH, SCALE, MODE, Y0, W0, SPEED0, ON_SURFACE, REST = range(12)
-N_NUMBERS = 12
+T0, T0_REST, LENGTH, LOW, HIGH, SCALE, MODE, Y0, W0, SPEED0, ALPHA0, ON_SURFACE, REST = range(13)
+N_NUMBERS = 13
 NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
 DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
 GAUSS = (  # nodes and weights on [0, 1]
@@ -259,11 +259,13 @@ def near_surface(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> tuple[
     """g / tau and u after leaving the surface at the base of the piece, from the acceleration alone.
 
     g = tau (u0 + tau int_0^1 (1-s) alpha(s tau) ds), u = u0 + tau int_0^1 alpha(s tau) ds: no difference of
-    nearly equal positions is taken, so the smallest hops keep all their digits.
+    nearly equal positions is taken, so the smallest hops keep all their digits. The integrals are of alpha less
+    its value at the base, so that equal hops under constant acceleration stay equal to the last digit.
     """
-    mean = weighted = 0.0
+    alpha0 = piece.x[ALPHA0]
+    mean, weighted = alpha0, 0.5 * alpha0
     for node, weight in GAUSS:
-        alpha = gap_acceleration(model, osc, piece, w, node * tau)
-        mean += weight * alpha
-        weighted += weight * (1.0 - node) * alpha
+        change = gap_acceleration(model, osc, piece, w, node * tau) - alpha0
+        mean += weight * change
+        weighted += weight * (1.0 - node) * change
     return piece.x[SPEED0] + tau * weighted, piece.x[SPEED0] + tau * mean

@@ -22,9 +22,9 @@ from lcpstep.dense import assign, join
 from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor
 from lcpstep.events.flow import (
+    ALPHA0,
     CLOSED,
     FREE,
-    GAUSS,
     HIGH,
     LENGTH,
     LOW,
@@ -54,16 +54,18 @@ from lcpstep.events.locate import NONE, first_contact, first_release, short_hop
 from lcpstep.model import ABSENT
 from lcpstep.recording import LEAD, write_event, write_row
 from lcpstep.recording import LENGTH as STEP_LENGTH
+from lcpstep.recording import TIME as ROW_TIME
 
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
 # Places in the array of counters
-STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS = range(6)
-N_COUNTERS = 6
+STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS, STALLED = range(7)
+N_COUNTERS = 7
 # Places in the array of the loop's numbers
 NOW, NEXT_STEP, EDGE_G, EDGE_U, EDGE_ALPHA, IMPULSE = range(6)
 FROM, TO, END, FOUND, HOP = range(6, 11)  # the interval at hand, after the base; its end; an event within it
-N_NUMBERS = 11
+LAST_EVENT, HOLD = 11, 12  # HOLD: no release before this time
+N_NUMBERS = 13
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 
@@ -73,6 +75,7 @@ SHORT = 0.02  # of the scan interval: hops below it are followed by the accelera
 PARTS = 4  # scan intervals of a Runge-Kutta step
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 LONGER = 3.0  # how much longer than its guess a short hop may last
+MAX_STALLED = 1000  # events at one time
 SLACK = 4  # rows and events that one round of the loop may need
 REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
 
@@ -84,6 +87,8 @@ class Flow(NamedTuple):
     oscillator: Any
     contact: bool  # whether the scene has a contact
     scan: float  # longest interval of the scan for events
+    nodes: Any  # of the quadrature of contact forces, on [0, 1]
+    weights: Any
     rtol: float
     atol: float
     corners: Any  # (m,) in [0, period)
@@ -111,6 +116,8 @@ def begin(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
             else:
                 settle(model, flow, piece, w, record, count, x, u if u > ON_THE_SURFACE * speed else 0.0)
     if count[ROW] == 0 and len(record.times) == 0:
+        assign(piece.q, piece.q0)
+        assign(piece.v, piece.v0)
         keep(piece, record, count, x, t)
     return True
 
@@ -124,12 +131,13 @@ def run(
     while x[NOW] < flow.t_end and count[STEP] < goal:
         if count[EVENT] + SLACK > len(record.events) or count[ROW] + SLACK > len(record.rows):
             return BUFFER_FULL
-        if count[EVENTS] > flow.max_events:
+        if count[EVENTS] > flow.max_events or count[STALLED] > MAX_STALLED:
             return TOO_MANY_EVENTS
         if x[NOW] >= piece.x[HIGH]:
             turn_corner(model, flow, piece, w, x)
         if piece.x[MODE] == CLOSED and x[EDGE_ALPHA] > 0.0:
             release(model, flow, piece, w, record, count, x, x[EDGE_ALPHA])
+            keep_event(piece, record, count, x)
         if flow.closed_form:
             code = closed_form_interval(model, flow, piece, w, x)
         else:
@@ -165,6 +173,7 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
                 return NOT_FINITE
             tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
             if tau == NONE and x[EDGE_G] <= 0.0 and at_b[0] < 0.0:
+                x[HOLD] = end
                 return NEVER_LEFT
         if tau == NONE:
             x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_b
@@ -174,12 +183,15 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
 
 def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, count: Any, x: Any) -> int:
     """One DOP853 step, up to the first event within it."""
-    longest = min(flow.t_end, piece.x[HIGH]) - x[NOW]
+    border = min(flow.t_end, piece.x[HIGH])
+    if x[HOLD] > x[NOW]:
+        border = min(border, x[HOLD])
+    longest = border - x[NOW]
     guess = hop_time(piece, x)
     h = take_step(model, flow, piece, tab, w, count, x, min(longest, flow.scan, 4.0 * guess))
     if h < 0.0:
         return int(-h)
-    end = after(piece, h) if h < longest else min(flow.t_end, piece.x[HIGH])
+    end = after(piece, h) if h < longest else border
     tau, hop = NONE, False
     if flow.contact and piece.x[MODE] == FREE:
         if guess < h:
@@ -194,6 +206,7 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
                     return NOT_FINITE
                 tau = first_contact(model, flow, piece, w, a, at_a, b, at_b)
                 if tau == NONE and at_a[0] <= 0.0 and at_b[0] < 0.0:
+                    x[HOLD] = x[NOW] + b
                     return NEVER_LEFT
                 a, at_a = b, at_b
         if tau == NONE:
@@ -218,7 +231,7 @@ def finish_interval(
     a, b, end, tau, hop = x[FROM], x[TO], x[END], x[FOUND], x[HOP] == 1.0
     count[STEP] += 1
     closed = flow.contact and piece.x[MODE] == CLOSED
-    if closed:
+    if closed and x[NOW] >= x[HOLD]:
         tau = first_release(model, flow, piece, w, a, min(x[EDGE_ALPHA], 0.0), b)
     stop = b if tau == NONE else tau
     t_stop = end if tau == NONE else min(after(piece, tau), end)
@@ -242,6 +255,9 @@ def finish_interval(
         keep_event(piece, record, count, x)
     elif hop or -u > velocity_noise(piece):
         impact(model, flow, piece, w, record, count, x, min(u, 0.0))
+    elif stop <= a:  # a touch at the very time of the last event
+        x[HOLD] = end
+        settle_again(model, flow, piece, w, record, count, x)
     else:  # a touch without impact
         rebase(model, flow, piece, w, t_stop)
         settle(model, flow, piece, w, record, count, x, 0.0)
@@ -364,7 +380,7 @@ def impact(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x
     for i in range(len(piece.v)):
         piece.v[i] += piece.MG[i] * p
     x[IMPULSE] += p
-    log(record, count, t, IMPACT, u, -r * u, p)
+    log(record, count, x, t, IMPACT, u, -r * u, p)
     rebase(model, flow, piece, w, t)
     settle(model, flow, piece, w, record, count, x, -r * u)
     keep_event(piece, record, count, x)
@@ -376,6 +392,7 @@ def settle(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x
     find_corners(flow, piece, t)
     piece.x[SPEED0], piece.x[ON_SURFACE], piece.x[MODE] = u, 1.0, FREE
     alpha = base_acceleration(model, flow, piece, w)
+    piece.x[ALPHA0] = alpha
     x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, u, alpha
     if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
         return
@@ -384,7 +401,8 @@ def settle(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x
     elif chatter_is_over(model, flow, piece, x, u, alpha, r):
         T = 2.0 * u / (-alpha * (1.0 - r))
         W = contact_response(model, piece, t, piece.q0, piece.v0)
-        log(record, count, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / W)
+        log(record, count, x, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / W)
+        x[IMPULSE] -= u / W  # the contact force up to t + T, which counts as closed, gives the rest
         stick(model, flow, piece, w, record, count, x, t + T)
 
 
@@ -436,15 +454,16 @@ def stick(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x:
         assign(piece.v, piece.v0)
         project(model, piece, x[NOW])
     rebase(model, flow, piece, w, x[NOW])
-    log(record, count, t_log, STICK, 0.0, 0.0, 0.0)
+    log(record, count, x, t_log, STICK, 0.0, 0.0, 0.0)
 
 
 def settle_again(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any) -> None:
-    """The contact that seemed to open did so by less than rounding: it is closed."""
+    """The contact that seemed to open did so by less than rounding: it is closed, for this interval at least."""
     state_at(model, flow, piece, w, x[NOW] - piece.x[T0])
     rebase(model, flow, piece, w, x[NOW])
-    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, 0.0
+    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, -JUST_RELEASED
     stick(model, flow, piece, w, record, count, x, x[NOW])
+    keep_event(piece, record, count, x)
 
 
 def release(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, alpha: float) -> None:
@@ -454,7 +473,7 @@ def release(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, 
     else:
         project(model, piece, x[NOW])
     rebase(model, flow, piece, w, x[NOW])
-    log(record, count, x[NOW], RELEASE, 0.0, 0.0, 0.0)
+    log(record, count, x, x[NOW], RELEASE, 0.0, 0.0, 0.0)
     piece.x[MODE], piece.x[ON_SURFACE] = FREE, 1.0
     x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, alpha
 
@@ -485,19 +504,21 @@ def find_corners(flow: Any, piece: Any, t: float) -> None:
 def contact_impulse(model: Any, flow: Any, piece: Any, w: Any, a: float, b: float) -> float:
     """Impulse of the contact force lambda = -alpha / (G M^-1 G^T) over (a, b) of a closed piece [N s]."""
     total = 0.0
-    for node, weight in GAUSS:
-        tau = a + node * (b - a)
+    for k in range(len(flow.nodes)):
+        tau = a + flow.nodes[k] * (b - a)
         alpha = gap_acceleration(model, flow, piece, w, tau)
-        total -= weight * alpha / contact_response(model, piece, piece.x[T0] + tau, piece.q, piece.v)
+        total -= flow.weights[k] * alpha / contact_response(model, piece, piece.x[T0] + tau, piece.q, piece.v)
     return total * (b - a)
 
 
 # --- what is kept ---------------------------------------------------------------------------------------------
 
 
-def log(record: Any, count: Any, t: float, kind: int, before: float, after: float, p: float) -> None:
+def log(record: Any, count: Any, x: Any, t: float, kind: int, before: float, after: float, p: float) -> None:
     """Note an event."""
     write_event(record.events[count[EVENT]], t, 0, before, after, p, kind)
+    count[STALLED] = count[STALLED] + 1 if t == x[LAST_EVENT] else 0
+    x[LAST_EVENT] = t
     count[EVENT] += 1
     count[EVENTS] += 1
 
@@ -516,11 +537,16 @@ def keep_times(
 
 
 def keep_event(piece: Any, record: Any, count: Any, x: Any) -> None:
-    """Keep the state after an event, if these are kept."""
-    if record.on_events or record.every == 1:
-        assign(piece.q, piece.q0)
-        assign(piece.v, piece.v0)
-        keep(piece, record, count, x, x[NOW])
+    """Keep the state after an event, if these are kept; events at one time share a row."""
+    if not record.on_events and record.every != 1:
+        return
+    assign(piece.q, piece.q0)
+    assign(piece.v, piece.v0)
+    if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == x[NOW]:
+        count[ROW] -= 1
+        if record.rows.shape[1] > LEAD + 2 * len(piece.q):
+            x[IMPULSE] += record.rows[count[ROW], LEAD + 2 * len(piece.q)]
+    keep(piece, record, count, x, x[NOW])
 
 
 def keep(piece: Any, record: Any, count: Any, x: Any, t: float) -> None:

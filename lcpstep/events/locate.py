@@ -41,10 +41,10 @@ def root(
             a, f_a = x, f_x
         else:
             b = x
-        # The time itself is known no better than to rounding.
-        if abs(step) <= RESOLUTION * abs(x) or b - a <= RESOLUTION * (abs(piece.x[0]) + abs(x)):
-            return x
         slope = u if level == 0 else (alpha if level == 1 else (f_x - f_old) / (x - x_old))
+        if abs(step) <= RESOLUTION * abs(x) or b - a <= RESOLUTION * abs(x):
+            x_new = x - f_x / slope if slope != 0.0 else x
+            return x_new if abs(x_new - x) <= 4.0 * RESOLUTION * abs(x) else x
     return x
 
 
