@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -14,13 +15,8 @@ Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fil
 
 def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Own, read-only, contiguous copy of a real, finite array of the given shape (a scalar fits size one)."""
-    try:
-        given = np.array(value)
-        if np.iscomplexobj(given):
-            raise TypeError
-        result = np.ascontiguousarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected real numbers of shape {shape}, got {value!r}") from None
+    given = _real(name, value)
+    result = np.ascontiguousarray(given)
     if result.ndim < len(shape) and result.size == 1:
         result = result.reshape((1,) * len(shape))
     if result.shape != shape:
@@ -52,6 +48,43 @@ def positive(name: str, value: Any) -> float:
     return result
 
 
+def matrix(name: str, value: ArrayLike) -> Array:
+    """A matrix of at least one row and column; a number stands for one by one."""
+    shape = np.atleast_2d(_real(name, value)).shape
+    if len(shape) != 2 or 0 in shape:
+        raise ValueError(f"{name}: expected a matrix, got shape {shape}")
+    return array(name, np.atleast_2d(np.array(value)), (shape[0], shape[1]))
+
+
+def _real(name: str, value: ArrayLike) -> Array:
+    try:
+        given = np.array(value)
+        if np.iscomplexobj(given):
+            raise TypeError
+        return np.array(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected real numbers, got {value!r}") from None
+
+
+def vector(name: str, value: ArrayLike) -> Array:
+    """Real finite numbers in one dimension, any number of them; a number stands for one."""
+    given = np.atleast_1d(_real(name, value))
+    if given.ndim != 1:
+        raise ValueError(f"{name}: expected one dimension, got shape {given.shape}")
+    return array(name, given, given.shape)
+
+
+def count(name: str, value: Any) -> int:
+    """A positive integer."""
+    try:
+        result = operator.index(value)
+    except TypeError:
+        result = 0
+    if result < 1 or isinstance(value, bool):
+        raise ValueError(f"{name}: expected a positive integer, got {value!r}")
+    return result
+
+
 def mass_matrix(name: str, value: Array) -> Array:
     """A symmetric positive definite matrix, or an error that says which of the two it is not."""
     scale = np.max(np.abs(value), initial=0.0)
@@ -72,7 +105,7 @@ def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shap
     where = f"at t = {t:g}, q = {q.tolist()}, v = {v.tolist()}"
     try:
         returned = f(t, q.copy(), v.copy(), p.copy(), out)
-    except (IndexError, ValueError, TypeError) as error:
+    except Exception as error:  # the user's code may raise anything; the message says whose it is
         raise ValueError(
             f"{name}: f(t, q, v, p, out) with q, v of shape {q.shape}, p of shape {p.shape} and out of "
             f"shape {shape} failed {where}: {error}"

@@ -47,9 +47,9 @@ class LinearContacts:
     motion: Callback | None = None
 
     def __post_init__(self) -> None:
-        G = np.atleast_2d(np.array(self.G))
+        G = checks.matrix("G", self.G)
         offset = np.broadcast_to(self.offset, (len(G),)) if np.ndim(self.offset) == 0 else self.offset
-        object.__setattr__(self, "G", checks.array("G", G, (len(G), G.shape[-1])))
+        object.__setattr__(self, "G", G)
         object.__setattr__(self, "offset", checks.array("offset", offset, (len(G),)))
         object.__setattr__(self, "restitution", _restitution(self.restitution, len(G)))
 
@@ -98,8 +98,7 @@ class Contacts:
     restitution: ArrayLike = 0.0
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.n_c, int) and self.n_c > 0):
-            raise ValueError(f"n_c: expected a positive integer, got {self.n_c!r}")
+        object.__setattr__(self, "n_c", checks.count("n_c", self.n_c))
         object.__setattr__(self, "restitution", _restitution(self.restitution, self.n_c))
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:

@@ -20,6 +20,7 @@ from lagrangian import checks
 from lagrangian.checks import Array
 
 TWO_PI = 2.0 * math.pi
+SAMPLES = 65  # angles at which an arc is checked
 HEAD = 5  # numbers before the arcs in a packed profile: omega, phase, offset, fold, number of arcs
 
 
@@ -53,11 +54,21 @@ class CamProfile:
     symmetric: bool = True
 
     def __post_init__(self) -> None:
+        for k, arc in enumerate(self.arcs):
+            for name in ("end", "kappa", "psi", "rho"):
+                checks.number(f"arcs: {name} of arc {k}", getattr(arc, name))
         ends = [arc.end for arc in self.arcs]
         if not ends or sorted(ends) != ends or ends[0] <= 0.0:
             raise ValueError(f"arcs: expected increasing positive angles `end`, got {ends}")
         if abs(ends[-1] - self._fold) > 1e-12:
             raise ValueError(f"arcs: expected the last one to end at {self._fold:.6f}, got {ends[-1]}")
+        starts = [0.0, *ends[:-1]]
+        for k, (start, arc) in enumerate(zip(starts, self.arcs, strict=True)):
+            reach = np.abs(arc.kappa * np.sin(np.linspace(start, arc.end, SAMPLES) - arc.psi))
+            if not np.max(reach) < arc.rho:
+                raise ValueError(
+                    f"arcs: arc {k}: seen from the axis, the circle does not reach all angles of {arc}"
+                )
         for beta in self.corners():
             before, after = (self.lift(beta + side)[0] for side in (-1e-12, 1e-12))
             if not abs(before - after) <= 1e-9 * max(arc.rho for arc in self.arcs):
@@ -93,7 +104,8 @@ def rotating_cam(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
     A callback for `LinearSystem.frame` (the follower relative to the cam) or `LinearContacts.motion`.
     """
     omega, fold = p[0], p[3]
-    beta = (omega * t + p[1]) % TWO_PI
+    beta = omega * t + p[1]
+    beta -= TWO_PI * math.floor(beta / TWO_PI)  # faster than the remainder
     direction = omega
     if beta > fold:
         beta, direction = TWO_PI - beta, -omega

@@ -53,11 +53,11 @@ class Scene:
     def __post_init__(self) -> None:
         n_q = self.system.n_q
         p = [x for x in self.parameters.values() if not isinstance(x, str)] if self.p is None else self.p
-        corners = np.atleast_1d(np.asarray(self.corners, dtype=float))
+        corners = np.sort(checks.vector("corners", self.corners))
         object.__setattr__(self, "q0", checks.array("q0", self.q0, (n_q,)))
         object.__setattr__(self, "v0", checks.array("v0", self.v0, (n_q,)))
-        object.__setattr__(self, "p", checks.array("p", p, (len(np.atleast_1d(p)),)))
-        object.__setattr__(self, "corners", checks.array("corners", np.sort(corners), corners.shape))
+        object.__setattr__(self, "p", checks.vector("p", p))
+        object.__setattr__(self, "corners", checks.array("corners", corners, corners.shape))
         self._check_times()
         at = (self.t_span[0], np.array(self.q0), np.array(self.v0), np.array(self.p))
         self.system.trial(*at)
@@ -82,14 +82,14 @@ class Scene:
         return self.contacts.state(float(t), *state, np.array(self.p))
 
     def _check_times(self) -> None:
-        try:
-            t_start, t_end = (checks.number("t_span", t) for t in self.t_span)
-        except TypeError:
-            raise ValueError(f"t_span: expected two times, got {self.t_span!r}") from None
+        span = checks.vector("t_span", self.t_span)
+        if len(span) != 2:
+            raise ValueError(f"t_span: expected two times, got {self.t_span!r}")
+        t_start, t_end = float(span[0]), float(span[1])
         if not t_start < t_end:
             raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
         object.__setattr__(self, "t_span", (t_start, t_end))
-        if not self.period > 0.0:
+        if not (isinstance(self.period, (int, float, np.number)) and self.period > 0.0):
             raise ValueError(f"period: expected a positive time or math.inf, got {self.period!r}")
         corners = np.asarray(self.corners)
         if math.isfinite(self.period) and np.any((corners < 0.0) | (corners >= self.period)):

@@ -71,7 +71,7 @@ class LinearSystem:
     frame: Callback | None = None
 
     def __post_init__(self) -> None:
-        M = np.atleast_2d(np.array(self.M))
+        M = checks.matrix("M", self.M)
         square = (len(M), len(M))
         zero = np.zeros(square)
         object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
@@ -121,8 +121,7 @@ class System:
     force_v: Callback | None = None
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.n_q, int) and self.n_q > 0):
-            raise ValueError(f"n_q: expected a positive integer, got {self.n_q!r}")
+        object.__setattr__(self, "n_q", checks.count("n_q", self.n_q))
         if not callable(self.force):
             raise ValueError(f"force: expected a function f(t, q, v, p, out), got {self.force!r}")
         if not callable(self.mass):

@@ -6,6 +6,7 @@ mechanisms have, and cannot be called from here without allocating.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from lcpstep.compiled import inline
@@ -69,3 +70,31 @@ def solve(A: Any, pivots: Any, x: Any) -> None:
         for j in range(k + 1, n):
             x[k] -= A[k, j] * x[j]
         x[k] /= A[k, k]
+
+
+def positive_definite(A: Any) -> bool:
+    """Whether a symmetric A is positive definite: Cholesky's method, A = L L^T, in the lower half of A."""
+    for k in range(len(A)):
+        for j in range(k):
+            A[k, k] -= A[k, j] * A[k, j]
+        if not A[k, k] > 0.0:
+            return False
+        A[k, k] = math.sqrt(A[k, k])
+        for i in range(k + 1, len(A)):
+            for j in range(k):
+                A[i, k] -= A[i, j] * A[k, j]
+            A[i, k] /= A[k, k]
+    return True
+
+
+def solve_definite(L: Any, x: Any) -> None:
+    """X <- A^-1 x, with L from `positive_definite`."""
+    n = len(L)
+    for i in range(n):
+        for j in range(i):
+            x[i] -= L[i, j] * x[j]
+        x[i] /= L[i, i]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            x[i] -= L[j, i] * x[j]
+        x[i] /= L[i, i]

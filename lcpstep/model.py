@@ -7,6 +7,7 @@ and the whole run then takes the same kernels in plain Python.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,14 +82,15 @@ def _compile(scene: Scene, callbacks: dict[str, Callback]) -> dict[str, int]:
     return addresses
 
 
-def culprit(scene: Scene, t: float, q: Array, v: Array) -> str:
-    """Which callback is not finite at a state, in words."""
+def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
+    """Which callback is not finite at a state, at the first of the given times where one is, in words."""
     try:
-        scene.system.trial(t, q, v, np.array(scene.p))
-        scene.gap(t, q, v)
+        for t in times:
+            scene.system.trial(t, q, v, np.array(scene.p))
+            scene.gap(t, q, v)
     except ValueError as error:
         return str(error) + ";"
-    return "the motion left the finite numbers, or the step's matrix is singular,"
+    return "the motion left the finite numbers, or a matrix is singular or not positive definite,"
 
 
 def _system(scene: Scene) -> dict[str, Any]:

@@ -40,7 +40,10 @@ class Kept:
             if isinstance(keep, bool) or keep < 1:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
             return cls(int(keep), False, nothing)
-        times = np.array(keep, dtype=float)
+        try:
+            times = np.array(keep, dtype=float)
+        except (TypeError, ValueError):
+            raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
         if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):

@@ -30,8 +30,14 @@ def test_own_mechanism_is_the_same_by_both_methods():
     assert coarse > 2.0 * fine  # it goes down with h
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/tutorial.md"])
+def test_a_derived_mechanism_keeps_its_energy():
+    pytest.importorskip("sympy")
+    assert example("ex04_from_a_lagrangian")["energy_drift"]() < 1e-9
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/tutorial.md", "docs/symbolic.md"])
 def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
+    pytest.importorskip("sympy")
     monkeypatch.chdir(tmp_path)
     source = tmp_path / "page.py"
     source.write_text("\n".join(blocks((ROOT / page).read_text())))

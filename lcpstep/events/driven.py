@@ -26,6 +26,7 @@ from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world
+TRIALS = 17  # of the callbacks within an interval that failed
 QUADRATURE = 10  # nodes per interval of the contact forces' impulse
 LEAST_TOLERANCE = 1e-14  # relative; below it rounding decides
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
@@ -112,7 +113,7 @@ def piece(scene: Scene, m: Model) -> Piece:
     return Piece(
         x=x, q0=q.copy(), v0=v.copy(), q=q, v=v, a=np.zeros(n_q), y=np.zeros(2 * n_q),
         G=np.zeros((n_c, n_q)), g_t=np.zeros(n_c), g=np.zeros(n_c), MG=np.zeros(n_q), M=np.zeros((n_q, n_q)),
-        pivots=np.zeros(n_q, dtype=np.int64), G_shifted=np.zeros((n_c, n_q)), g_t_shifted=np.zeros(n_c),
+        G_shifted=np.zeros((n_c, n_q)), g_t_shifted=np.zeros(n_c),
         q_shifted=np.zeros(n_q),
     )  # fmt: skip
 
@@ -145,7 +146,11 @@ class _Run:
         try:
             code = loop.FINISHED
             while code in (loop.FINISHED, loop.BUFFER_FULL) and x[loop.NOW] < f.t_end:
-                code = run(m, f, p, tab, w, record, count, x, int(count[loop.STEP]) + PORTION)
+                try:
+                    code = run(m, f, p, tab, w, record, count, x, int(count[loop.STEP]) + PORTION)
+                except Exception as error:  # a callback in plain Python; compiled code raises nothing
+                    message = f"a callback failed after t = {float(x[loop.NOW]):.9g} s: {error}"
+                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
                 self.empty()
                 progress(float(x[loop.NOW]))
         except KeyboardInterrupt:
@@ -204,7 +209,9 @@ class _Run:
         """How the run ended, in words."""
         if status == Status.DONE:
             return "reached the end of the span"
-        q, v, now = self.piece.q0, self.piece.v0, float(self.x[loop.NOW])
+        now, end = float(self.x[loop.NOW]), float(self.x[loop.END])
+        p = self.piece
+        q, v = (p.q, p.v) if self.flow.closed_form else (p.q0, p.v0)
         where = f"at t = {now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
@@ -212,7 +219,7 @@ class _Run:
             return f"the tolerances rtol = {self.method.rtol:g}, atol = {self.method.atol:g} cannot be met {where}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
-        return f"{culprit(self.scene, now, q, v)} {where}"
+        return f"{culprit(self.scene, np.linspace(now, end, TRIALS), q, v)} {where}"
 
 
 # Kernels that one kind of smooth motion leaves aside

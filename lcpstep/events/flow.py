@@ -14,7 +14,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import call, inline
-from lcpstep.dense import assign, factorise, solve, split
+from lcpstep.dense import assign, positive_definite, solve_definite, split
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.events.dop853 import STAGES, combine, interpolant, interpolate
 from lcpstep.events.oscillator import flow
@@ -49,7 +49,6 @@ class Piece(NamedTuple):
     g: Any  # (1,)
     MG: Any  # (n_q,)  M^-1 G^T
     M: Any  # (n_q, n_q)
-    pivots: Any
     G_shifted: Any  # (1, n_q), of the differences
     g_t_shifted: Any
     q_shifted: Any
@@ -86,17 +85,17 @@ def free_acceleration(model: Any, piece: Any, t: float, q: Any, v: Any, a: Any) 
                 a[i] += model.M_inverse[i, j] * piece.y[j]
         return a[0] - a[0] == 0.0
     mass(model, t, q, v, piece.M)
-    if not factorise(piece.M, piece.pivots):
+    if not positive_definite(piece.M):
         return False
-    solve(piece.M, piece.pivots, a)
+    solve_definite(piece.M, a)
     return a[0] - a[0] == 0.0
 
 
 def inverse_mass_times(model: Any, piece: Any, t: float, q: Any, v: Any, x: Any) -> None:
     """x <- M^-1 x."""
     mass(model, t, q, v, piece.M)
-    factorise(piece.M, piece.pivots)
-    solve(piece.M, piece.pivots, x)
+    positive_definite(piece.M)
+    solve_definite(piece.M, x)
 
 
 def contact_response(model: Any, piece: Any, t: float, q: Any, v: Any) -> float:

@@ -160,6 +160,7 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
     a = x[NOW] - piece.x[T0]
     end = min(flow.t_end, piece.x[HIGH], x[NOW] + flow.scan)
     b = end - piece.x[T0]
+    x[END] = end
     tau, hop = NONE, False
     if flow.contact and piece.x[MODE] == FREE:
         guess = hop_time(piece, x)
@@ -169,7 +170,8 @@ def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> i
         at_b = (0.0, 0.0, 0.0)
         if not hop:
             at_b = contact_at(model, flow, piece, w, b)
-            if at_b[0] - at_b[0] != 0.0:
+            if at_b[0] - at_b[0] + at_b[1] - at_b[1] + at_b[2] - at_b[2] != 0.0:
+                state_at(model, flow, piece, w, a)
                 return NOT_FINITE
             tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
             if tau == NONE and x[EDGE_G] <= 0.0 and at_b[0] < 0.0:
@@ -187,6 +189,7 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
     if x[HOLD] > x[NOW]:
         border = min(border, x[HOLD])
     longest = border - x[NOW]
+    x[END] = min(border, x[NOW] + x[NEXT_STEP])
     guess = hop_time(piece, x)
     h = take_step(model, flow, piece, tab, w, count, x, min(longest, flow.scan, 4.0 * guess))
     if h < 0.0:

@@ -20,6 +20,7 @@ from lcpstep.compiled import inline
 
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
 TERMS = 16  # of the series; the first neglected one is below rounding
+NOTHING = 1e-100  # an exponent that is zero for every purpose
 NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
 
 
@@ -96,7 +97,7 @@ def overdamped(delta: float, w2: float, tau: float) -> tuple[float, float, float
     gap = fast - slow
     S = (e_fast - e_slow) / gap
     dS = (fast * (e_fast + 1.0) - slow * (e_slow + 1.0)) / gap
-    P_slow = e_slow / slow if slow != 0.0 else tau
+    P_slow = e_slow / slow if abs(slow) * tau > NOTHING else tau
     return S, dS, (e_fast / fast - P_slow) / gap
 
 

@@ -11,6 +11,7 @@ import contextlib
 import io
 import warnings
 from functools import cache
+from importlib.metadata import metadata
 from typing import Any
 
 import numpy as np
@@ -59,7 +60,13 @@ def require_solver(name: str) -> None:
     if name not in known_solvers():
         raise UnknownName("LCP solver", f"qp:{name}", [f"qp:{n}" for n in known_solvers()])
     if name not in qpsolvers.available_solvers:
-        raise MissingSolver(f"the QP solver {name!r} is not installed: pip install 'qpsolvers[{name}]'")
+        extras = metadata("qpsolvers").get_all("Provides-Extra") or []
+        how = (
+            f"pip install 'qpsolvers[{name}]'"
+            if name in extras
+            else f"pip install its own package, see the documentation of {name}"
+        )
+        raise MissingSolver(f"the QP solver {name!r} is not installed: {how}")
 
 
 def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:

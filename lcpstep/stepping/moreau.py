@@ -25,6 +25,7 @@ from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 65536  # steps between two looks at the outside world
+RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
 
 
@@ -64,7 +65,7 @@ class Moreau:
         return _Run(self, scene, kept).finish(progress)
 
 
-def plan(m: Model, h: float, theta: float) -> loop.Plan:
+def plan(m: Model, h: float, theta: float, slack: float) -> loop.Plan:
     """What steps of size h multiply with: A = M + h theta C + h^2 theta^2 K, inverted once."""
     n_q, n_c = m.G.shape[1], m.G.shape[0]
     A = m.M + h * theta * m.C + (h * theta) ** 2 * m.K
@@ -78,6 +79,7 @@ def plan(m: Model, h: float, theta: float) -> loop.Plan:
         A_f=h * inverse,
         A_g=np.ascontiguousarray(A_g).reshape(n_q, n_c),
         W=m.G @ A_g,
+        slack=slack,
     )
 
 
@@ -132,6 +134,10 @@ class _Run:
         # A portion keeps at most its steps, the given times, and the first and last state.
         self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2)
         self.count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
+        size = max(
+            np.max(np.abs(x), initial=0.0) for x in (self.state.q, self.model.offset, method.h * self.state.v)
+        )
+        self.slack = RESTING * float(size or 1.0)
         self.totals = {"steps": 0, "events": 0}
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
@@ -146,11 +152,11 @@ class _Run:
             if whole > 0:
                 exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
                 status = self.portions(
-                    plan(self.model, exact, self.method.theta), t_start, 0, whole, progress
+                    plan(self.model, exact, self.method.theta, self.slack), t_start, 0, whole, progress
                 )
             if status == Status.DONE and abs(steps - whole) > WHOLE:
                 t_last = t_start + whole * h
-                rest = plan(self.model, t_end - t_last, self.method.theta)
+                rest = plan(self.model, t_end - t_last, self.method.theta, self.slack)
                 status = self.portions(rest, t_last, whole, whole + 1, progress)
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
@@ -169,9 +175,22 @@ class _Run:
             goal = min(last, int(count[loop.STEP]) + PORTION)
             code = loop.FINISHED
             while count[loop.STEP] < goal:
-                code = self.kernel(
-                    self.model, p, self.state, self.recorder.buffers, count, t0, first, goal, external, solved
-                )
+                try:
+                    code = self.kernel(
+                        self.model,
+                        p,
+                        self.state,
+                        self.recorder.buffers,
+                        count,
+                        t0,
+                        first,
+                        goal,
+                        external,
+                        solved,
+                    )
+                except Exception as error:  # a callback in plain Python; compiled code raises nothing
+                    message = f"a callback failed in the step from t = {self.now:.9g} s: {error}"
+                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
                 solved = False
                 if code == loop.LOG_FULL:
                     self.empty()
@@ -190,11 +209,17 @@ class _Run:
     def solve_outside(self) -> bool:
         """Hand the active problem to the named solver; whether it was solved."""
         s = self.state
-        n_a = int(np.count_nonzero(s.g + 0.5 * self.plan.h * s.u <= 0.0))
+        n_a = len(self.active)
         W = s.W[: n_a * n_a].reshape(n_a, n_a)
         solution = solve_lcp(W, s.b[:n_a], method=self.method.lcp)
         s.z[:n_a] = solution.z
         return bool(solution.solved)
+
+    @property
+    def active(self) -> list[int]:
+        """Contacts that are active in the step at hand."""
+        s = self.state
+        return np.flatnonzero(s.g + 0.5 * self.plan.h * s.u <= self.plan.slack).tolist()
 
     @property
     def now(self) -> float:
@@ -238,11 +263,10 @@ class _Run:
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
-            contacts = np.flatnonzero(s.g + 0.5 * self.plan.h * s.u <= 0.0).tolist()
-            return f"{self.method.lcp} found no solution for the contacts {contacts} {where}"
+            return f"{self.method.lcp} found no solution for the contacts {self.active} {where}"
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
-        return f"{culprit(self.scene, self.now + self.plan.h, s.q, s.v)} {where}"
+        return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"
 
 
 STATUS = {

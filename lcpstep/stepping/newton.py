@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import call
-from lcpstep.dense import add, assign, factorise, solve
+from lcpstep.dense import add, assign, factorise, positive_definite, solve
 from lcpstep.dynamics import mass, product, total_force
 from lcpstep.model import ABSENT
 
@@ -42,6 +42,9 @@ def linearise(model: Any, plan: Any, state: Any, t: float, t_next: float, contac
     """v_free about next_v, and for active contacts A^-1 G^T and W; False if A is singular or not finite."""
     work, n = state.newton, len(state.q)
     mass(model, t, state.q, state.v, work.M_start)
+    assign(work.J, work.M_start)
+    if not positive_definite(work.J):
+        return False
     residual(model, plan, state, t_next, state.next_v, work.R, count)
     assign(state.next_force, work.f)
     if model.force_q != ABSENT and model.force_v != ABSENT:

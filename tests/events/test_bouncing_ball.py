@@ -32,7 +32,7 @@ def test_impacts_are_geometric_and_accumulate(h0, r):
     m = simulate(scenes.bouncing_ball(h0=h0, restitution=r, t_end=1.5 * end), EventDriven())
     impacts = of_kind(m, Kind.IMPACT)
     times, speeds = flights(h0, g, r, len(impacts))
-    assert len(impacts) >= 5
+    assert len(impacts) >= 4  # the lowest and softest ball falls below the tolerance after four
     # every flight adds the rounding of its time and speed
     np.testing.assert_allclose(impacts.time / end, times / end, rtol=0, atol=1e-14)
     np.testing.assert_allclose(-impacts.before, speeds, rtol=1e-13)

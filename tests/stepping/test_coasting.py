@@ -1,0 +1,28 @@
+"""Free steps taken in registers are those of the general step, to the last bit."""
+
+import numpy as np
+import pytest
+
+from lagrangian import scenes
+from lcpstep import Moreau, simulate
+
+SCENES = [
+    scenes.bouncing_ball(),
+    scenes.impact_oscillator(t_end=20.0),
+    scenes.cam_follower(t_end=0.5),
+    scenes.cam_follower(rpm=120.0, q0=0.0, v0=0.0, t_end=0.5),
+]
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda s: s.name)
+@pytest.mark.parametrize("every", [7, 10**6])
+def test_coasting_changes_no_bit(scene, every):
+    # with every state kept the loop never coasts
+    slow, fast = (simulate(scene, Moreau(h=1e-3), keep=k) for k in (1, every))
+    rows = np.searchsorted(slow.t, fast.t)
+    np.testing.assert_array_equal(slow.t[rows], fast.t)
+    np.testing.assert_array_equal(slow.q[rows], fast.q)
+    np.testing.assert_array_equal(slow.v[rows], fast.v)
+    np.testing.assert_array_equal(slow.impacts, fast.impacts)
+    assert slow.counts == fast.counts
+    np.testing.assert_allclose(fast.impulse.sum(axis=0), slow.impulse.sum(axis=0), rtol=1e-12)
