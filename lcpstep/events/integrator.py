@@ -394,7 +394,7 @@ def settle(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x
     t, r = x[NOW], model.restitution[0]
     find_corners(flow, piece, t)
     piece.x[SPEED0], piece.x[ON_SURFACE], piece.x[MODE] = u, 1.0, FREE
-    alpha = base_acceleration(model, flow, piece, w)
+    alpha = gap_acceleration(model, flow, piece, w, 0.0)
     piece.x[ALPHA0] = alpha
     x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, u, alpha
     if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
@@ -407,12 +407,6 @@ def settle(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x
         log(record, count, x, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / W)
         x[IMPULSE] -= u / W  # the contact force up to t + T, which counts as closed, gives the rest
         stick(model, flow, piece, w, record, count, x, t + T)
-
-
-def base_acceleration(model: Any, flow: Any, piece: Any, w: Any) -> float:
-    """alpha at the base of the piece."""
-    _, _, alpha = contact_at(model, flow, piece, w, 0.0)
-    return alpha
 
 
 def chatter_is_over(model: Any, flow: Any, piece: Any, x: Any, u: float, alpha: float, r: float) -> bool:
