@@ -7,7 +7,8 @@ import pytest
 
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, cli
-from lcpstep.cli import DONE, FAILED, INTERRUPTED, USAGE, main
+from lcpstep.cli import main
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
 
 
 def run(capsys, *arguments):
@@ -91,7 +92,7 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
 
 
 def test_a_run_that_ends_early_is_a_failure(capsys, monkeypatch):
-    monkeypatch.setattr(cli, "_reference", lambda options: EventDriven(max_events=3))
+    monkeypatch.setattr(cli.simulate, "event_driven", lambda options: EventDriven(max_events=3))
     status, out, _ = run(capsys, "simulate", "cam-follower", "--method", "event-driven", "--json")
     assert status == FAILED
     assert json.loads(out)["status"] == "TOO_MANY_EVENTS"
@@ -108,7 +109,7 @@ def test_an_interrupt_saves_what_was_computed(capsys, tmp_path, monkeypatch):
 
         yield stop
 
-    monkeypatch.setattr(cli, "progress_bar", impatient)
+    monkeypatch.setattr(cli.simulate, "progress_bar", impatient)
     file = tmp_path / "part.npz"
     status, _, err = run(capsys, "simulate", "bouncing-ball", "--h", 2e-5, "--out", file)
     assert status == INTERRUPTED

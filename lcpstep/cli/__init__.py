@@ -1,0 +1,47 @@
+"""The command `lcpstep`, one module a command.
+
+Exit status: 0 done; 1 a run ended early, and its status says why; 2 a wrong argument; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from lcpstep import __version__
+from lcpstep.cli import compare, scenes, simulate
+from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
+from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+
+COMMANDS = (compare, simulate, scenes)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit status."""
+    options = parser().parse_args(arguments)
+    try:
+        return int(options.run(options))
+    except (SimulationInterrupted, KeyboardInterrupt):
+        print("lcpstep: interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except SimulationError as error:
+        print(f"lcpstep: {error}", file=sys.stderr)
+        return FAILED
+    except (LcpStepError, ValueError, FileExistsError) as error:
+        print(f"lcpstep: {error}", file=sys.stderr)
+        return USAGE
+
+
+def parser() -> argparse.ArgumentParser:
+    """Arguments of the command line."""
+    top = argparse.ArgumentParser(
+        prog="lcpstep",
+        description="Mechanical systems with impacts: time-stepping and event-driven simulation.",
+        epilog="Start with: lcpstep compare cam-follower",
+    )
+    top.add_argument("--version", action="version", version=f"lcpstep {__version__}")
+    commands = top.add_subparsers(required=True, metavar="COMMAND")
+    for command in COMMANDS:
+        command.add(commands)
+    return top

@@ -1,0 +1,95 @@
+"""Arguments that several commands share: the scene, its parameters, the methods; and a progress bar."""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from lagrangian import Scene
+from lagrangian.scenes import CATALOGUE
+from lcpstep import EventDriven, Moreau
+from lcpstep.errors import UnknownName
+
+DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130  # exit status
+
+
+def scene_arguments(p: argparse.ArgumentParser) -> None:
+    """Which scene, how long, and its parameters."""
+    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(CATALOGUE)} (see: lcpstep scenes)")
+    p.add_argument("--t-end", type=float, help="length of the simulation [s]; default: the scene's own")
+    p.add_argument(
+        "--set",
+        nargs="+",
+        default=[],
+        metavar="NAME=VALUE",
+        help="parameters of the scene, see: lcpstep scenes",
+    )
+
+
+def stepping_arguments(p: argparse.ArgumentParser) -> None:
+    """Step, theta and complementarity solver."""
+    p.add_argument("--h", type=float, default=1e-4, help="step of the time-stepping [s] (1e-4)")
+    p.add_argument("--theta", type=float, default=0.5, help="0 explicit, 0.5 trapezoidal, 1 implicit (0.5)")
+    p.add_argument("--lcp", default="lemke", help="complementarity solver: lemke, qp, qp:daqp, ... (lemke)")
+
+
+def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
+    """The scene that the options name; `more` sets further parameters of it."""
+    if options.scene not in CATALOGUE:
+        raise UnknownName("scene", options.scene, CATALOGUE)
+    make = CATALOGUE[options.scene]
+    known = defaults(make)
+    values = dict(more)
+    for setting in options.set:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ValueError(f"--set: expected NAME=VALUE, got {setting!r}")
+        if name not in known:
+            raise UnknownName(f"parameter of {options.scene}", name, known)
+        values[name] = value if isinstance(known[name], str) else number(name, value)
+    if options.t_end is not None:
+        values["t_end"] = options.t_end
+    return make(**values)
+
+
+def defaults(make: Callable[..., Scene]) -> dict[str, Any]:
+    """A scene's parameters and their default values."""
+    parameters = inspect.signature(make).parameters.values()
+    return {p.name: p.default for p in parameters if isinstance(p.default, (int, float, str))}
+
+
+def number(name: str, value: str) -> float:
+    """The value of a parameter given as a text."""
+    try:
+        return float(value)
+    except ValueError:
+        raise ValueError(f"--set: {name}: expected a number, got {value!r}") from None
+
+
+def moreau(options: argparse.Namespace) -> Moreau:
+    """Time-stepping as the options say."""
+    return Moreau(h=options.h, theta=options.theta, lcp=options.lcp)
+
+
+def event_driven(options: argparse.Namespace) -> EventDriven:
+    """The event-driven integrator at the tolerance of the options."""
+    return EventDriven(rtol=options.tolerance, atol=options.tolerance)
+
+
+@contextmanager
+def progress_bar(scene: Scene, title: str) -> Iterator[Callable[[float], None]]:
+    """A bar over the scene's time span, on a terminal only."""
+    from tqdm import tqdm
+
+    t_start, t_end = scene.t_span
+    form = "{desc}: {percentage:3.0f}% |{bar}| {n:.3g}/{total:.3g} s [{elapsed}<{remaining}]"
+    with tqdm(total=t_end - t_start, desc=title, bar_format=form, disable=None, leave=False) as bar:
+
+        def progress(t: float) -> None:
+            bar.n = t - t_start
+            bar.refresh()
+
+        yield progress

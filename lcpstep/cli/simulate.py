@@ -1,0 +1,106 @@
+"""`lcpstep simulate`: run one scene by one method, and save its motion."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lcpstep import simulate
+from lcpstep.cli.common import (
+    DONE,
+    FAILED,
+    event_driven,
+    moreau,
+    progress_bar,
+    scene_arguments,
+    scene_of,
+    stepping_arguments,
+)
+from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.trajectory import Kind, Status, Trajectory
+
+
+def add(commands: Any) -> None:
+    """Arguments of the command."""
+    p = commands.add_parser(
+        "simulate",
+        help="run one scene and save its motion",
+        description="Runs a scene and prints how it went; --out FILE.npz saves t, q, v, impulse and impacts.",
+        epilog="Example: lcpstep simulate bouncing-ball --method event-driven --set restitution=0.5 --out ball.npz",
+    )
+    scene_arguments(p)
+    p.add_argument("--method", choices=["moreau", "event-driven"], default="moreau", help="(moreau)")
+    stepping_arguments(p)
+    p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
+    p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
+    p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
+    p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
+    p.add_argument("--json", action="store_true", help="print JSON")
+    p.set_defaults(run=run_simulate)
+
+
+def run_simulate(options: argparse.Namespace) -> int:
+    """`lcpstep simulate`."""
+    scene = scene_of(options)
+    method = moreau(options) if options.method == "moreau" else event_driven(options)
+    if options.out and options.out.exists():
+        raise FileExistsError(f"--out: {options.out} exists already")
+    try:
+        with progress_bar(scene, options.method) as progress:
+            run = simulate(scene, method, keep=options.every, progress=progress)
+    except (SimulationError, SimulationInterrupted) as stopped:
+        _save(options.out, stopped.trajectory)
+        raise
+    _save(options.out, run)
+    if options.picture:
+        from lcpstep.plot.motion import overview
+
+        overview(run).savefig(options.picture, dpi=150)
+    print(json.dumps(_summary(run), indent=2) if options.json else _sentence(run))
+    return DONE if run.status == Status.DONE else FAILED
+
+
+def _summary(run: Trajectory) -> dict[str, Any]:
+    kinds = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
+    return {
+        "scene": run.scene.name,
+        "parameters": dict(run.scene.parameters),
+        "method": repr(run.method),
+        "status": run.status.name,
+        "message": run.message,
+        "t_end": float(run.t[-1]),
+        "q_end": run.q[-1].tolist(),
+        "v_end": run.v[-1].tolist(),
+        "steps": run.counts.steps,
+        "lcp_calls": run.counts.lcp_calls,
+        "force_evaluations": run.counts.force_evaluations,
+        "events": kinds,
+    }
+
+
+def _sentence(run: Trajectory) -> str:
+    s = _summary(run)
+    events = ", ".join(f"{n} {kind}" for kind, n in s["events"].items())
+    return (
+        f"{s['scene']} by {s['method']}: {s['status']}, {s['message']}\n"
+        f"t = {s['t_end']:g} s, q = {s['q_end']}, v = {s['v_end']}\n"
+        f"{s['steps']} steps, {s['lcp_calls']} complementarity problems; events: {events}"
+    )
+
+
+def _save(file: Path | None, run: Trajectory) -> None:
+    if file is not None:
+        log = np.asarray(run.impacts)
+        np.savez_compressed(
+            file,
+            t=run.t,
+            q=run.q,
+            v=run.v,
+            impulse=run.impulse,
+            impacts=log,
+            summary=json.dumps(_summary(run)),
+        )
