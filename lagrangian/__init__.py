@@ -5,6 +5,8 @@ Nothing here knows how a motion is computed; see `lcpstep` for that.
 
 from lagrangian import scenes
 from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.friction import Coulomb
+from lagrangian.joints import Joints, LinearJoints
 from lagrangian.profiles import Arc, CamProfile
 from lagrangian.scene import Scene
 from lagrangian.system import Harmonic, LinearSystem, System
@@ -13,8 +15,11 @@ __all__ = [
     "Arc",
     "CamProfile",
     "Contacts",
+    "Coulomb",
     "Harmonic",
+    "Joints",
     "LinearContacts",
+    "LinearJoints",
     "LinearSystem",
     "Scene",
     "System",

@@ -74,6 +74,19 @@ def vector(name: str, value: ArrayLike) -> Array:
     return array(name, given, given.shape)
 
 
+def per_contact(name: str, value: ArrayLike, n_c: int) -> Array:
+    """One number per contact; a single number stands for all."""
+    return array(name, np.broadcast_to(_real(name, value), (n_c,)) if np.ndim(value) == 0 else value, (n_c,))
+
+
+def restitution(value: ArrayLike, n_c: int) -> Array:
+    """One coefficient of restitution per contact, each in [0, 1]."""
+    r = per_contact("restitution", value, n_c)
+    if np.any((r < 0.0) | (r > 1.0)):
+        raise ValueError(f"restitution: expected values in [0, 1], got {value!r}")
+    return r
+
+
 def count(name: str, value: Any) -> int:
     """A positive integer."""
     try:

@@ -15,13 +15,7 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
-
-
-def _restitution(value: ArrayLike, n_c: int) -> Array:
-    r = checks.array("restitution", np.broadcast_to(value, (n_c,)) if np.ndim(value) == 0 else value, (n_c,))
-    if np.any((r < 0.0) | (r > 1.0)):
-        raise ValueError(f"restitution: expected values in [0, 1], got {value!r}")
-    return r
+from lagrangian.friction import Coulomb
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +29,7 @@ class LinearContacts:
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
     motion : callback filling out (n_c, 3), or None
         out[i] = (s_i, s_i', s_i'') at time t: the obstacle's position, velocity and acceleration.
+    friction : Coulomb, or None for contacts without
 
     Raises
     ------
@@ -45,13 +40,15 @@ class LinearContacts:
     offset: ArrayLike = 0.0
     restitution: ArrayLike = 0.0
     motion: Callback | None = None
+    friction: Coulomb | None = None
 
     def __post_init__(self) -> None:
         G = checks.matrix("G", self.G)
-        offset = np.broadcast_to(self.offset, (len(G),)) if np.ndim(self.offset) == 0 else self.offset
         object.__setattr__(self, "G", G)
-        object.__setattr__(self, "offset", checks.array("offset", offset, (len(G),)))
-        object.__setattr__(self, "restitution", _restitution(self.restitution, len(G)))
+        object.__setattr__(self, "offset", checks.per_contact("offset", self.offset, len(G)))
+        object.__setattr__(self, "restitution", checks.restitution(self.restitution, len(G)))
+        if self.friction is not None:
+            object.__setattr__(self, "friction", self.friction.fitted(len(G)))
 
     @property
     def n_c(self) -> int:
@@ -68,6 +65,8 @@ class LinearContacts:
             raise ValueError(
                 f"contacts.G: expected {len(q)} columns, one per coordinate, got shape {G.shape}"
             )
+        if self.friction is not None:
+            self.friction.sliding(t, q, v, p)
         return G @ q + np.asarray(self.offset) - s[:, 0], G @ v - s[:, 1]
 
 
@@ -84,6 +83,7 @@ class Contacts:
     bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;
         differenced along the motion where not given (the event-driven integrator needs it)
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
+    friction : Coulomb, or None for contacts without
 
     Raises
     ------
@@ -96,10 +96,13 @@ class Contacts:
     gap_t: Callback | None = None
     bias: Callback | None = None
     restitution: ArrayLike = 0.0
+    friction: Coulomb | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_c", checks.count("n_c", self.n_c))
-        object.__setattr__(self, "restitution", _restitution(self.restitution, self.n_c))
+        object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
+        if self.friction is not None:
+            object.__setattr__(self, "friction", self.friction.fitted(self.n_c))
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
         """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""
@@ -110,4 +113,6 @@ class Contacts:
             u += checks.evaluate("contacts.gap_t", self.gap_t, at, (self.n_c,))
         if self.bias is not None:
             checks.evaluate("contacts.bias", self.bias, at, (self.n_c,))
+        if self.friction is not None:
+            self.friction.sliding(*at)
         return g, u

@@ -12,9 +12,12 @@ from numpy.typing import ArrayLike
 from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.joints import Joints, LinearJoints
+from lagrangian.joints import state as joint_state
 from lagrangian.system import LinearSystem, System
 
 ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
+JOINT_ROUNDING = 1e-12  # of a joint that the user's own arithmetic has closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +30,7 @@ class Scene:
     q0, v0 : (n_q,)   state at the start of the span
     t_span : (t_start, t_end) [s]
     contacts : LinearContacts, Contacts, or None for a system that meets nothing
+    joints : LinearJoints, Joints, or None   bilateral constraints, which the initial state must satisfy
     p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given
     parameters : names and values of the scene's parameters, for reports
     corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
@@ -35,8 +39,8 @@ class Scene:
 
     Raises
     ------
-    ValueError   a shape does not fit, a callback fails, or the initial state lies inside an obstacle; the
-        message names the argument
+    ValueError   a shape does not fit, a callback fails, or the initial state lies inside an obstacle or
+        off a joint; the message names the argument
     """
 
     system: LinearSystem | System
@@ -44,6 +48,7 @@ class Scene:
     v0: ArrayLike
     t_span: tuple[float, float]
     contacts: LinearContacts | Contacts | None = None
+    joints: LinearJoints | Joints | None = None
     p: ArrayLike | None = None
     parameters: Mapping[str, float | str] = field(default_factory=dict)
     corners: ArrayLike = ()
@@ -63,6 +68,8 @@ class Scene:
         self.system.trial(*at)
         if self.contacts is not None:
             self._check_start(*self.contacts.state(*at))
+        if self.joints is not None:
+            self._check_joints(*joint_state(self.joints, *at))
 
     @property
     def n_q(self) -> int:
@@ -73,6 +80,11 @@ class Scene:
     def n_c(self) -> int:
         """Number of contacts."""
         return 0 if self.contacts is None else self.contacts.n_c
+
+    @property
+    def n_j(self) -> int:
+        """Number of joints."""
+        return 0 if self.joints is None else self.joints.n_j
 
     def gap(self, t: float, q: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
         """Gaps g [m] and gap velocities u [m/s] at a state, each (n_c,)."""
@@ -104,3 +116,13 @@ class Scene:
                 f"q0: the initial state lies inside the obstacle: the gap of contact {inside[0]} is "
                 f"{g[inside[0]]:.6g} m at t = {t:g}, q = {q.tolist()}"
             )
+
+    def _check_joints(self, g: Array, u: Array) -> None:
+        for name, x, residual in (("q0", self.q0, g), ("v0", self.v0, u)):
+            scale = max(1.0, float(np.max(np.abs(np.asarray(x)))))
+            off = np.flatnonzero(np.abs(residual) > JOINT_ROUNDING * scale)
+            if len(off):
+                raise ValueError(
+                    f"{name}: the initial state does not satisfy joint {off[0]}: its "
+                    f"{'gap' if name == 'q0' else 'rate'} is {residual[off[0]]:.6g} where 0 is expected"
+                )

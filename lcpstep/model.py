@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
 from lagrangian.checks import Callback
 from lagrangian.system import Harmonic
 from lcpstep import compiled
+from lcpstep.errors import LcpStepError
 
 Array = NDArray[np.float64]
 ABSENT = 0  # in place of a callback that the scene does not have
@@ -24,6 +25,14 @@ ABSENT = 0  # in place of a callback that the scene does not have
 
 class UncompiledCallback(UserWarning):
     """A user's function that numba cannot compile; the run takes plain Python, some hundred times slower."""
+
+
+def require(scene: Scene, method: str, *, joints: bool, friction: bool) -> None:
+    """Refuse a scene with features that the method does not treat, rather than leave them out."""
+    if scene.n_j > 0 and not joints:
+        raise LcpStepError(f"scene: {method} does not treat joints, and {scene.name!r} has {scene.n_j}")
+    if scene.contacts is not None and scene.contacts.friction is not None and not friction:
+        raise LcpStepError(f"scene: {method} does not treat friction, and {scene.name!r} has it")
 
 
 class Model(NamedTuple):
@@ -59,7 +68,21 @@ class Model(NamedTuple):
 
 def model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model, and whether every callback of it could be compiled."""
-    fields = _system(scene) | _contacts(scene)
+    return _model(scene, _system(scene) | _contacts(scene, scene.contacts))
+
+
+def joint_model(scene: Scene) -> tuple[Model, bool]:
+    """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
+    contacts = None if scene.joints is None else scene.joints.as_contacts()
+    return _model(scene, _system(scene) | _contacts(scene, contacts))
+
+
+def tangent_model(scene: Scene) -> tuple[Model, bool]:
+    """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
+    return _model(scene, _system(scene) | _tangents(scene))
+
+
+def _model(scene: Scene, fields: dict[str, Any]) -> tuple[Model, bool]:
     callbacks = {name: f for name, f in fields.items() if callable(f)}
     addresses = {} if compiled.jit_disabled() else _compile(scene, callbacks)
     fast = len(addresses) == len(callbacks)
@@ -116,8 +139,23 @@ def _system(scene: Scene) -> dict[str, Any]:
     return fields | {"linear": isinstance(system, LinearSystem), "M": M, "M_inverse": inverse}
 
 
-def _contacts(scene: Scene) -> dict[str, Any]:
-    n_q, n_c, contacts = scene.n_q, scene.n_c, scene.contacts
+def _tangents(scene: Scene) -> dict[str, Any]:
+    friction = None if scene.contacts is None else scene.contacts.friction
+    if friction is None:
+        raise ValueError(f"scene: {scene.name!r} has no friction")
+    fields = _contacts(scene, None) | {"restitution": np.zeros(scene.n_c), "offset": np.zeros(scene.n_c)}
+    motion = np.zeros((scene.n_c, 3))
+    if callable(friction.tangent):
+        slip = friction.slip if callable(friction.slip) else ABSENT
+        fields |= {"flat": False, "jacobian": friction.tangent, "gap_t": slip}
+    else:
+        motion[:, 1] = -np.asarray(friction.slip)
+        fields |= {"G": np.array(friction.tangent)}
+    return fields | {"motion_now": motion}
+
+
+def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[str, Any]:
+    n_q, n_c = scene.n_q, 0 if contacts is None else contacts.n_c
     fields: dict[str, Any] = dict.fromkeys(("motion", "gap", "jacobian", "gap_t", "bias"), ABSENT)
     fields |= {"flat": True, "G": np.zeros((n_c, n_q)), "offset": np.zeros(n_c)}
     fields |= {"restitution": np.zeros(n_c), "motion_now": np.zeros((n_c, 3))}

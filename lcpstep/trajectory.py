@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
@@ -72,6 +72,9 @@ class Trajectory:
         Fields time [s], contact, before, after (gap velocities [m/s]), impulse [N s], kind (`Kind`).
     status : Status   DONE, or why the run ended early; `message` says it in words
     counts : Counts   steps, complementarity problems solved, force evaluations, events
+    joint_impulse : (n, n_j)   impulse of each joint since the state before [N s]
+    friction_impulse : (n, n_c)   impulse of each contact's friction since the state before [N s]; no columns
+        where the scene has none
     scene, method : the question, and how it was answered
     """
 
@@ -86,6 +89,8 @@ class Trajectory:
     message: str
     counts: Counts
     dense: Callable[[Array], tuple[Array, Array]]
+    joint_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    friction_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, t: ArrayLike) -> tuple[Array, Array]:
         """State at any time of the run.

@@ -20,7 +20,7 @@ from lcpstep.events import dop853
 from lcpstep.events import integrator as loop
 from lcpstep.events.flow import FREE, MODE, N_NUMBERS, SCALE, Piece, closed_form_state, gap_speed_along
 from lcpstep.events.oscillator import Oscillator, oscillator
-from lcpstep.model import ABSENT, Model, culprit, model
+from lcpstep.model import ABSENT, Model, culprit, model, require
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -63,6 +63,7 @@ class EventDriven:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        require(scene, "EventDriven", joints=False, friction=False)
         if scene.n_c > 1:
             raise LcpStepError(
                 f"scene: EventDriven takes scenes with one contact, {scene.name!r} has {scene.n_c}; use Moreau"

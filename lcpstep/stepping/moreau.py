@@ -17,7 +17,7 @@ from lcpstep.compiled import compiled, jit_disabled, solver_address
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
-from lcpstep.model import Model, culprit, model
+from lcpstep.model import Model, culprit, model, require
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import theta as loop
 from lcpstep.stepping.newton import Newton
@@ -62,6 +62,7 @@ class Moreau:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        require(scene, "Moreau", joints=False, friction=False)
         return _Run(self, scene, kept).finish(progress)
 
 
