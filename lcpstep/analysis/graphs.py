@@ -1,0 +1,148 @@
+"""Hausdorff distance of two polygonal graphs in the plane, such as velocities whose jumps are vertical segments.
+
+    d(A, B) = max( sup over A of the distance to B, sup over B of the distance to A )        Euclidean
+
+Exact to a relative `RESOLUTION`: the distance to a segment is convex, so that a segment of A whose two ends lie
+within d of one segment of B lies within d as a whole; what this does not settle is halved. The nearest segment
+is found by descending a tree of boxes. Early ends of the search: A. A. Taha, A. Hanbury, An efficient algorithm
+for calculating the exact Hausdorff distance, IEEE Trans. Pattern Anal. Mach. Intell. 37, 2015.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.compiled import compiled
+
+Array = NDArray[np.float64]
+RESOLUTION = 1e-6  # of the distance
+ROUNDING = 1e-16  # of the size of the graphs
+LEAF = 8  # segments in a leaf of the tree
+DEPTH = 256  # of the stacks
+FIRST = 512  # points looked at first, for a bound that spares most of the others
+
+
+class Graph(NamedTuple):
+    """Points of a polyline, and the boxes around its segments: a binary tree whose root is box 1."""
+
+    x: Array
+    y: Array
+    boxes: Array  # (2 leaves, 4): least and largest x, least and largest y
+    leaves: int  # a power of two
+
+
+def graph(x: Array, y: Array) -> Graph:
+    """Polyline through the points (x, y), at least one, and its tree."""
+    x, y = np.ascontiguousarray(x, dtype=float), np.ascontiguousarray(y, dtype=float)
+    if len(x) == 1:
+        x, y = np.repeat(x, 2), np.repeat(y, 2)
+    first = np.arange(0, len(x) - 1, LEAF)
+    leaves = 1 << max(len(first) - 1, 0).bit_length()
+    boxes = np.empty((2 * leaves, 4))
+    boxes[:, 0::2], boxes[:, 1::2] = np.inf, -np.inf
+    for column, points in ((0, x), (2, y)):
+        for shift, best in ((0, np.minimum), (1, np.maximum)):
+            of_segments = best(points[:-1], points[1:])
+            boxes[leaves : leaves + len(first), column + shift] = best.reduceat(of_segments, first)
+    low = leaves
+    while low > 1:
+        pairs = boxes[low : 2 * low].reshape(-1, 2, 4)
+        boxes[low // 2 : low, 0::2] = pairs[:, :, 0::2].min(axis=1)
+        boxes[low // 2 : low, 1::2] = pairs[:, :, 1::2].max(axis=1)
+        low //= 2
+    return Graph(x, y, boxes, leaves)
+
+
+def hausdorff(a: Graph, b: Graph) -> float:
+    """Hausdorff distance of two polylines."""
+    one_sided, spare = compiled(farthest), (np.zeros(DEPTH, dtype=np.int64), np.zeros((DEPTH, 4)))
+    size = max(float(np.max(np.abs(g.boxes[1]))) for g in (a, b))
+    bound = float(one_sided(a, b, 0.0, ROUNDING * size, *spare))
+    return float(one_sided(b, a, bound, ROUNDING * size, *spare))
+
+
+def farthest(a: Any, b: Any, bound: float, rounding: float, nodes: Any, pieces: Any) -> float:
+    """Kernel: the largest distance of a point of a from b, or the bound if that is larger."""
+    n = len(a.x)
+    for i in range(0, n, max(1, n // FIRST)):
+        segment = nearest(b, a.x[i], a.y[i], bound, min(i, len(b.x) - 2), nodes)
+        bound = max(bound, to_segment(b, segment, a.x[i], a.y[i]))
+    for i in range(n - 1):
+        same = min(i, len(b.x) - 2)
+        if covered(a.x[i], a.y[i], a.x[i + 1], a.y[i + 1], b, same, bound):
+            continue
+        top = 0
+        pieces[0, 0], pieces[0, 1], pieces[0, 2], pieces[0, 3] = a.x[i], a.y[i], a.x[i + 1], a.y[i + 1]
+        while top >= 0:
+            x0, y0, x1, y1 = pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3]
+            top -= 1
+            s0 = nearest(b, x0, y0, bound, same, nodes)
+            bound = max(bound, to_segment(b, s0, x0, y0))
+            s1 = nearest(b, x1, y1, bound, s0, nodes)
+            bound = max(bound, to_segment(b, s1, x1, y1))
+            if covered(x0, y0, x1, y1, b, s0, bound) or covered(x0, y0, x1, y1, b, s1, bound):
+                continue
+            if math.hypot(x1 - x0, y1 - y0) <= RESOLUTION * bound + rounding or top + 2 >= len(pieces):
+                continue
+            x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+            top += 1
+            pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3] = x, y, x1, y1
+            top += 1
+            pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3] = x0, y0, x, y
+    return bound
+
+
+def covered(x0: float, y0: float, x1: float, y1: float, b: Any, segment: int, bound: float) -> bool:
+    """Kernel: whether both ends, and so all points between them, lie within the bound of the segment."""
+    return to_segment(b, segment, x0, y0) <= bound and to_segment(b, segment, x1, y1) <= bound
+
+
+def nearest(g: Any, x: float, y: float, enough: float, guess: int, nodes: Any) -> int:
+    """Kernel: the segment nearest to a point, or the first one found to be near enough."""
+    found, best = guess, to_segment(g, guess, x, y)
+    if best <= enough:
+        return found
+    nodes[0], top = 1, 0
+    while top >= 0:
+        node = nodes[top]
+        top -= 1
+        if to_box(g, node, x, y) >= best:
+            continue
+        if node >= g.leaves:
+            start = (node - g.leaves) * LEAF
+            for s in range(start, min(start + LEAF, len(g.x) - 1)):
+                d = to_segment(g, s, x, y)
+                if d < best:
+                    found, best = s, d
+            if best <= enough:
+                return found
+        else:
+            left = 2 * node
+            if to_box(g, left, x, y) < to_box(g, left + 1, x, y):
+                nodes[top + 1], nodes[top + 2] = left + 1, left
+            else:
+                nodes[top + 1], nodes[top + 2] = left, left + 1
+            top += 2
+    return found
+
+
+def to_box(g: Any, node: int, x: float, y: float) -> float:
+    """Kernel: distance of a point from a box."""
+    dx = max(g.boxes[node, 0] - x, x - g.boxes[node, 1], 0.0)
+    dy = max(g.boxes[node, 2] - y, y - g.boxes[node, 3], 0.0)
+    return math.sqrt(dx * dx + dy * dy)
+
+
+def to_segment(g: Any, s: int, x: float, y: float) -> float:
+    """Kernel: distance of a point from the segment between the points s and s + 1."""
+    px, py = x - g.x[s], y - g.y[s]
+    ex, ey = g.x[s + 1] - g.x[s], g.y[s + 1] - g.y[s]
+    length = ex * ex + ey * ey
+    if length > 0.0:
+        share = min(max((px * ex + py * ey) / length, 0.0), 1.0)
+        px, py = px - share * ex, py - share * ey
+    return math.sqrt(px * px + py * py)
