@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,6 +17,7 @@ from lagrangian.joints import state as joint_state
 from lagrangian.system import LinearSystem, System
 
 ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
+EXACT_START = 1e-9  # how near a motion in closed form must start to the initial state
 JOINT_ROUNDING = 1e-12  # of a joint that the user's own arithmetic has closed
 
 
@@ -36,6 +37,10 @@ class Scene:
     corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
     period : period of the forcing [s], math.inf where nothing repeats
     name : a short name, for reports
+    exact : function of times (m,) giving q and v, each (m, n_q), or None
+        The motion from q0, v0 where it is known in closed form; v is the right limit at an impact. One that does
+        not start from q0, v0 is dropped, as when `dataclasses.replace` gives the scene another initial state; it
+        cannot be noticed that the system has changed under it.
 
     Raises
     ------
@@ -54,6 +59,7 @@ class Scene:
     corners: ArrayLike = ()
     period: float = math.inf
     name: str = "scene"
+    exact: Callable[[Array], tuple[Array, Array]] | None = None
 
     def __post_init__(self) -> None:
         n_q = self.system.n_q
@@ -70,6 +76,8 @@ class Scene:
             self._check_start(*self.contacts.state(*at))
         if self.joints is not None:
             self._check_joints(*joint_state(self.joints, *at))
+        if self.exact is not None and not self._starts_exact():
+            object.__setattr__(self, "exact", None)
 
     @property
     def n_q(self) -> int:
@@ -116,6 +124,16 @@ class Scene:
                 f"q0: the initial state lies inside the obstacle: the gap of contact {inside[0]} is "
                 f"{g[inside[0]]:.6g} m at t = {t:g}, q = {q.tolist()}"
             )
+
+    def _starts_exact(self) -> bool:
+        if not callable(self.exact):
+            raise ValueError(f"exact: expected a function of times, got {self.exact!r}")
+        start = self.exact(np.array([self.t_span[0]]))
+        near = []
+        for name, x, mine in zip(("q", "v"), start, (self.q0, self.v0), strict=True):
+            given = checks.array(f"exact: {name}", x, (1, self.n_q))[0]
+            near.append(np.allclose(given, np.asarray(mine), rtol=EXACT_START, atol=EXACT_START))
+        return all(near)
 
     def _check_joints(self, g: Array, u: Array) -> None:
         for name, x, residual in (("q0", self.q0, g), ("v0", self.v0, u)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -40,8 +39,8 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
     """The scene that the options name; `more` sets further parameters of it."""
     if options.scene not in CATALOGUE:
         raise UnknownName("scene", options.scene, CATALOGUE)
-    make = CATALOGUE[options.scene]
-    known = defaults(make)
+    entry = CATALOGUE[options.scene]
+    known = entry.parameters
     values = dict(more)
     for setting in options.set:
         name, equals, value = setting.partition("=")
@@ -49,24 +48,19 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
             raise ValueError(f"--set: expected NAME=VALUE, got {setting!r}")
         if name not in known:
             raise UnknownName(f"parameter of {options.scene}", name, known)
-        values[name] = value if isinstance(known[name], str) else number(name, value)
+        values[name] = value if isinstance(known[name], str) else number(name, value, type(known[name]))
     if options.t_end is not None:
         values["t_end"] = options.t_end
-    return make(**values)
+    return entry.make(**values)
 
 
-def defaults(make: Callable[..., Scene]) -> dict[str, Any]:
-    """A scene's parameters and their default values."""
-    parameters = inspect.signature(make).parameters.values()
-    return {p.name: p.default for p in parameters if isinstance(p.default, (int, float, str))}
-
-
-def number(name: str, value: str) -> float:
-    """The value of a parameter given as a text."""
+def number(name: str, value: str, kind: type[float] = float) -> float:
+    """The value of a parameter given as a text; kind: float, or int for a count."""
     try:
-        return float(value)
+        return kind(value)
     except ValueError:
-        raise ValueError(f"--set: {name}: expected a number, got {value!r}") from None
+        expected = "a whole number" if kind is int else "a number"
+        raise ValueError(f"--set: {name}: expected {expected}, got {value!r}") from None
 
 
 def moreau(options: argparse.Namespace) -> Moreau:

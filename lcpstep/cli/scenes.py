@@ -1,19 +1,20 @@
-"""`lcpstep scenes`: the catalogue, one line a scene."""
+"""`lcpstep scenes`: the catalogue, what moves, what usually goes wrong, and the parameters."""
 
 from __future__ import annotations
 
 import argparse
-import inspect
 import json
 from typing import Any
 
 from lagrangian.scenes import CATALOGUE
-from lcpstep.cli.common import DONE, defaults
+from lcpstep.cli.common import DONE
 
 
 def add(commands: Any) -> None:
     """Arguments of the command."""
-    listing = commands.add_parser("scenes", help="list the scenes, one line each, with their parameters")
+    listing = commands.add_parser(
+        "scenes", help="list the scenes: what moves, what usually goes wrong, parameters"
+    )
     listing.add_argument("--json", action="store_true", help="print JSON")
     listing.set_defaults(run=run_scenes)
 
@@ -21,13 +22,20 @@ def add(commands: Any) -> None:
 def run_scenes(options: argparse.Namespace) -> int:
     """`lcpstep scenes`."""
     lines: list[dict[str, Any]] = [
-        {"scene": name, "about": (inspect.getdoc(make) or "").splitlines()[0], "parameters": defaults(make)}
-        for name, make in CATALOGUE.items()
+        {
+            "scene": name,
+            "about": entry.about,
+            "hazard": entry.hazard,
+            "answer": entry.answer,
+            "parameters": entry.parameters,
+        }
+        for name, entry in CATALOGUE.items()
     ]
     if options.json:
         print(json.dumps(lines, indent=2))
         return DONE
     for line in lines:
         print(f"{line['scene']:20} {line['about']}")
+        print(" " * 21 + f"wrong: {line['hazard']}")
         print(" " * 21 + ", ".join(f"{k}={v}" for k, v in line["parameters"].items()))
     return DONE

@@ -1,5 +1,6 @@
 """Scenes: trial of every callback, the start outside of obstacles, times and corners, and the scenes ready to use."""
 
+import dataclasses
 import inspect
 import math
 
@@ -273,14 +274,14 @@ def test_a_callback_cannot_change_the_state_that_it_is_shown():
 
 @pytest.mark.parametrize("name", scenes.CATALOGUE)
 def test_every_scene_of_the_catalogue_starts_from_its_defaults(name):
-    made = scenes.CATALOGUE[name]()
+    made = scenes.CATALOGUE[name].make()
     assert made.name == name
     assert np.all(made.gap(made.t_span[0], made.q0, made.v0)[0] >= 0.0)
 
 
 @pytest.mark.parametrize("name", scenes.CATALOGUE)
 def test_every_numeric_argument_of_every_scene_is_checked_by_name(name):
-    make = scenes.CATALOGUE[name]
+    make = scenes.CATALOGUE[name].make
     for argument, parameter in inspect.signature(make).parameters.items():
         if isinstance(parameter.default, float):
             for bad in (math.nan, math.inf, "much"):
@@ -311,14 +312,21 @@ def test_scenes_have_the_documented_arguments_in_order(make, arguments):
     assert [x.name for x in parameters] == list(arguments)
 
 
-@pytest.mark.parametrize("make", scenes.CATALOGUE.values())
+MAKERS = [entry.make for entry in scenes.CATALOGUE.values()]
+
+
+def taking(argument):
+    return [make for make in MAKERS if argument in inspect.signature(make).parameters]
+
+
+@pytest.mark.parametrize("make", taking("restitution"))
 @pytest.mark.parametrize("r", [-0.1, 1.1])
 def test_scenes_refuse_a_restitution_outside_zero_and_one(make, r):
     with pytest.raises(ValueError, match=r"^restitution: "):
         make(restitution=r)
 
 
-@pytest.mark.parametrize("make", scenes.CATALOGUE.values())
+@pytest.mark.parametrize("make", MAKERS)
 @pytest.mark.parametrize("t_end", [0.0, -1.0])
 def test_scenes_refuse_an_end_before_their_start(make, t_end):
     with pytest.raises(ValueError, match=r"^t_end: "):
@@ -351,6 +359,19 @@ def test_the_follower_starts_at_the_first_corner_relative_to_the_cam():
         np.testing.assert_allclose([g[0], u[0]], [0.4, 0.4], rtol=1e-15)
     assert absolute.q0[0] == pytest.approx(0.5, rel=1e-15)
     assert relative.period == pytest.approx(60.0 / 358.0, rel=1e-15)
+
+
+def test_a_motion_in_closed_form_is_kept_as_long_as_it_starts_from_the_initial_state():
+    def rising(t):
+        return (1.0 + t)[:, None], np.ones((len(t), 1))
+
+    made = scene(q0=1.0, v0=1.0, exact=rising)
+    assert made.exact(np.array([2.0]))[0].tolist() == [[3.0]]
+    assert dataclasses.replace(made, t_span=(0.0, 7.0)).exact is rising
+    assert dataclasses.replace(made, q0=1.1).exact is None
+    assert dataclasses.replace(made, v0=1.1).exact is None
+    with pytest.raises(ValueError, match=r"^exact: q: expected shape \(1, 1\)"):
+        scene(q0=1.0, v0=1.0, exact=lambda t: (np.zeros((len(t), 2)), np.ones((len(t), 1))))
 
 
 def test_a_harmonic_force_is_what_its_name_says():
