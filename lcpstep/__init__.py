@@ -9,6 +9,7 @@ from lcpstep.events import EventDriven
 from lcpstep.lcp import solve_lcp
 from lcpstep.simulate import simulate
 from lcpstep.stepping.moreau import Moreau
+from lcpstep.study import study
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 __version__ = "0.1.0"
@@ -25,4 +26,5 @@ __all__ = [
     "UnknownName",
     "simulate",
     "solve_lcp",
+    "study",
 ]

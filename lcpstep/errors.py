@@ -44,3 +44,11 @@ class SimulationInterrupted(KeyboardInterrupt):
     def __init__(self, trajectory: Any) -> None:
         super().__init__("interrupted; the motion so far is in the attribute `trajectory`")
         self.trajectory = trajectory
+
+
+class StudyInterrupted(KeyboardInterrupt):
+    """The user's interrupt of a study, with everything measured before in `study`."""
+
+    def __init__(self, study: Any) -> None:
+        super().__init__("interrupted; what was measured so far is in the attribute `study`")
+        self.study = study

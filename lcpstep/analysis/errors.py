@@ -29,6 +29,7 @@ from lcpstep.model import model
 
 Array = NDArray[np.float64]
 LOOKS = 2000  # instants looked at in any case, however coarse the grids
+ROUNDING = 8 * np.finfo(float).eps  # of a time
 NODES = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])  # of Gauss' rule with two points, exact for cubics
 
 
@@ -206,15 +207,18 @@ class Difference:
     @cached_property
     def _graphs(self) -> tuple[Array, Array, Array]:
         """Times, each jump's twice, and both velocities there: left limit, then right limit."""
-        t = self._breaks
-        jumps = np.concatenate([np.asarray(m.impacts["time"], float) for m in (self.motion, self.reference)])
-        before = np.nextafter(np.unique(jumps[(jumps > t[0]) & (jumps <= t[-1])]), -math.inf)
-        place = np.searchsorted(t, before, side="right")
-        left = [
-            np.insert(s[1], place, m.at(before)[1], axis=0)
-            for s, m in zip(self._at_breaks, (self.motion, self.reference), strict=True)
-        ]
-        return np.insert(t, place, t[place]), left[0], left[1]
+        t, (start, end) = self._breaks, self.span
+        both = (self.motion, self.reference)
+        jumps = np.unique(np.concatenate([np.asarray(m.impacts["time"], dtype=float) for m in both]))
+        jumps = jumps[(jumps > start) & (jumps <= end)]
+        # A jump is looked at from a little before and after: the two motions may round its time differently.
+        little = ROUNDING * max(abs(start), abs(end))
+        place = np.searchsorted(t, jumps)
+        seen = t.copy()
+        seen[place] = np.minimum(jumps + little, end)
+        seen = np.insert(seen, place, np.maximum(jumps - little, start))
+        v, v_ref = (m.at(seen)[1] for m in both)
+        return np.insert(t, place, jumps), v, v_ref
 
 
 MEASURES = (
