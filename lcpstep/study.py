@@ -99,7 +99,10 @@ def study(
     curves = _levels(_curves(methods), scene, h, tolerances, notes)
     question = _question(scene, measures, spread, reference)
     done = _earlier(save, question)
-    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=versions(), machine=machine())
+    from lcpstep import __version__
+
+    known = {"lcpstep": __version__} | versions()
+    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=known, machine=machine())
     try:
         _fill(result, scene, curves, reference, measures, horizon, repeats, spread, done, save, progress)
     except KeyboardInterrupt:

@@ -7,21 +7,17 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-PACKAGES = ("lcpstep", "numpy", "scipy", "numba", "qpsolvers", "osqp")
+PACKAGES = ("numpy", "scipy", "numba", "qpsolvers", "osqp")
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python and of the packages that decide speed and rounding, those that are there."""
+    """Versions of Python and of the packages that decide speed and rounding, as far as they are installed."""
     found = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
             found[name] = version(name)
         except PackageNotFoundError:
             continue
-    if "lcpstep" not in found:  # run from its sources
-        from lcpstep import __version__
-
-        found["lcpstep"] = __version__
     return found
 
 

@@ -109,8 +109,9 @@ def find_reference(scene: Scene, given: Any, measures: Sequence[str]) -> Referen
     ValueError   a trajectory of another scene, or a function that does not fit
     """
     if given is None:
-        exact = getattr(scene, "exact", None)
-        return from_formula(scene, exact, measures) if exact else from_method(scene, TIGHTEST, measures)
+        if scene.exact is not None:
+            return from_formula(scene, scene.exact, measures)
+        return from_method(scene, TIGHTEST, measures)
     if hasattr(given, "run") and not isinstance(given, type):
         return from_method(scene, given, measures)
     if hasattr(given, "at") and hasattr(given, "t"):
