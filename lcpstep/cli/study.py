@@ -8,8 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from lagrangian import Scene
 from lcpstep import EventDriven, Moreau, study
 from lcpstep.analysis.errors import MEASURES
+from lcpstep.analysis.reference import find_reference
+from lcpstep.analysis.solvers import LEVELS, compare_solvers
 from lcpstep.analysis.work_precision import Study
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, scene_arguments, scene_of
 from lcpstep.errors import StudyInterrupted
@@ -40,6 +43,16 @@ def add(commands: Any) -> None:
     p.add_argument("--measures", nargs="+", metavar="M", default=list(MEASURES), help=", ".join(MEASURES))
     p.add_argument("--horizon", type=float, help="compare up to this time only [s]")
     p.add_argument("--repeats", type=int, default=3, help="rounds of timing (3)")
+    p.add_argument(
+        "--solvers",
+        nargs="*",
+        metavar="NAME",
+        help="compare complementarity solvers inside Moreau's method, against Lemke and the reference: "
+        "qp:osqp, qp:daqp, ...; none named: all that are installed",
+    )
+    p.add_argument(
+        "--solver-tolerances", type=float, nargs="+", default=list(LEVELS), help="(1e-2 1e-4 1e-6 1e-8)"
+    )
     p.add_argument("--out", type=Path, metavar="DIR", help="where the files go; default: nothing is saved")
     p.add_argument("--no-picture", action="store_true", help="leave the picture out")
     p.add_argument("--json", action="store_true", help="print JSON in place of the table")
@@ -49,6 +62,8 @@ def add(commands: Any) -> None:
 def run_study(options: argparse.Namespace) -> int:
     """`lcpstep study`."""
     scene = scene_of(options)
+    if options.solvers is not None:
+        return run_solvers(scene, options)
     methods = [METHODS[name](options) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
     from tqdm import tqdm
@@ -64,6 +79,26 @@ def run_study(options: argparse.Namespace) -> int:
             return INTERRUPTED
     _report(result, options)
     return DONE if all(x.status == "DONE" for x in result.levels) else FAILED
+
+
+def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
+    """`lcpstep study --solvers`."""
+    if "moreau" not in options.methods:
+        raise ValueError("--solvers: only --methods moreau leaves the complementarity solver to choose")
+    reference = find_reference(scene, None, ())
+    if reference.motion is None:
+        raise ValueError(f"--solvers: {reference.notes[0]}")
+    steps = options.h or [(scene.t_span[1] - scene.t_span[0]) / n for n in (1000, 10_000)]
+    found = compare_solvers(
+        scene, METHODS["moreau"](options), steps, reference.motion, solvers=options.solvers or None,
+        tolerances=options.solver_tolerances,
+    )  # fmt: skip
+    text = json.dumps(found.as_dict() | {"reference": reference.text}, indent=1)
+    if options.out is not None:
+        options.out.mkdir(parents=True, exist_ok=True)
+        (options.out / "solvers.json").write_text(text + "\n")
+    print(text if options.json else f"{found}\nreference: {reference.text}")
+    return DONE
 
 
 def _report(result: Study, options: argparse.Namespace) -> None:

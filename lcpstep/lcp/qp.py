@@ -20,6 +20,7 @@ from lcpstep.errors import MissingSolver, UnknownName
 from lcpstep.lcp.definite import require_semidefinite, scaled, unit_diagonal
 from lcpstep.lcp.factor import factoriser
 from lcpstep.lcp.infeasible import explained
+from lcpstep.lcp.judge import residual
 from lcpstep.lcp.newton import best_of, polish
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import FAILED, SOLVED, Status
@@ -31,6 +32,13 @@ TIGHT: dict[str, dict[str, Any]] = {  # solvers that stop too early unless they 
     "piqp": {"eps_abs": 1e-11, "eps_rel": 1e-12},
     "scs": {"eps_abs": 1e-9, "eps_rel": 1e-9},
     "clarabel": {"tol_gap_abs": 1e-12, "tol_gap_rel": 1e-12, "tol_feas": 1e-12},
+}
+TOLERANCES: dict[str, tuple[str, ...]] = {  # what a solver calls its tolerances; active-set methods have none
+    "osqp": ("eps_abs", "eps_rel"),
+    "proxqp": ("eps_abs", "eps_rel"),
+    "piqp": ("eps_abs", "eps_rel"),
+    "scs": ("eps_abs", "eps_rel"),
+    "clarabel": ("tol_gap_abs", "tol_gap_rel", "tol_feas"),
 }
 ITERATIONS = {
     "osqp": "max_iter",
@@ -84,11 +92,49 @@ def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int
     return explained(W, b, Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}"))
 
 
-def call_solver(name: str, P: Any, q: Any, guess: Any, max_iterations: int | None) -> Any:
+def unpolished(
+    name: str, tolerance: float, W: Any, b: Any, z: Any, tol: float, max_iterations: int | None
+) -> Solution:
+    """The solver's own answer at its own tolerance, for judging solvers: solved means that the solver says so."""
+    check_finite(W, b)
+    require_semidefinite(W)
+    d = unit_diagonal(W)
+    options = dict.fromkeys(TOLERANCES[name], tolerance) | ({"polishing": False} if name == "osqp" else {})
+    found = call_solver(name, scaled(W, d), d * b, z / d, max_iterations, options)
+    answer = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
+    error = residual(W, b, answer)
+    status = FAILED if found is None else SOLVED
+    return Solution(answer, W @ answer + b, Status(status), 0, error, f"qp:{name}:{tolerance:g}")
+
+
+def parse(method: str) -> tuple[str, float | None]:
+    """Solver and tolerance that "qp:NAME" or "qp:NAME:TOLERANCE" name; ValueError for a tolerance that is none."""
+    name, colon, text = method.removeprefix("qp:").partition(":")
+    if not colon:
+        return name, None
+    try:
+        tolerance = float(text)
+    except ValueError:
+        tolerance = -1.0
+    if name in known_solvers() and name not in TOLERANCES:
+        raise ValueError(f"method: {name} has no tolerance to set, got {method!r}; use 'qp:{name}'")
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(f"method: expected a tolerance between 0 and 1 as in 'qp:osqp:1e-6', got {method!r}")
+    return name, tolerance
+
+
+def call_solver(
+    name: str,
+    P: Any,
+    q: Any,
+    guess: Any,
+    max_iterations: int | None,
+    options: dict[str, Any] | None = None,
+) -> Any:
     """Minimiser that the solver found, or None; P has a unit diagonal and q is brought to size one."""
     import qpsolvers
 
-    options = dict(TIGHT.get(name, {}))
+    options = dict(TIGHT.get(name, {}) if options is None else options)
     if max_iterations is not None and name in ITERATIONS:
         options[ITERATIONS[name]] = max_iterations
     if name in NEEDS_DEFINITE:

@@ -14,7 +14,7 @@ from lcpstep.lcp.dense import enumeration, pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.pgs import pgs
 from lcpstep.lcp.problem import Solution, as_arrays, as_guess
-from lcpstep.lcp.qp import DEFAULT, known_solvers, quadratic, require_solver
+from lcpstep.lcp.qp import DEFAULT, known_solvers, parse, quadratic, require_solver, unpolished
 from lcpstep.lcp.status import TOLERANCE, Status
 
 Method = Callable[[Any, Any, Any, float, int | None], Solution]
@@ -52,7 +52,8 @@ def solve_lcp(
         "enumeration"  every basis, up to 20 unknowns
         "pgs"          projected Gauss-Seidel; cheap and approximate
         "qp"           quadratic programme by osqp; "qp:NAME" by another solver of qpsolvers.
-                       Only symmetric positive semidefinite W
+                       Only symmetric positive semidefinite W. "qp:NAME:TOLERANCE", as "qp:osqp:1e-4", gives
+                       what the solver itself finds at that tolerance, to judge solvers by
     tol : float          largest judged residual of an answer that is called solved, relative and unit-free
     guess : (n,) array or a Solution of a similar problem; its positive z are tried first
     max_iterations : int  of what the method counts: pivots, bases, factorisations, sweeps
@@ -87,7 +88,7 @@ def check_method(method: str) -> None:
 def find_method(method: str) -> Method:
     """The QP back-end that "qp:NAME" names."""
     if isinstance(method, str) and method.startswith("qp:"):
-        name = method.removeprefix("qp:")
+        name, tolerance = parse(method)
         require_solver(name)
-        return partial(quadratic, name)
+        return partial(quadratic, name) if tolerance is None else partial(unpolished, name, tolerance)
     raise UnknownName("LCP solver", method, [*METHODS, *(f"qp:{name}" for name in known_solvers())])
