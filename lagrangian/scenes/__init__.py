@@ -2,10 +2,24 @@
 
 from __future__ import annotations
 
-from lagrangian.scenes.bouncing_ball import bouncing_ball
+from lagrangian.scenes.beads import (
+    column,
+    elastic_gas,
+    falling_gas,
+    galperin,
+    inelastic_collapse,
+    newtons_cradle,
+)
+from lagrangian.scenes.bouncing_ball import bouncing_ball, dyadic_ball, elastic_ball
+from lagrangian.scenes.bowl import bowl
 from lagrangian.scenes.cam_follower import cam_follower
 from lagrangian.scenes.catalogue import Entry
-from lagrangian.scenes.impact_oscillator import impact_oscillator
+from lagrangian.scenes.double_pendulum import double_pendulum
+from lagrangian.scenes.grazing import grazing
+from lagrangian.scenes.impact_oscillator import chaotic_oscillator, impact_oscillator, sticking_oscillator
+from lagrangian.scenes.pendulum import pendulum_stop
+from lagrangian.scenes.piles import block_on_feet, heavy_on_light, stack
+from lagrangian.scenes.table import ball_on_table, chattering_table, jumping_table
 
 CATALOGUE: dict[str, Entry] = {
     "bouncing-ball": Entry(
@@ -13,16 +27,142 @@ CATALOGUE: dict[str, Entry] = {
         hazard="an event-driven run stalls at the accumulation of impacts, or the ball tunnels through the floor",
         answer="parabolas of geometrically falling duration; at rest from sqrt(2 h0/g) (1 + r)/(1 - r) on",
     ),
-    "cam-follower": Entry(
-        cam_follower,
-        hazard="chattering, sticking, and release at a corner of the cam",
-        answer="detachment at the flank-nose corner from 114.979 rpm on, at the end of the nose from 134.873 rpm on",
+    "dyadic-ball": Entry(
+        dyadic_ball,
+        hazard="impacts on the grid are counted twice, missed at the end of a step, or off by one step",
+        answer="impacts at 1, 2, 2.5, 2.75, ... -> 3, exact in binary arithmetic",
+    ),
+    "elastic-ball": Entry(
+        elastic_ball,
+        hazard="energy and phase drift over many bounces",
+        answer="period 2 v_1/g, constant energy",
+    ),
+    "ball-on-table": Entry(
+        ball_on_table,
+        hazard="the velocity of the table is taken at the wrong time, and the fixed point is off by O(h)",
+        answer="cos(phase) = pi g (1 - r)/(A omega^2 (1 + r)); multipliers with product r^2",
+    ),
+    "chattering-table": Entry(
+        chattering_table,
+        hazard="released late or early, small bounces for ever, a release inside a step missed",
+        answer="release at sin(phase) = g/(A omega^2), whatever came before",
+    ),
+    "jumping-table": Entry(
+        jumping_table,
+        hazard="the result depends on where in a step the velocity of the table jumps",
+        answer="pieces in closed form; the velocity of the obstacle at a corner is the new one",
     ),
     "impact-oscillator": Entry(
         impact_oscillator,
         hazard="time-stepping is of order one however smooth the motion in between",
-        answer="the flow between impacts in closed form",
+        answer="pieces in closed form between impacts; 32 impacts in 100 s",
+    ),
+    "sticking-oscillator": Entry(
+        sticking_oscillator,
+        hazard="irregular convergence; stuck to the stop for ever",
+        answer="pieces in closed form; release where amplitude cos(omega t) = stop",
+    ),
+    "chaotic-oscillator": Entry(
+        chaotic_oscillator,
+        hazard="trajectories are compared; time-stepping shifts the statistics",
+        answer="statistics within their standard errors; largest Lyapunov exponent",
+    ),
+    "grazing": Entry(
+        grazing,
+        hazard="the minimum of the gap lies inside a step and is missed; half of the digits are lost",
+        answer="touched with the speed sqrt(2 a d)",
+    ),
+    "pendulum-stop": Entry(
+        pendulum_stop,
+        hazard="the joint drifts; joint and contact impulses are not solved for together",
+        answer="elliptic functions of modulus r^j sin(theta0/2); tension m (L theta'^2 + g cos theta)",
+    ),
+    "double-pendulum": Entry(
+        double_pendulum,
+        hazard="mass matrix taken at the wrong point: the order is lost",
+        answer="states in 40 digits by Taylor series",
+    ),
+    "bowl": Entry(
+        bowl,
+        hazard="penetration drifts as the point slides; the normal taken at the start of a step costs four digits",
+        answer="free fall, then a pendulum: elliptic functions",
+    ),
+    "elastic-gas": Entry(
+        elastic_gas,
+        hazard="one simultaneous problem in the place of a sequence of impacts",
+        answer="free flights between the walls, sorted",
+    ),
+    "falling-gas": Entry(
+        falling_gas,
+        hazard="one simultaneous problem in the place of a sequence of impacts",
+        answer="independent bouncing balls, sorted",
+    ),
+    "galperin": Entry(
+        galperin,
+        hazard="nearly equal velocities: the next event lies in the last bits",
+        answer="3, 31, 314, 3141, ... collisions for k = 0, 1, 2, 3, ...; a straight line between two mirrors",
+    ),
+    "newtons-cradle": Entry(
+        newtons_cradle,
+        hazard="the law for simultaneous impacts is not said, or the energy grows",
+        answer="touching: (1 - 2 r, 1 + r, 1 + r)/3; apart and r = 1: (0, 0, 1)",
+    ),
+    "inelastic-collapse": Entry(
+        inelastic_collapse,
+        hazard="endless loop at the accumulation of impacts, or a cluster with the wrong momentum",
+        answer="the sequence of impacts in closed form; collapse iff r <= 7 - 4 sqrt(3), then one body",
+    ),
+    "column": Entry(
+        column,
+        hazard="sinking, explosion, endless iterations; using r min(u, 0) raises the energy of a pile",
+        answer="all at rest and touching; each contact carries the weight above it",
+    ),
+    "block-on-feet": Entry(
+        block_on_feet,
+        hazard="the Delassus matrix is singular: pivots fail, forces drift, the block trembles",
+        answer="nothing moves; forces and moments balance",
+    ),
+    "stack": Entry(
+        stack,
+        hazard="the Delassus matrix is singular: pivots fail, forces drift, the stack trembles",
+        answer="nothing moves; the feet of each block carry all above",
+    ),
+    "heavy-on-light": Entry(
+        heavy_on_light,
+        hazard="sweeping methods need 14 R sweeps, direct ones lose log10 R digits of the forces",
+        answer="forces g R and g (R + 1)",
+    ),
+    "cam-follower": Entry(
+        cam_follower,
+        hazard="chattering, sticking, and release at a corner of the cam",
+        answer="detachment where c'' = -(k/m) c: at 114.979 rpm (start of the nose) and 134.873 rpm (its end)",
     ),
 }
 
-__all__ = ["CATALOGUE", "Entry", "bouncing_ball", "cam_follower", "impact_oscillator"]
+__all__ = [
+    "CATALOGUE",
+    "Entry",
+    "ball_on_table",
+    "block_on_feet",
+    "bouncing_ball",
+    "bowl",
+    "cam_follower",
+    "chaotic_oscillator",
+    "chattering_table",
+    "column",
+    "double_pendulum",
+    "dyadic_ball",
+    "elastic_ball",
+    "elastic_gas",
+    "falling_gas",
+    "galperin",
+    "grazing",
+    "heavy_on_light",
+    "impact_oscillator",
+    "inelastic_collapse",
+    "jumping_table",
+    "newtons_cradle",
+    "pendulum_stop",
+    "stack",
+    "sticking_oscillator",
+]

@@ -11,13 +11,17 @@ chaotic. What usually goes wrong: chattering, sticking, and release at a corner 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from lagrangian import checks
+from lagrangian.checks import Array
 from lagrangian.contacts import LinearContacts
 from lagrangian.profiles import Arc, CamProfile, rotating_cam
 from lagrangian.scene import Scene
+from lagrangian.scenes.catalogue import checked
+from lagrangian.scenes.piecewise import Free, Piecewise
 from lagrangian.system import Harmonic, LinearSystem
 
 HALF_TURN = math.pi / 2.0  # cam angle at t = 0: the start of the lift, which is the first corner
@@ -33,7 +37,10 @@ PROFILE = CamProfile(
     offset=0.3,
 )
 
+NOSE_START, NOSE_END = PROFILE.arcs[1].end, PROFILE.arcs[2].end  # cam angles [rad]
 
+
+@checked
 def cam_follower(
     rpm: float = 358.0,
     q0: float = 0.4,
@@ -64,7 +71,19 @@ def cam_follower(
     elif coordinates != "relative":
         raise ValueError(f'coordinates: expected "relative" or "absolute", got {coordinates!r}')
     relative = coordinates == "relative"
-    return Scene(
+
+    def lift(t: float) -> tuple[float, float, float]:
+        out = np.zeros((1, 3))
+        rotating_cam(t, out[0], out[0], p, out)
+        return float(out[0, 0]), float(out[0, 1]), float(out[0, 2])
+
+    def exact(times: Array) -> tuple[Array, Array]:
+        u, du = motion(times)
+        c = np.array([lift(float(t))[:2] for t in times]).reshape(-1, 2) * relative
+        return u - c[:, :1], du - c[:, 1:]
+
+    corners = np.sort((profile.corners() - HALF_TURN) % (2.0 * math.pi)) / omega
+    scene = Scene(
         system=LinearSystem(
             M=checks.positive("m", m),
             C=checks.number("b", b),
@@ -92,7 +111,35 @@ def cam_follower(
             "g0": g0,
             "restitution": restitution,
         },
-        corners=np.sort((profile.corners() - HALF_TURN) % (2.0 * math.pi)) / omega,
+        corners=corners,
         period=period,
         name="cam-follower",
     )
+    # The follower itself is a free oscillator; exact where its damping needs no stiffness to go with it
+    c0, dc0, _ = lift(0.0)
+    motion = Piecewise(
+        Free(delta=0.5 * b / m, kappa=k / m, f0=-g0),
+        restitution,
+        (0.0, c0 + q0, dc0 + v0),
+        lift,
+        corners,
+        period,
+    )
+    return replace(scene, exact=exact) if k > 0.0 or b == 0.0 else scene
+
+
+def detachment_rpm(beta: float, m: float = 1.221, k: float = 1430.8, profile: CamProfile = PROFILE) -> float:
+    """Speed at which the contact force vanishes at the cam angle beta, c'' = -(k/m) c, without damping and gravity.
+
+    The lift is that just after beta: the first detachment is at the flank-nose corner (`NOSE_START`).
+
+    Raises
+    ------
+    ValueError   the contact force does not vanish there at any speed
+    """
+    c, _, ddc = profile.lift(beta + 1e-15)
+    if not c * ddc < 0.0:
+        raise ValueError(
+            f"beta: the contact force does not vanish at any speed where c = {c:g}, c'' = {ddc:g}"
+        )
+    return 30.0 / math.pi * math.sqrt(-k / m * c / ddc)

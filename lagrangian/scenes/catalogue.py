@@ -2,12 +2,40 @@
 
 from __future__ import annotations
 
+import functools
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ParamSpec
 
+from lagrangian import checks
 from lagrangian.scene import Scene
+
+P = ParamSpec("P")
+
+
+def checked(make: Callable[P, Scene]) -> Callable[P, Scene]:
+    """Check the numbers given to a scene's function before any is used: finite, and in the range of their name.
+
+    A restitution lies in [0, 1]; t_end is positive; what has a whole number as default takes whole numbers only.
+    """
+    signature = inspect.signature(make)
+
+    @functools.wraps(make)
+    def made(*arguments: P.args, **named: P.kwargs) -> Scene:
+        for name, value in signature.bind(*arguments, **named).arguments.items():
+            default = signature.parameters[name].default
+            if name == "restitution":
+                checks.number(name, value, least=0.0, most=1.0)
+            elif name == "t_end" and value is not None:
+                checks.positive(name, value)
+            elif isinstance(default, float):
+                checks.number(name, value)
+            elif isinstance(default, int) and (isinstance(value, bool) or not hasattr(value, "__index__")):
+                raise ValueError(f"{name}: expected a whole number, got {value!r}")
+        return make(*arguments, **named)
+
+    return made
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,91 @@
+"""A double pendulum whose tip meets a wall: two unit masses on unit rods, gravity 9.81 m/s^2, sin a + sin b <= wall.
+
+    2 a'' + cos(a - b) b'' + sin(a - b) b'^2 + 2 g sin a = 0,   cos(a - b) a'' + b'' - sin(a - b) a'^2 + g sin b = 0
+
+with the angles a, b of both rods from the vertical. What usually goes wrong: the mass matrix is taken at the wrong
+point, and the order is lost.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from lagrangian import checks
+from lagrangian.contacts import Contacts
+from lagrangian.scene import Scene
+from lagrangian.scenes.catalogue import checked
+from lagrangian.system import System
+
+# Of the default scene, by Taylor series of order 30 in arithmetic of 40 digits (mpmath), impacts by Newton's method;
+# tests/lagrangian/reference_double_pendulum.py computes them again.
+REFERENCE_IMPACTS = np.array([0.6985040770251998, 2.0356089310940444])
+REFERENCE_TIMES = np.array([0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
+REFERENCE_STATES = np.array(  # a, b, a', b'
+    [
+        [-0.34020240315987094, -0.6747245653963688, 1.729871609596587, 2.9142006209385096],
+        [0.03773994213927668, -1.0453544580848098, -0.8987555671883788, -1.7744396315054047],
+        [-0.6665088450615059, -0.5513804630006979, -1.3665582002370544, 3.050941491334296],
+        [-0.056720483533706484, -0.019273518144671414, 3.3880648448274675, -1.2635198777858527],
+        [0.5327668125759751, -0.8983635706274894, -0.6085593827679079, 0.43294754422146653],
+        [-0.5143231475715077, 0.4971547807851827, -1.4876701424469458, 2.350499496845936],
+    ]
+)
+
+
+def mass(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """M."""
+    out[0, 0], out[1, 1] = 2.0, 1.0
+    out[0, 1] = out[1, 0] = math.cos(q[0] - q[1])
+
+
+def force(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """F - N; p = (g, wall)."""
+    s = math.sin(q[0] - q[1])
+    out[0] = -s * v[1] * v[1] - 2.0 * p[0] * math.sin(q[0])
+    out[1] = s * v[0] * v[0] - p[0] * math.sin(q[1])
+
+
+def wall_gap(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Distance of the tip from the wall."""
+    out[0] = p[1] - math.sin(q[0]) - math.sin(q[1])
+
+
+def wall_jacobian(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Its derivative."""
+    out[0, 0], out[0, 1] = -math.cos(q[0]), -math.cos(q[1])
+
+
+def wall_bias(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Gap acceleration at v' = 0."""
+    out[0] = math.sin(q[0]) * v[0] * v[0] + math.sin(q[1]) * v[1] * v[1]
+
+
+@checked
+def double_pendulum(
+    a: float = -1.0,
+    b: float = -1.2,
+    wall: float = 0.0,
+    restitution: float = 0.7,
+    g: float = 9.81,
+    t_end: float = 3.0,
+) -> Scene:
+    """Double pendulum let go at the angles a, b [rad], whose tip strikes the wall x = `wall` [m]."""
+    return Scene(
+        system=System(2, mass, force),
+        contacts=Contacts(
+            1,
+            wall_gap,
+            wall_jacobian,
+            bias=wall_bias,
+            restitution=restitution,
+        ),
+        q0=[a, b],
+        v0=[0.0, 0.0],
+        t_span=(0.0, t_end),
+        p=[checks.positive("g", g), wall],
+        parameters={"a": a, "b": b, "wall": wall, "restitution": restitution, "g": g},
+        name="double-pendulum",
+    )
