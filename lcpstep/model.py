@@ -71,6 +71,11 @@ def model(scene: Scene) -> tuple[Model, bool]:
     return _model(scene, _system(scene) | _contacts(scene, scene.contacts))
 
 
+def plain_model(scene: Scene) -> Model:
+    """The scene's model with its callbacks as they are, for a few evaluations of its equations in plain Python."""
+    return Model(**(_system(scene) | _contacts(scene, scene.contacts)))
+
+
 def joint_model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
     contacts = None if scene.joints is None else scene.joints.as_contacts()

@@ -1,0 +1,128 @@
+"""Periodic points of a map by Newton's method, stable and unstable alike, and their multipliers.
+
+    P^n(x) = x;      multipliers: eigenvalues of DP^n(x) = DP(x_{n-1}) ... DP(x_0)
+
+Source: Yu. Kuznetsov, Elements of Applied Bifurcation Theory (Springer 2004), section 10.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import checks
+from lcpstep.analysis.derivative import derivative
+from lcpstep.errors import LcpStepError
+from lcpstep.maps.iteration import Map, iterate
+
+Array = NDArray[np.float64]
+MAX_ITERATIONS = 30
+HALVINGS = 8  # of a Newton step that does not come closer
+CONVERGED = 1e-11  # residual, relative to the size of the point
+STAGNATED = 1e-8  # a residual that rounding keeps from becoming smaller is accepted below this
+
+
+class NotConverged(LcpStepError):
+    """Newton's method found no periodic point; its last one is in `x`, the residual there in `residual`."""
+
+    def __init__(self, message: str, x: Array, residual: float) -> None:
+        super().__init__(message)
+        self.x, self.residual = x, residual
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicPoint:
+    """A point that comes back after n iterations.
+
+    Attributes
+    ----------
+    points : (n, d)   the points of the orbit
+    multipliers : (d,)   eigenvalues of DP^n, largest modulus first
+    residual : max |P^n(x) - x|
+    """
+
+    points: Array
+    multipliers: NDArray[np.complex128]
+    residual: float
+
+    @property
+    def period(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.all(np.abs(self.multipliers) < 1.0))
+
+
+def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
+    """Newton's method for P^n(x) = x, from the guess x.
+
+    Parameters
+    ----------
+    P : map
+    x : (d,)   guess
+    n : number of iterations after which the point comes back
+
+    Raises
+    ------
+    ValueError   n is not positive, or x is no vector of finite numbers
+    NotConverged   no periodic point near the guess
+    """
+    n = checks.count("n", n)
+    x = np.array(checks.vector("x", x))
+    F, image, J = _residual(P, x, n)
+    for _ in range(MAX_ITERATIONS):
+        size = max(1.0, float(np.max(np.abs(x))))
+        error = float(np.max(np.abs(F)))
+        if error <= CONVERGED * size:
+            break
+        step = np.linalg.lstsq(J - np.eye(len(x)), -F, rcond=None)[0]
+        better = _shortened(P, x, F, step, n)
+        if better is None:
+            if error <= STAGNATED * size:
+                break
+            raise NotConverged(f"no point of period {n} near {x.tolist()}: residual {error:.3g}", x, error)
+        x, F, J = better
+    else:
+        raise NotConverged(
+            f"no point of period {n} within {MAX_ITERATIONS} iterations, residual {np.max(np.abs(F)):.3g}",
+            x, float(np.max(np.abs(F))),
+        )  # fmt: skip
+    del image
+    return PeriodicPoint(iterate(P, x, n)[:n], multipliers(J), float(np.max(np.abs(F))))
+
+
+def orbit_derivative(P: Map, points: Array) -> Array:
+    """DP^n along the points x_0 .. x_{n-1} of an orbit."""
+    J = np.eye(points.shape[1])
+    for x in points:
+        J = derivative(P, x) @ J
+    return J
+
+
+def multipliers(J: Array) -> NDArray[np.complex128]:
+    """Eigenvalues of a monodromy matrix, largest modulus first."""
+    values = np.linalg.eigvals(J).astype(complex)
+    return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+def _residual(P: Map, x: Array, n: int) -> tuple[Array, Array, Array]:
+    points = iterate(P, x, n)
+    return points[-1] - x, points[-1], orbit_derivative(P, points[:-1])
+
+
+def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, Array, Array] | None:
+    """The Newton step, halved until it brings the residual down; None where it never does."""
+    for k in range(HALVINGS):
+        trial = x + 0.5**k * step
+        try:
+            moved = iterate(P, trial, n)
+        except (ValueError, LcpStepError):  # outside of where the map is defined
+            continue
+        if np.max(np.abs(moved[-1] - trial)) < np.max(np.abs(F)):
+            return trial, moved[-1] - trial, orbit_derivative(P, moved[:-1])
+    return None

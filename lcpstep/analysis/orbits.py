@@ -1,0 +1,258 @@
+"""Periodic orbits of a scene: by shooting, with their impacts, multipliers, and branches over a parameter.
+
+An orbit O(n, m) closes after n periods of the forcing and has m impacts on the way. Along a branch the impacts
+that pass a corner of the forcing are located, and so is the grazing contact at which a branch ends. Source:
+G. Osorio, Complex Behavior in Impacting Systems, sections 2.8.2, 3.3.2 and 4.4.2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
+from lcpstep.analysis.derivative import derivative
+from lcpstep.analysis.fixed_points import multipliers, periodic_point
+from lcpstep.analysis.variation import PeriodMap
+from lcpstep.events import EventDriven
+from lcpstep.simulate import Method, simulate
+
+Array = NDArray[np.float64]
+SAMPLES = 64  # of the gap per period, between impacts
+GRAZING = 1e-2  # a branch that ends with a contact this soft, relative to the others, ends by grazing
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicOrbit:
+    """A motion that repeats after n periods of the forcing.
+
+    Attributes
+    ----------
+    scene, method, phase : the question; the section is at t = phase x period
+    x : (n, 2 n_q)   states (q, v) on the section
+    time, before, after : (m,)   the impacts: time from the section's t on [s], gap velocities [m/s]
+    sticks : whether the contact closes for good on the way (chattering, or an impact without rebound)
+    multipliers : (2 n_q,)   largest modulus first
+    residual : max |x after n periods - x|
+    """
+
+    scene: Scene
+    method: Method
+    phase: float
+    x: Array
+    time: Array
+    before: Array
+    after: Array
+    sticks: bool
+    multipliers: NDArray[np.complex128]
+    residual: float
+
+    @property
+    def periods(self) -> int:
+        """Periods of the forcing after which the motion repeats, n."""
+        return len(self.x)
+
+    @property
+    def name(self) -> str:
+        """O(n, m), or O(n, chattering) where infinitely many impacts belong to it."""
+        return f"O({self.periods}, {'chattering' if self.sticks else len(self.time)})"
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers lie inside the unit circle."""
+        return bool(np.all(np.abs(self.multipliers) < 1.0))
+
+    @property
+    def phases(self) -> Array:
+        """(m,) phases of the impacts in [0, 1), as shares of the period."""
+        return self.time / self.scene.period % 1.0
+
+    def corner_distances(self) -> Array:
+        """(m, corners) from each corner of the forcing to each impact, as shares of the period in [-1/2, 1/2)."""
+        corners = np.asarray(self.scene.corners) / self.scene.period
+        return (self.phases[:, None] - corners[None, :] + 0.5) % 1.0 - 0.5
+
+    def clearance(self) -> float:
+        """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
+        t_start = self.phase * self.scene.period
+        span = (t_start, t_start + self.periods * self.scene.period)
+        run = simulate(_started(self.scene, self.x[0], span), self.method)
+        times = np.linspace(*span, SAMPLES * self.periods + 1)
+        gaps = np.array(
+            [self.scene.gap(t, q, v)[0][0] for t, q, v in zip(times, *run.at(times), strict=True)]
+        )
+        inner = np.flatnonzero((gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])) + 1
+        free = [k for k in inner if not np.any((self.time > times[k - 1]) & (self.time < times[k + 1]))]
+        return min((self._least_gap(run.at, times[k - 1], times[k + 1]) for k in free), default=np.inf)
+
+    def _least_gap(self, at: Callable[[float], tuple[Array, Array]], a: float, b: float) -> float:
+        from scipy.optimize import minimize_scalar
+
+        def gap(t: float) -> float:
+            return float(self.scene.gap(t, *at(t))[0][0])
+
+        return float(
+            minimize_scalar(gap, bounds=(a, b), method="bounded", options={"xatol": 1e-9 * (b - a)}).fun
+        )
+
+
+def periodic_orbit(
+    scene: Scene, x: ArrayLike, n: int = 1, *, method: Method | None = None, phase: float = 0.0
+) -> PeriodicOrbit:
+    """The periodic orbit near a guess, stable or not, by Newton's method on the stroboscopic map.
+
+    Parameters
+    ----------
+    scene : lagrangian.Scene with a period and one contact
+    x : (2 n_q,)   guess of the state (q, v) at the time phase x period
+    n : periods of the forcing after which it repeats
+    method : EventDriven() where not given. With Moreau the derivatives are differenced.
+    phase : of the section, as a share of the period in [0, 1)
+
+    Raises
+    ------
+    ValueError   a wrong shape, a guess inside of the obstacle
+    NotConverged   no orbit near the guess
+    """
+    P = PeriodMap(scene, method or EventDriven(), phase)
+    x = checks.array("x", x, (2 * scene.n_q,))
+    return _described(P, periodic_point(P, x, n).points)
+
+
+def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
+    """The orbit through points that are known to be periodic."""
+    n = len(points)
+    run = P.follow(points[0], n)
+    J = np.eye(points.shape[1])
+    for x in points:
+        J = derivative(P, x) @ J
+    shown = np.isfinite(run.time[0])
+    start = np.repeat(np.arange(n), run.time.shape[-1]).reshape(n, -1) * P.scene.period
+    return PeriodicOrbit(
+        scene=P.scene, method=P.method, phase=P.phase, x=points, time=(run.time[0] + start)[shown],
+        before=run.before[0][shown], after=run.after[0][shown], sticks=bool(np.any(run.ends)),
+        multipliers=multipliers(J), residual=float(np.max(np.abs(run.states[0, -1] - points[0]))),
+    )  # fmt: skip
+
+
+def _started(scene: Scene, x: Array, span: tuple[float, float]) -> Scene:
+    return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)
+
+
+def quiet_phase(orbit: PeriodicOrbit) -> float:
+    """The phase that is farthest from every impact of the orbit: a good place for a section."""
+    phases = np.sort(orbit.phases)
+    if len(phases) == 0:
+        return orbit.phase
+    pauses = np.diff(np.append(phases, phases[0] + 1.0))
+    k = int(np.argmax(pauses))
+    return float((phases[k] + 0.5 * pauses[k]) % 1.0)
+
+
+def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
+    """The same orbit seen on a section at another phase."""
+    T = orbit.scene.period
+    t = orbit.phase * T
+    span = (t, t + (phase - orbit.phase) % 1.0 * T)
+    if span[1] <= span[0]:
+        return orbit
+    run = simulate(_started(orbit.scene, orbit.x[0], span), orbit.method, keep=[span[1]])
+    x = np.concatenate([run.q[-1], run.v[-1]])
+    return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitBranch:
+    """A branch of periodic orbits: the points of `points`, and the orbit at each.
+
+    Attributes
+    ----------
+    points : Branch   parameter, states on the section, multipliers, special points
+    phase : of the section
+    orbits : the orbits, in the same order
+    special : fold, flip, torus, branch point, jump; and "corner" (an impact at a corner of the forcing) and
+        "grazing" (where the branch ends by it)
+    """
+
+    points: Branch
+    phase: float
+    orbits: tuple[PeriodicOrbit, ...]
+    special: tuple[Special, ...]
+
+
+def continue_orbit(
+    make: Callable[[float], Scene],
+    orbit: PeriodicOrbit,
+    p: float,
+    p_range: tuple[float, float],
+    *,
+    steps: Steps | None = None,
+    forward: bool = True,
+) -> OrbitBranch:
+    """Follow a periodic orbit as a parameter of its scene changes, through folds, stable or not.
+
+    Parameters
+    ----------
+    make : p -> scene
+    orbit : where to start, from `periodic_orbit` at the parameter p
+    p, p_range : parameter of the orbit, and the range that the branch must not leave
+    steps, forward : see `continue_point`
+
+    Raises
+    ------
+    ValueError   the range is empty or reversed, or p lies outside of it
+    NotConverged   the orbit is none of make(p)
+
+    Notes
+    -----
+    The section is put where the orbit is farthest from its impacts. A branch whose impacts wander that far that one
+    reaches the section ends there.
+    """
+    start = moved(orbit, quiet_phase(orbit))
+    n, method, phase = start.periods, start.method, start.phase
+
+    def family(value: float) -> PeriodMap:
+        return PeriodMap(make(value), method, phase)
+
+    def monitor(value: float, x: Array) -> dict[str, float]:
+        run = family(value).follow(x, n)
+        times = run.time[0][np.isfinite(run.time[0])]
+        scene = make(value)
+        if np.any(run.ends) or len(scene.corners) == 0:
+            return {}
+        distance = (times[:, None] - np.asarray(scene.corners)[None, :]) / scene.period
+        distance = (distance + 0.5) % 1.0 - 0.5
+        return {
+            f"corner {len(times)} {i} {k}": float(d)
+            for i, row in enumerate(distance)
+            for k, d in enumerate(row)
+        }
+
+    branch = continue_point(
+        family, start.x[0], p, p_range, n=n, steps=steps, monitor=monitor, forward=forward
+    )
+    orbits = tuple(
+        _described(family(float(value)), family(float(value)).follow(x, n).states[0][np.arange(n) - 1])
+        for value, x in zip(branch.p, branch.x, strict=True)
+    )
+    special = [
+        s._replace(kind=s.kind.split(" ")[0] if s.kind.startswith("corner") else s.kind)
+        for s in branch.special
+    ]
+    last = orbits[-1]
+    if branch.ended.startswith("no point") and _grazes(last):
+        special.append(Special("grazing", float(branch.p[-1]), branch.x[-1], branch.multipliers[-1]))
+    return OrbitBranch(branch, phase, orbits, tuple(special))
+
+
+def _grazes(orbit: PeriodicOrbit) -> bool:
+    """Whether one contact of the orbit is much softer than the others, or is about to appear."""
+    speeds = np.abs(orbit.before)
+    hardest = float(np.max(speeds, initial=0.0))
+    soft = len(speeds) > 1 and float(np.min(speeds)) < GRAZING * hardest
+    height = float(np.ptp(orbit.x[:, 0])) + abs(float(orbit.x[0, 0]))
+    return soft or orbit.clearance() < GRAZING**2 * max(height, 1e-300)

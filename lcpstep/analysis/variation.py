@@ -1,0 +1,214 @@
+"""Derivative of a motion with impacts with respect to its initial state: variational flow and saltation matrices.
+
+Between events J' = F_x J. At an impact of the state x = (q, v) on the surface H(t, x) = g = 0, with x+ = R(t, x-),
+
+    D = R_x + (F+ - R_x F- - R_t) H_x / (H_x F- + H_t),      H_x F- + H_t = u-  (time is a state: rheonomic)
+
+Where infinitely many impacts end, or an impact without rebound, the contact closes and the surplus over the
+surface is lost: the projection along M^-1 G^T onto g = u = 0, of rank two less. Closed, the flow is the
+constrained one; a release is continuous and has D = 1. Source: G. Osorio, Complex Behavior in Impacting Systems,
+eqs. 3.42-3.43 (sign of F_x- there: by differences); A. Nordmark, P. Piiroinen, Nonlinear Dynamics 58 (2009).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.analysis.derivative import differences
+from lcpstep.errors import LcpStepError
+from lcpstep.events import EventDriven
+from lcpstep.maps.local import Local
+from lcpstep.maps.stroboscopic import StroboscopicMap
+from lcpstep.simulate import simulate
+from lcpstep.trajectory import Kind, Status, Trajectory
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-11  # of the variational flow where it is integrated
+
+
+def factors(run: Trajectory) -> list[Array]:
+    """The derivative of a motion's end by its start, as matrices to be multiplied from the left one by one.
+
+    Parameters
+    ----------
+    run : trajectory of `lcpstep.EventDriven` that kept its states at events or at every step
+
+    Returns
+    -------
+    list of (2 n_q, 2 n_q)   smooth flows and saltation matrices in the order of time
+
+    Raises
+    ------
+    LcpStepError   the run ended early, or a scene has more than one contact
+    """
+    if run.scene.n_c > 1:
+        raise LcpStepError(
+            f"scene: saltation matrices take one contact, {run.scene.name!r} has {run.scene.n_c}"
+        )
+    if run.status != Status.DONE:
+        raise LcpStepError(f"the motion ended early: {run.message}")
+    return _Variation(run).factors()
+
+
+def saltation(local: Local, t: float, q: Array, before: Array, after: Array) -> Array:
+    """D of an impact, (2 n_q, 2 n_q)."""
+    n = len(q)
+    G, u = local.rates(t, q, before)
+    F_before = np.concatenate([before, local.acceleration(t, q, before)])
+    F_after = np.concatenate([after, local.acceleration(t, q, after)])
+    R_x, R_t = _impact_law(local, t, q, before)
+    H_x = np.concatenate([G, np.zeros(n)])
+    return R_x + np.outer(F_after - R_x @ F_before - R_t, H_x) / u
+
+
+def _impact_law(local: Local, t: float, q: Array, v: Array) -> tuple[Array, Array]:
+    """R_x (2 n_q, 2 n_q) and R_t (2 n_q,) of the state after an impact, (q, v+)."""
+    n, r = len(q), local.restitution
+    MG, W = local.response(t, q, v)
+    G, _ = local.rates(t, q, v)
+    R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
+    R_x[n:, n:] -= (1.0 + r) / W * np.outer(MG, G)
+    if local.model.flat and local.model.linear:
+        R_t[n:] = -(1.0 + r) / W * MG * local.bias(t, q, v)
+    else:
+        R_x[n:, :n] = differences(lambda y: local.after_impact(t, y, v), q)
+        R_t[n:] = differences(lambda s: local.after_impact(float(s[0]), q, v), np.array([t]))[:, 0]
+    return R_x, R_t
+
+
+def landing(local: Local, t: float, q: Array, v: Array) -> Array:
+    """The projection where the contact closes for good: what is left of a deviation, (2 n_q, 2 n_q)."""
+    n = len(q)
+    MG, W = local.response(t, q, v)
+    G, _ = local.rates(t, q, v)
+    loss = np.outer(MG, G) / W
+    D = np.eye(2 * n)
+    D[:n, :n] -= loss
+    D[n:, n:] -= loss
+    if not local.model.flat:
+        D[n:, :n] -= np.outer(MG, differences(lambda y: np.array([local.rates(t, y, v)[1]]), q)[0]) / W
+    return D
+
+
+class _Variation:
+    """Walks along a trajectory."""
+
+    def __init__(self, run: Trajectory) -> None:
+        self.run, self.local = run, Local(run.scene)
+        self.linear = bool(self.local.model.linear and self.local.model.flat)
+
+    def factors(self) -> list[Array]:
+        run, spans, jumps = self.run, [], []
+        t, closed, row = float(run.t[0]), False, 0
+        for event in run.impacts:
+            # A chattering sequence counts as closed from its last impact on; its end is noted for later.
+            now = t if event.kind == Kind.ACCUMULATION else min(float(event.time), float(run.t[-1]))
+            if event.kind == Kind.STICK and jumps and jumps[-1][0] == Kind.ACCUMULATION:
+                now = t
+            spans.append((t, now, closed, row))
+            row = max(int(np.searchsorted(run.t, now, side="right")) - 1, 0)
+            jumps.append((event.kind, now, event.impulse, row))
+            closed = event.kind == Kind.STICK or (closed and event.kind != Kind.RELEASE)
+            t = now
+        spans.append((t, float(run.t[-1]), closed, row))
+        flows = self.flows(spans)
+        result = [flows[0]]
+        for jump, flow in zip(jumps, flows[1:], strict=True):
+            result += [self.jump(*jump), flow]
+        return result
+
+    def jump(self, kind: int, t: float, impulse: float, row: int) -> Array:
+        """The matrix of an event."""
+        q, v = self.run.q[row], self.run.v[row]
+        if kind == Kind.IMPACT:
+            before = self.local.before_impact(t, q, v, impulse)
+            return saltation(self.local, t, q, before, v)
+        if kind == Kind.STICK:
+            return landing(self.local, t, q, v)
+        return np.eye(2 * len(q))
+
+    def flows(self, spans: list[tuple[float, float, bool, int]]) -> list[Array]:
+        """The smooth flow over each span."""
+        from scipy.linalg import expm
+
+        if not self.linear:
+            return [self.integrated(*span) for span in spans]
+        free, constrained = self.matrices()
+        stack = np.array([(b - a) * (constrained if closed else free) for a, b, closed, _ in spans])
+        return list(expm(stack))
+
+    def matrices(self) -> tuple[Array, Array]:
+        """State matrices of a linear system, free and with its contact closed."""
+        m, n = self.local.model, self.run.scene.n_q
+        free = np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
+        if self.run.scene.n_c == 0:
+            return free, free
+        MG, W = m.M_inverse @ m.G[0], float(m.G[0] @ m.M_inverse @ m.G[0])
+        keep = np.eye(n) - np.outer(MG, m.G[0]) / W
+        both = np.block([[keep, np.zeros((n, n))], [np.zeros((n, n)), keep]])
+        return free, both @ free
+
+    def integrated(self, a: float, b: float, closed: bool, row: int) -> Array:
+        """State and variations together, over a span of any system."""
+        from scipy.integrate import solve_ivp
+
+        n = self.run.scene.n_q
+        if b <= a:
+            return np.eye(2 * n)
+
+        def right_hand_side(t: float, y: Array) -> Array:
+            x, J = y[: 2 * n], y[2 * n :].reshape(2 * n, 2 * n)
+            A = differences(lambda z: self.field(t, z, closed), x)
+            return np.concatenate([self.field(t, x, closed), (A @ J).ravel()])
+
+        start = np.concatenate([self.run.q[row], self.run.v[row], np.eye(2 * n).ravel()])
+        done = solve_ivp(right_hand_side, (a, b), start, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE)
+        if not done.success:
+            raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
+        return np.asarray(done.y[2 * n :, -1].reshape(2 * n, 2 * n))
+
+    def field(self, t: float, x: Array, closed: bool) -> Array:
+        """F, or F_s = F - W^-1 alpha M^-1 G^T with the contact closed."""
+        n = self.run.scene.n_q
+        q, v = np.ascontiguousarray(x[:n]), np.ascontiguousarray(x[n:])
+        a = self.local.acceleration(t, q, v)
+        if closed:
+            MG, W = self.local.response(t, q, v)
+            G, _ = self.local.rates(t, q, v)
+            a = a - MG * (float(G @ a) + self.local.bias(t, q, v)) / W
+        return np.concatenate([v, a])
+
+
+def monodromy(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, float]) -> Array:
+    """Derivative of the state at t[1] by the state x = (q, v) at t[0], (2 n_q, 2 n_q).
+
+    Raises
+    ------
+    ValueError   x lies inside of the obstacle
+    LcpStepError   the motion ended early, or the scene has more than one contact
+    """
+    run = _motion(scene, method, x, t)
+    result = np.eye(2 * scene.n_q)
+    for factor in factors(run):
+        result = factor @ result
+    return result
+
+
+def _motion(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, float]) -> Trajectory:
+    from dataclasses import replace
+
+    x = checks.array("x", x, (2 * scene.n_q,))
+    n = scene.n_q
+    return simulate(replace(scene, q0=x[:n], v0=x[n:], t_span=t), method, keep="impacts")
+
+
+class PeriodMap(StroboscopicMap):
+    """The stroboscopic map of an event-driven motion with its derivative by saltation matrices."""
+
+    def jacobian(self, x: ArrayLike) -> Array:
+        """DP(x), (2 n_q, 2 n_q)."""
+        if not isinstance(self.method, EventDriven):
+            return differences(self, x)
+        return monodromy(self.scene, self.method, x, (self.time, self.time + self.scene.period))

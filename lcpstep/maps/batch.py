@@ -1,0 +1,200 @@
+"""Many runs of one scene over many periods of its forcing, by either integrator: states, impacts, how each ended.
+
+The one door to the fast ways: event-driven runs with closed-form flow (`follow`) and time-stepping in lockstep
+(`lockstep`); all other systems are simulated one period after another.
+"""
+
+from __future__ import annotations
+
+import math
+from copy import copy
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.errors import SimulationError
+from lcpstep.events import EventDriven
+from lcpstep.maps import follow, lockstep
+from lcpstep.simulate import Method, simulate
+from lcpstep.stepping.moreau import Moreau
+from lcpstep.trajectory import Kind, Status
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+INSIDE = follow.INSIDE  # in place of a `Status`: the start lies inside of the obstacle
+IMPACTS_KEPT = 64  # of each period; their number is known beyond
+ROUNDING = 64 * np.finfo(float).eps
+
+
+@dataclass(frozen=True, eq=False)
+class Periods:
+    """What became of m runs; `kept` periods of each were looked at.
+
+    Attributes
+    ----------
+    states : (m, kept, 2 n_q)   (q, v) at the end of each kept period
+    time, before, after : (m, kept, most)   time [s] and gap velocities [m/s] of the first impacts in each period,
+        nan where there were fewer
+    impacts : (m, kept)   number of impacts in each period
+    ends : (m, kept)   how often in each period the contact closed for good: chattering sequences that ended
+    reached : (m,)   number of the target a run came near to, -1 for none
+    taken : (m,)   periods taken
+    final : (m, 2 n_q)   last state
+    status : (m,)   a `Status`, or INSIDE for a start inside of the obstacle
+    """
+
+    states: Array
+    time: Array
+    before: Array
+    after: Array
+    impacts: Ints
+    ends: Ints
+    reached: Ints
+    taken: Ints
+    final: Array
+    status: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class Targets:
+    """Where a run may end: points (k, 2 n_q), radii (k,) in units of `scale` (2 n_q,)."""
+
+    points: Array
+    radius: Array
+    scale: Array
+
+
+def periods(
+    scene: Scene,
+    method: Method,
+    starts: ArrayLike,
+    n: int,
+    *,
+    drop: int = 0,
+    phase: float = 0.0,
+    most: int = IMPACTS_KEPT,
+    targets: Targets | None = None,
+    strict: bool = True,
+) -> Periods:
+    """Follow runs over n periods of the scene's forcing, and keep what happens after the first `drop` of them.
+
+    Parameters
+    ----------
+    scene : lagrangian.Scene with a period
+    method : lcpstep.EventDriven or lcpstep.Moreau
+    starts : (m, 2 n_q) or (2 n_q,)   states (q, v) at the time phase x period
+    n, drop : number of periods, and how many of them are dropped
+    phase : of the section, as a share of the period in [0, 1)
+    most : impacts kept of each period
+    targets : a run ends early, after a whole period, where it comes near one of these
+    strict : a start inside of the obstacle ends its run at once; states that time-stepping has computed may lie
+        there a little, and go on where this is False
+
+    Raises
+    ------
+    ValueError   the scene has no period, or a number is out of range
+    LcpStepError   what the method itself raises for this scene
+    """
+    if not math.isfinite(scene.period):
+        raise ValueError(f"scene: {scene.name!r} has no period, and so no stroboscopic map")
+    n = checks.count("n", n)
+    if not 0 <= drop <= n:
+        raise ValueError(f"drop: expected 0 <= drop <= n = {n}, got {drop}")
+    task = _task(scene, starts, n, drop, section(phase) * scene.period, most, targets)
+    fast: follow.Follower | lockstep.Lockstep | None = None
+    if isinstance(method, EventDriven) and scene.n_c == 1:
+        fast = follow.Follower(scene, method, task.t_start)
+        codes = follow.CODES
+    elif isinstance(method, Moreau) and targets is None:
+        fast = lockstep.Lockstep(scene, method)
+        codes = lockstep.CODES
+    if fast is not None and fast.usable:
+        fast.run(task, strict)
+        status = np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64)
+    else:
+        one_by_one(scene, method, task, strict)
+        status = task.codes
+    return Periods(
+        states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
+        impacts=task.counts[..., 0], ends=task.counts[..., 1], reached=task.reached, taken=task.taken,
+        final=task.final, status=status,
+    )  # fmt: skip
+
+
+def section(phase: float) -> float:
+    """The phase of a section, checked."""
+    phase = checks.number("phase", phase, least=0.0, most=1.0)
+    if phase == 1.0:
+        raise ValueError("phase: expected a share of the period in [0, 1), got 1")
+    return phase
+
+
+def _task(
+    scene: Scene, starts: ArrayLike, n: int, drop: int, t: float, most: int, targets: Targets | None
+) -> follow.Task:
+    d = 2 * scene.n_q
+    x = np.array(starts, dtype=float, ndmin=2)
+    if x.ndim != 2 or x.shape[1] != d or len(x) == 0:
+        raise ValueError(f"starts: expected states (q, v) of shape (m, {d}), got shape {np.shape(starts)}")
+    if not np.all(np.isfinite(x)):
+        raise ValueError("starts: expected finite numbers")
+    m, kept = len(x), n - drop
+    none = Targets(np.zeros((0, d)), np.zeros(0), np.ones(d))
+    to = none if targets is None else targets
+    return follow.Task(
+        t_start=t, t_end=t + scene.period, drop=drop, periods=n, starts=x,
+        targets=to.points, radius=to.radius, scale=to.scale,
+        states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
+        counts=np.zeros((m, kept, 2), dtype=np.int64), reached=np.full(m, follow.UNREACHED, dtype=np.int64),
+        taken=np.zeros(m, dtype=np.int64), final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
+    )  # fmt: skip
+
+
+def one_by_one(scene: Scene, method: Method, task: follow.Task, strict: bool) -> None:
+    """The task by `simulate`, one run and one period at a time."""
+    for i in range(len(task.starts)):
+        x = task.starts[i].copy()
+        g, _ = scene.gap(task.t_start, x[: scene.n_q], x[scene.n_q :])
+        code = int(Status.DONE)
+        if strict and np.any(g < -ROUNDING * max(1.0, float(np.max(np.abs(x[: scene.n_q]))))):
+            code = INSIDE
+        k = 0
+        while k < task.periods and code == Status.DONE and task.reached[i] == follow.UNREACHED:
+            x, code = _one_period(scene, method, task, x, i, k - task.drop)
+            k += 1
+            if code == Status.DONE and k > task.drop:
+                task.states[i, k - 1 - task.drop] = x
+            if code == Status.DONE and len(task.targets):
+                distance = np.max(np.abs(task.targets - x) / task.scale, axis=1)
+                hits = np.flatnonzero(distance <= task.radius)
+                task.reached[i] = hits[0] if len(hits) else follow.UNREACHED
+        task.final[i], task.codes[i], task.taken[i] = x, code, k
+
+
+def _one_period(
+    scene: Scene, method: Method, task: follow.Task, x: Array, i: int, k: int
+) -> tuple[Array, int]:
+    one = continued(scene, x, (task.t_start, task.t_end))
+    try:
+        run = simulate(one, method, keep=[task.t_end])
+    except SimulationError as error:
+        return x, int(error.trajectory.status)
+    if run.status != Status.DONE:
+        return x, int(run.status)
+    if k >= 0:
+        log = run.impacts[run.impacts.kind == Kind.IMPACT]
+        shown = log[: task.impacts.shape[2]]
+        task.impacts[i, k, : len(shown)] = np.stack([shown.time, shown.before, shown.after], axis=1)
+        task.counts[i, k] = len(log), int(np.sum(run.impacts.kind == Kind.STICK))
+    return np.concatenate([run.q[-1], run.v[-1]]), int(Status.DONE)
+
+
+def continued(scene: Scene, x: Array, t_span: tuple[float, float]) -> Scene:
+    """The scene from another state on, which is not checked: time-stepping may have left it inside of the obstacle."""
+    result = copy(scene)
+    state = {"q0": x[: scene.n_q].copy(), "v0": x[scene.n_q :].copy(), "t_span": t_span}
+    for name, value in state.items():
+        object.__setattr__(result, name, value)
+    return result
