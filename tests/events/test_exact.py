@@ -1,5 +1,6 @@
 """The closed-form flow and its events against fifty digits: oscillator, cam-follower, table."""
 
+import functools
 import math
 
 import numpy as np
@@ -13,11 +14,13 @@ from tests.exact import ACCUMULATION, IMPACT, RELEASE, STICK, Body, at_rest, cam
 from tests.models import GRAVITY, ball_on_table
 
 
+@functools.cache
 def oscillator(zeta=0.05, omega=2.0, amplitude=1.0, stop=0.0, restitution=0.8, q0=-0.5, v0=0.0, t_end=100.0):
     body = Body(c=2 * mpf(zeta), k=1, fc=amplitude, Omega=omega, r=restitution, side=-1, s=at_rest(stop))
     return motion(body, q0, v0, t_end)
 
 
+@functools.cache
 def follower(rpm, q0=0.4, v0=0.4, t_end=2.0):
     body = Body(m=1.221, k=1430.8, r=0.8, s=cam(rpm), corners=cam_corners(rpm), scan=mpf(60) / mpf(rpm) / 150)
     c, dc, _ = body.s(mpf(0), mpf("1e-6"))
