@@ -74,13 +74,13 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     """
     n = checks.count("n", n)
     x = np.array(checks.vector("x", x))
-    F, image, J = _residual(P, x, n)
+    F, J = _residual(P, x, n)
     for _ in range(MAX_ITERATIONS):
         size = max(1.0, float(np.max(np.abs(x))))
         error = float(np.max(np.abs(F)))
         if error <= CONVERGED * size:
             break
-        step = np.linalg.lstsq(J - np.eye(len(x)), -F, rcond=None)[0]
+        step: Array = np.linalg.lstsq(J - np.eye(len(x)), -F, rcond=None)[0].astype(float)
         better = _shortened(P, x, F, step, n)
         if better is None:
             if error <= STAGNATED * size:
@@ -92,7 +92,6 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
             f"no point of period {n} within {MAX_ITERATIONS} iterations, residual {np.max(np.abs(F)):.3g}",
             x, float(np.max(np.abs(F))),
         )  # fmt: skip
-    del image
     return PeriodicPoint(iterate(P, x, n)[:n], multipliers(J), float(np.max(np.abs(F))))
 
 
@@ -110,9 +109,9 @@ def multipliers(J: Array) -> NDArray[np.complex128]:
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-def _residual(P: Map, x: Array, n: int) -> tuple[Array, Array, Array]:
+def _residual(P: Map, x: Array, n: int) -> tuple[Array, Array]:
     points = iterate(P, x, n)
-    return points[-1] - x, points[-1], orbit_derivative(P, points[:-1])
+    return points[-1] - x, orbit_derivative(P, points[:-1])
 
 
 def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, Array, Array] | None:

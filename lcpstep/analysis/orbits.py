@@ -222,7 +222,7 @@ def continue_orbit(
         run = family(value).follow(x, n)
         times = run.time[0][np.isfinite(run.time[0])]
         scene = make(value)
-        if np.any(run.ends) or len(scene.corners) == 0:
+        if np.any(run.ends) or np.size(scene.corners) == 0:
             return {}
         distance = (times[:, None] - np.asarray(scene.corners)[None, :]) / scene.period
         distance = (distance + 0.5) % 1.0 - 0.5

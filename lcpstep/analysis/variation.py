@@ -100,7 +100,8 @@ class _Variation:
         self.linear = bool(self.local.model.linear and self.local.model.flat)
 
     def factors(self) -> list[Array]:
-        run, spans, jumps = self.run, [], []
+        run, spans = self.run, []
+        jumps: list[tuple[int, float, float, int]] = []
         t, closed, row = float(run.t[0]), False, 0
         for event in run.impacts:
             # A chattering sequence counts as closed from its last impact on; its end is noted for later.

@@ -192,7 +192,7 @@ def _one_period(
 
 
 def continued(scene: Scene, x: Array, t_span: tuple[float, float]) -> Scene:
-    """The scene from another state on, which is not checked: time-stepping may have left it inside of the obstacle."""
+    """The scene from another state on, unchecked: time-stepping may have left it inside of the obstacle."""
     result = copy(scene)
     state = {"q0": x[: scene.n_q].copy(), "v0": x[scene.n_q :].copy(), "t_span": t_span}
     for name, value in state.items():

@@ -112,9 +112,10 @@ class Lockstep:
         """Fill in the answers of the task."""
         kernel = compiled(advance) if self.fast else advance
         m, x = self.model, task.starts
+        zeros = {name: np.zeros(len(x)) for name in ("g", "u", "p", "before", "slack")}
         lanes = Lanes(
-            q=x[:, 0].copy(), v=x[:, 1].copy(), g=np.zeros(len(x)), u=np.zeros(len(x)), p=np.zeros(len(x)),
-            before=np.zeros(len(x)), slack=np.zeros(len(x)), closed=np.zeros(len(x), dtype=np.int64), q0=np.zeros(1), force=np.zeros(1),
+            q=x[:, 0].copy(), v=x[:, 1].copy(), closed=np.zeros(len(x), dtype=np.int64), q0=np.zeros(1),
+            force=np.zeros(1), **zeros,
         )  # fmt: skip
         self.measure(lanes, task.t_start)
         size = np.maximum(1.0, np.abs(lanes.q))

@@ -245,5 +245,5 @@ def cam(rpm):
 
 def test_ranges_that_make_no_sense_are_refused():
     for span in ((1.0, 0.0), (2.0, 3.0)):
-        with pytest.raises(ValueError, match="p_range|p: expected"):
+        with pytest.raises(ValueError, match=r"p_range|p: expected"):
             continue_point(logistic, [0.5], 1.5, span)
