@@ -14,11 +14,16 @@ from lagrangian.scenes.bouncing_ball import bouncing_ball, dyadic_ball, elastic_
 from lagrangian.scenes.bowl import bowl
 from lagrangian.scenes.cam_follower import cam_follower
 from lagrangian.scenes.catalogue import Entry
+from lagrangian.scenes.chain import elastic_chain
 from lagrangian.scenes.double_pendulum import double_pendulum
+from lagrangian.scenes.dry_friction import coulomb_oscillator, sliding_block, slipping_wheel, slope_landing
 from lagrangian.scenes.grazing import grazing
 from lagrangian.scenes.impact_oscillator import chaotic_oscillator, impact_oscillator, sticking_oscillator
+from lagrangian.scenes.kane_pendulum import kane_pendulum
 from lagrangian.scenes.pendulum import pendulum_stop
 from lagrangian.scenes.piles import block_on_feet, heavy_on_light, stack
+from lagrangian.scenes.rocking_block import rocking_block
+from lagrangian.scenes.slider_crank import slider_crank
 from lagrangian.scenes.table import ball_on_table, chattering_table, jumping_table
 
 CATALOGUE: dict[str, Entry] = {
@@ -132,6 +137,46 @@ CATALOGUE: dict[str, Entry] = {
         hazard="sweeping methods need 14 R sweeps, direct ones lose log10 R digits of the forces",
         answer="forces g R and g (R + 1)",
     ),
+    "elastic-chain": Entry(
+        elastic_chain,
+        hazard="the contact force oscillates; implicit steps lose the energy; the highest mode limits the step",
+        answer="modes between contact and release, which is where the force vanishes",
+    ),
+    "rocking-block": Entry(
+        rocking_block,
+        hazard="both corners at once kill the rocking; the energy grows; impacts accumulate",
+        answer="elliptic integrals; each impact leaves 1 - 3/2 sin^2(alpha) of the rate; stops in finite time",
+    ),
+    "coulomb-oscillator": Entry(
+        coulomb_oscillator,
+        hazard="creeping, or a sign that flips for ever",
+        answer="half cycles of amplitude falling by 2 mu N/k; stops within the dead zone at a known place",
+    ),
+    "slipping-wheel": Entry(
+        slipping_wheel,
+        hazard="the change from slipping to rolling falls inside a step",
+        answer="slips until u0/(mu g (1 + m R^2/I)), then rolls",
+    ),
+    "sliding-block": Entry(
+        sliding_block,
+        hazard="the block is dragged backwards, or creeps",
+        answer="stops at v0/(mu g) after v0^2/(2 mu g)",
+    ),
+    "slope-landing": Entry(
+        slope_landing,
+        hazard="the friction impulse is forgotten at the impact",
+        answer="sticks iff |v_T| <= mu |v_N|; slides with g (sin a - mu cos a) otherwise",
+    ),
+    "kane-pendulum": Entry(
+        kane_pendulum,
+        hazard="Newton's law on the normal with Coulomb's on the tangent creates energy, silently",
+        answer="Newton and Coulomb: +58.75 % energy; Moreau's law: -43.76 %",
+    ),
+    "slider-crank": Entry(
+        slider_crank,
+        hazard="many nearly simultaneous impacts of the corners",
+        answer="constant energy of the free mechanism; self-convergence",
+    ),
     "cam-follower": Entry(
         cam_follower,
         hazard="chattering, sticking, and release at a corner of the cam",
@@ -150,9 +195,11 @@ __all__ = [
     "chaotic_oscillator",
     "chattering_table",
     "column",
+    "coulomb_oscillator",
     "double_pendulum",
     "dyadic_ball",
     "elastic_ball",
+    "elastic_chain",
     "elastic_gas",
     "falling_gas",
     "galperin",
@@ -161,8 +208,14 @@ __all__ = [
     "impact_oscillator",
     "inelastic_collapse",
     "jumping_table",
+    "kane_pendulum",
     "newtons_cradle",
     "pendulum_stop",
+    "rocking_block",
+    "slider_crank",
+    "sliding_block",
+    "slipping_wheel",
+    "slope_landing",
     "stack",
     "sticking_oscillator",
 ]

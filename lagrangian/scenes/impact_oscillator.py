@@ -1,8 +1,8 @@
 """The driven impact oscillator: x'' + 2 zeta x' + x = amplitude cos(omega t), x <= stop.
 
-Source: G. Osorio, Complex Behavior in Impacting Systems, eq. 2.18. Between impacts the motion is known in
-closed form. What usually goes wrong: time-stepping is of order one however smooth the motion in between; a mass that
-rests against its stop is released late, early, or never.
+Source: G. Osorio, Complex Behavior in Impacting Systems, eq. 2.18. Between impacts the motion is known in closed
+form. What usually goes wrong: time-stepping is of order one however smooth the motion in between; a mass that rests
+against its stop is released late, early, or never.
 """
 
 from __future__ import annotations

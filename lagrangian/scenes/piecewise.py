@@ -2,10 +2,10 @@
 
     y'' + 2 delta y' + kappa y = f0 + C cos(Omega t) + S sin(Omega t),   y >= s(t),   u+ = -r u-,  u = y' - s'
 
-Between impacts y is a sum of exponentials (or a parabola) and a steady oscillation, so every state is exact and only
-the times of impacts and releases are roots, found to rounding. This is the answer that integrators are measured
-against: plain, slow, and written without any of them. Source of the formulas: L. Meirovitch, Fundamentals of
-Vibrations, chapters 2 and 3; of the modes: G. Osorio, Complex Behavior in Impacting Systems, eq. 3.16.
+Between impacts y is a sum of exponentials (or a parabola) and a steady oscillation, so every state is exact and
+only the times of impacts and releases are roots, found to rounding. This is the answer that integrators are
+measured against: plain, slow, and written without any of them. Source of the formulas: L. Meirovitch, Fundamentals
+of Vibrations, chapters 2 and 3; of the modes: G. Osorio, Complex Behavior in Impacting Systems, eq. 3.16.
 
 A hop is solved for from the gap acceleration alone, g/tau = u + tau int_0^1 (1 - x) (y'' - s'')(x tau) dx, in which
 nothing cancels; so chattering is followed until its hops are shorter than the rounding of time.

@@ -4,7 +4,8 @@ Three tables: one that shakes the ball in a periodic orbit of one impact a perio
 and fly off again, and one whose velocity jumps. At such a jump (a corner of degree one) the convention of this
 library is: the obstacle's velocity at a corner is the new one. So a ball at rest on a table that is suddenly pushed
 up with V is struck with u- = -V and leaves with r V; if the table drops, the ball is released; a ball that arrives
-at the very time of the corner meets the new velocity. What usually goes wrong: the velocity of the table is taken at the wrong time.
+at the very time of the corner meets the new velocity. What usually goes wrong: the velocity of the table is taken
+at the wrong time.
 """
 
 from __future__ import annotations
