@@ -1,7 +1,7 @@
 """The smooth motion between events, as kernels: pieces that can be asked for any time within them.
 
-A piece starts at a base time with the state (q, v). Free, it follows M v' = f, either in closed form (one linear
-degree of freedom) or by one DOP853 step; closed, the contact force keeps g = 0:
+A piece starts at a base time with the state (q, v) and is one DOP853 step long. Free, it follows M v' = f; closed,
+the contact force keeps g = 0:
 
     v' = M^-1 (f + G^T lambda),    lambda = -alpha / (G M^-1 G^T),    alpha = G M^-1 f + bias
 
@@ -17,13 +17,12 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign, positive_definite, solve_definite, split
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.events.dop853 import STAGES, combine, interpolant, interpolate
-from lcpstep.events.oscillator import flow
 from lcpstep.model import ABSENT
 
 FREE, CLOSED = 0, 1  # modes of the contact
 # Places in the array of a piece's numbers
-T0, T0_REST, LENGTH, LOW, HIGH, SCALE, MODE, Y0, W0, SPEED0, ALPHA0, ON_SURFACE, REST = range(13)
-N_NUMBERS = 13
+T0, T0_REST, LENGTH, LOW, HIGH, SCALE, MODE, SPEED0, ALPHA0, ON_SURFACE, REST = range(11)
+N_NUMBERS = 11
 NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
 DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
 GAUSS = (  # nodes and weights on [0, 1]
@@ -183,9 +182,7 @@ def stages(model: Any, piece: Any, tab: Any, w: Any, t: float, h: float, first: 
 
 def state_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> None:
     """q and v at the time tau after the base of the piece, into the piece."""
-    if osc.closed_form:
-        closed_form_state(model, osc, piece, tau)
-    elif tau == 0.0:
+    if tau == 0.0:
         assign(piece.q, piece.q0)
         assign(piece.v, piece.v0)
     else:
@@ -193,51 +190,8 @@ def state_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> None:
         split(piece.y, piece.q, piece.v)
 
 
-@inline
-def closed_form_state(model: Any, osc: Any, piece: Any, tau: float) -> None:
-    """q, v (and, free, the acceleration) of the one linear degree of freedom."""
-    t = piece.x[T0] + tau
-    if piece.x[MODE] == CLOSED:
-        piece.q[0], piece.v[0] = -model.offset[0] / model.G[0, 0], 0.0
-        if model.motion != ABSENT:
-            call(model.motion, t, piece.q0, piece.v0, model.p, model.motion_now)
-            piece.q[0] += model.motion_now[0, 0] / model.G[0, 0]
-            piece.v[0] = model.motion_now[0, 1] / model.G[0, 0]
-        return
-    y, w, a = flow(osc.oscillator, piece.x[T0], piece.x[Y0], piece.x[W0], tau)
-    piece.q[0], piece.v[0], piece.a[0] = y, w, a
-    if model.frame != ABSENT:
-        call(model.frame, t, piece.q0, piece.v0, model.p, model.frame_now)
-        piece.q[0] -= model.frame_now[0, 0]
-        piece.v[0] -= model.frame_now[0, 1]
-        side = inside(piece, t)
-        if side != t:
-            call(model.frame, side, piece.q0, piece.v0, model.p, model.frame_now)
-        piece.a[0] -= model.frame_now[0, 2]
-
-
-@inline
 def contact_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> tuple[float, float, float]:
     """Gap, gap velocity and gap acceleration of the free motion, at tau after the base of the piece."""
-    if not osc.closed_form or piece.x[MODE] == CLOSED:
-        return general_contact_at(model, osc, piece, w, tau)
-    closed_form_state(model, osc, piece, tau)
-    G = model.G[0, 0]
-    g, u, alpha = model.offset[0] + G * piece.q[0], G * piece.v[0], G * piece.a[0]
-    if model.motion != ABSENT:
-        t = piece.x[T0] + tau
-        side = inside(piece, t)
-        call(model.motion, t, piece.q0, piece.v0, model.p, model.motion_now)
-        g -= model.motion_now[0, 0]
-        u -= model.motion_now[0, 1]
-        if side != t:
-            call(model.motion, side, piece.q0, piece.v0, model.p, model.motion_now)
-        alpha -= model.motion_now[0, 2]
-    return g, u, alpha
-
-
-def general_contact_at(model: Any, osc: Any, piece: Any, w: Any, tau: float) -> tuple[float, float, float]:
-    """The same by the equations of the model, at whatever state the piece has there."""
     t = piece.x[T0] + tau
     state_at(model, osc, piece, w, tau)
     gaps(model, t, piece.q, piece.v, piece.g)

@@ -17,7 +17,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call
 from lcpstep.dense import assign, join
 from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor
@@ -36,8 +35,6 @@ from lcpstep.events.flow import (
     SPEED0,
     T0,
     T0_REST,
-    W0,
-    Y0,
     after,
     contact_at,
     contact_response,
@@ -51,16 +48,26 @@ from lcpstep.events.flow import (
     state_at,
 )
 from lcpstep.events.locate import NONE, first_contact, first_release, short_hop
-from lcpstep.model import ABSENT
+from lcpstep.events.run import (
+    BUFFER_FULL,
+    EVENT,
+    EVENTS,
+    FINISHED,
+    FORCES,
+    NEVER_LEFT,
+    NEXT_TIME,
+    NOT_FINITE,
+    ROW,
+    SLACK,
+    STALLED,
+    STEP,
+    STEP_TOO_SMALL,
+    TOO_MANY_EVENTS,
+)
 from lcpstep.recording import LEAD, write_event, write_row
 from lcpstep.recording import LENGTH as STEP_LENGTH
 from lcpstep.recording import TIME as ROW_TIME
 
-# Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
-# Places in the array of counters
-STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS, STALLED = range(7)
-N_COUNTERS = 7
 # Places in the array of the loop's numbers
 NOW, NEXT_STEP, EDGE_G, EDGE_U, EDGE_ALPHA, IMPULSE = range(6)
 FROM, TO, END, FOUND, HOP = range(6, 11)  # the interval at hand, after the base; its end; an event within it
@@ -71,20 +78,16 @@ IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 
 RESOLUTION = 2.0**-52
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
-SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
 PARTS = 4  # scan intervals of a Runge-Kutta step
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 LONGER = 3.0  # how much longer than its guess a short hop may last
 MAX_STALLED = 1000  # events at one time
-SLACK = 4  # rows and events that one round of the loop may need
 REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
 
 
 class Flow(NamedTuple):
     """How the smooth motion is computed, and to what tolerance."""
 
-    closed_form: bool
-    oscillator: Any
     contact: bool  # whether the scene has a contact
     scan: float  # longest interval of the scan for events
     nodes: Any  # of the quadrature of contact forces, on [0, 1]
@@ -138,10 +141,7 @@ def run(
         if piece.x[MODE] == CLOSED and x[EDGE_ALPHA] > 0.0:
             release(model, flow, piece, w, record, count, x, x[EDGE_ALPHA])
             keep_event(piece, record, count, x)
-        if flow.closed_form:
-            code = closed_form_interval(model, flow, piece, w, x)
-        else:
-            code = runge_kutta_interval(model, flow, piece, tab, w, count, x)
+        code = runge_kutta_interval(model, flow, piece, tab, w, count, x)
         if code == FINISHED:
             code = finish_interval(model, flow, piece, tab, w, record, count, x)
         elif code == NEVER_LEFT:
@@ -153,34 +153,6 @@ def run(
 
 
 # --- one interval ---------------------------------------------------------------------------------------------
-
-
-def closed_form_interval(model: Any, flow: Any, piece: Any, w: Any, x: Any) -> int:
-    """Up to the next event or the end of the scan interval, of the one linear degree of freedom."""
-    a = x[NOW] - piece.x[T0]
-    end = min(flow.t_end, piece.x[HIGH], x[NOW] + flow.scan)
-    b = end - piece.x[T0]
-    x[END] = end
-    tau, hop = NONE, False
-    if flow.contact and piece.x[MODE] == FREE:
-        guess = hop_time(piece, x)
-        if a == 0.0 and guess < SHORT * flow.scan:
-            tau = short_hop(model, flow, piece, w, guess, min(LONGER * guess, b))
-            hop = tau != NONE
-        at_b = (0.0, 0.0, 0.0)
-        if not hop:
-            at_b = contact_at(model, flow, piece, w, b)
-            if at_b[0] - at_b[0] + at_b[1] - at_b[1] + at_b[2] - at_b[2] != 0.0:
-                state_at(model, flow, piece, w, a)
-                return NOT_FINITE
-            tau = first_contact(model, flow, piece, w, a, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]), b, at_b)
-            if tau == NONE and x[EDGE_G] <= 0.0 and at_b[0] < 0.0:
-                x[HOLD] = end
-                return NEVER_LEFT
-        if tau == NONE:
-            x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = at_b
-    x[FROM], x[TO], x[END], x[FOUND], x[HOP] = a, b, end, tau, 1.0 if hop else 0.0
-    return FINISHED
 
 
 def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, count: Any, x: Any) -> int:
@@ -238,7 +210,7 @@ def finish_interval(
         tau = first_release(model, flow, piece, w, a, min(x[EDGE_ALPHA], 0.0), b)
     stop = b if tau == NONE else tau
     t_stop = end if tau == NONE else min(after(piece, tau), end)
-    if tau != NONE and not flow.closed_form and (closed or hop):
+    if tau != NONE and (closed or hop):
         shorten(model, piece, tab, w, tau)
     if closed:
         x[IMPULSE] += contact_impulse(model, flow, piece, w, a, stop)
@@ -270,7 +242,7 @@ def finish_interval(
 
 def velocity_noise(piece: Any) -> float:
     """Rounding of the gap velocity at the state of the piece [m/s]."""
-    speed = abs(piece.x[W0])
+    speed = 1.0
     for i in range(len(piece.v)):
         speed = max(speed, abs(piece.v[i]))
     return ON_THE_SURFACE * speed
@@ -285,14 +257,11 @@ def pass_end(
         if alpha - alpha + u - u != 0.0:
             return NOT_FINITE
         x[EDGE_ALPHA] = min(alpha, 0.0)
-    kept = record.every > 0 and count[STEP] % record.every == 0
-    if kept or not flow.closed_form or x[NOW] >= flow.t_end:
-        state_at(model, flow, piece, w, stop)
-    if not flow.closed_form:
-        if closed:
-            project(model, piece, x[NOW])
-        rebase(model, flow, piece, w, x[NOW])
-    if kept:
+    state_at(model, flow, piece, w, stop)
+    if closed:
+        project(model, piece, x[NOW])
+    rebase(model, flow, piece, w, x[NOW])
+    if record.every > 0 and count[STEP] % record.every == 0:
         keep(piece, record, count, x, x[NOW])
     return FINISHED
 
@@ -364,12 +333,6 @@ def rebase(model: Any, flow: Any, piece: Any, w: Any, t: float) -> None:
     join(w.y, piece.q, piece.v)
     piece.x[T0], piece.x[ON_SURFACE], piece.x[SPEED0] = t, 0.0, 0.0
     piece.x[T0_REST], piece.x[REST] = piece.x[REST], 0.0
-    if flow.closed_form:
-        piece.x[Y0], piece.x[W0] = piece.q[0], piece.v[0]
-        if model.frame != ABSENT:
-            call(model.frame, t, piece.q0, piece.v0, model.p, model.frame_now)
-            piece.x[Y0] += model.frame_now[0, 0]
-            piece.x[W0] += model.frame_now[0, 1]
 
 
 # --- events ---------------------------------------------------------------------------------------------------
@@ -444,12 +407,9 @@ def surface_acceleration(model: Any, piece: Any, t: float) -> float:
 def stick(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, t_log: float) -> None:
     """From now on the contact is closed; t_log: when the log says so (the end of a chattering sequence)."""
     piece.x[MODE] = CLOSED
-    if flow.closed_form:
-        state_at(model, flow, piece, w, 0.0)
-    else:
-        assign(piece.q, piece.q0)
-        assign(piece.v, piece.v0)
-        project(model, piece, x[NOW])
+    assign(piece.q, piece.q0)
+    assign(piece.v, piece.v0)
+    project(model, piece, x[NOW])
     rebase(model, flow, piece, w, x[NOW])
     log(record, count, x, t_log, STICK, 0.0, 0.0, 0.0)
 
@@ -465,10 +425,7 @@ def settle_again(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: 
 
 def release(model: Any, flow: Any, piece: Any, w: Any, record: Any, count: Any, x: Any, alpha: float) -> None:
     """The closed contact opens now, with the gap acceleration alpha."""
-    if flow.closed_form:
-        state_at(model, flow, piece, w, x[NOW] - piece.x[T0])
-    else:
-        project(model, piece, x[NOW])
+    project(model, piece, x[NOW])
     rebase(model, flow, piece, w, x[NOW])
     log(record, count, x, x[NOW], RELEASE, 0.0, 0.0, 0.0)
     piece.x[MODE], piece.x[ON_SURFACE] = FREE, 1.0
@@ -570,10 +527,9 @@ def evaluate(model: Any, flow: Any, piece: Any, w: Any, kept: Any, dense: Any, w
         tau = wanted.t[k] - kept.t[row]
         rebase(model, flow, piece, w, kept.t[row])
         piece.x[MODE] = kept.mode[row]
-        if tau > 0.0 and not flow.closed_form:
+        if tau > 0.0:
             assign(w.F, dense[row])
             piece.x[LENGTH] = kept.length[row]
-        if tau > 0.0:
             state_at(model, flow, piece, w, tau)
         assign(wanted.q[k], piece.q)
         assign(wanted.v[k], piece.v)

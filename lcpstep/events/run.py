@@ -1,0 +1,152 @@
+"""A run of the event-driven method, from kernel calls to a trajectory: portions, buffers, and how it ended."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.model import culprit
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.trajectory import Counts, Status, Trajectory
+
+Array = NDArray[np.float64]
+PORTION = 4096  # steps between two looks at the outside world
+# The scan for events must see every turn of the motion: intervals per period of each of its oscillations
+PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
+TRIALS = 17  # of the callbacks within an interval that failed
+
+# Why a loop returned
+FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
+# Places in the array of counters
+STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS, STALLED, MAX_EVENTS = range(8)
+N_COUNTERS = 8
+SLACK = 4  # rows and events that one round of a loop may need
+STATUS = {
+    FINISHED: Status.DONE,
+    NOT_FINITE: Status.NOT_FINITE,
+    TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
+    STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
+}
+
+
+class Run(ABC):
+    """One run: the kernel's arrays, and the portions that it is fed in."""
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept, dense: bool) -> None:
+        self.method, self.scene, self.kept = method, scene, kept
+        rows = PORTION + len(kept.times) + 2 * SLACK
+        self.recorder = Recorder(scene.n_q, scene.n_c, kept, rows, dense=dense)
+        self.count = np.zeros(N_COUNTERS, dtype=np.int64)
+        self.count[MAX_EVENTS] = method.max_events
+
+    @property
+    @abstractmethod
+    def now(self) -> float:
+        """Time reached [s]."""
+
+    @property
+    @abstractmethod
+    def interval_end(self) -> float:
+        """End of the interval at hand [s]."""
+
+    @property
+    @abstractmethod
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+
+    @abstractmethod
+    def advance(self, goal: int) -> int:
+        """Call the kernel, up to step number `goal`; why it returned."""
+
+    @abstractmethod
+    def keep_now(self) -> None:
+        """Write the current state into the recorder's buffers."""
+
+    @abstractmethod
+    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones."""
+
+    def finish(self, progress: Callable[[float], None]) -> Trajectory:
+        """Run to the end of the span, or to where it cannot go on."""
+        code = FINISHED
+        try:
+            while code in (FINISHED, BUFFER_FULL) and self.now < self.scene.t_span[1]:
+                try:
+                    code = self.advance(int(self.count[STEP]) + PORTION)
+                except Exception as error:  # a callback in plain Python; compiled code raises nothing
+                    message = f"a callback failed after t = {self.now:.9g} s: {error}"
+                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+                self.empty()
+                progress(self.now)
+        except KeyboardInterrupt:
+            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+        result = self.trajectory(STATUS[code])
+        if result.status == Status.NOT_FINITE:
+            raise SimulationError(result.message, result)
+        return result
+
+    def empty(self) -> None:
+        """Move the buffers' contents to the recorder, but for the last row, whose step is still to come."""
+        rows = int(self.count[ROW])
+        self.recorder.empty(max(rows - 1, 0), int(self.count[EVENT]))
+        self.recorder.buffers.rows[0] = self.recorder.buffers.rows[max(rows - 1, 0)]
+        self.count[ROW], self.count[EVENT] = min(rows, 1), 0
+
+    def trajectory(self, status: Status) -> Trajectory:
+        """Everything computed so far."""
+        if len(self.kept.times) == 0 and self.now > self.recorder.buffers.rows[self.count[ROW] - 1, 0]:
+            self.keep_now()
+        self.recorder.empty(int(self.count[ROW]), int(self.count[EVENT]))
+        s = self.recorder.states()
+        count = self.count
+        return Trajectory(
+            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=s.impulse,
+            impacts=self.recorder.events(), status=status, message=self.message(status),
+            counts=Counts(
+                steps=int(count[STEP]), force_evaluations=int(count[FORCES]), events=int(count[EVENTS])
+            ),
+            dense=self.dense_output(s),
+        )  # fmt: skip
+
+    def message(self, status: Status) -> str:
+        """How the run ended, in words."""
+        if status == Status.DONE:
+            return "reached the end of the span"
+        q, v = self.state
+        where = f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
+        if status == Status.TOO_MANY_EVENTS:
+            return f"more than max_events = {self.method.max_events} events {where}"
+        if status == Status.STEP_TOO_SMALL:
+            return f"the tolerances rtol = {self.method.rtol:g}, atol = {self.method.atol:g} cannot be met {where}"
+        if status == Status.INTERRUPTED:
+            return f"interrupted {where}"
+        times = np.linspace(self.now, self.interval_end, TRIALS)
+        return f"{culprit(self.scene, times, q, v)} {where}"
+
+
+def between(complete: bool, s: States, evaluate: Callable[[Array, Any], tuple[Array, Array]]) -> Any:
+    """States at any time, from the kept state before each; refused where that state was not kept."""
+
+    def at(times: Array) -> tuple[Array, Array]:
+        if not complete and not np.all(np.isin(times, s.t)):
+            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        return evaluate(times, np.maximum(np.searchsorted(s.t, times, side="right") - 1, 0))
+
+    return at
+
+
+def scan_interval(scene: Scene, rate: float) -> float:
+    """Longest interval on which the gap acceleration may be taken to change its sign only once.
+
+    rate : fastest rate of the free motion [rad/s], 0 where it is not known
+    """
+    candidates = [(scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING]
+    candidates.append(2.0 * math.pi / PER_PERIOD / rate if rate > 0.0 else math.inf)
+    return min(candidates)
