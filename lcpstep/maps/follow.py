@@ -7,7 +7,6 @@ equal images to the last bit, and following n periods is iterating the strobosco
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -15,20 +14,20 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.compiled import compiled
-from lcpstep.dynamics import gaps
-from lcpstep.events import EventDriven, dop853
-from lcpstep.events import integrator as loop
-from lcpstep.events.driven import NEVER_CLOSED_FORM, flow, piece
-from lcpstep.events.flow import FREE, MODE, SCALE
-from lcpstep.events.integrator import ON_THE_SURFACE, run
+from lcpstep.dense import assign
+from lcpstep.events import EventDriven, flight
+from lcpstep.events import run as loop
+from lcpstep.events.closed_form import flight_of, numbers, oscillator_of
+from lcpstep.events.flight import find_corners, free, rebase
+from lcpstep.events.single import ON_THE_SURFACE, run
 from lcpstep.model import model
 from lcpstep.recording import Kept, Recorder
 from lcpstep.trajectory import Kind, Status
 
 IMPACT, ACCUMULATION, STICK = int(Kind.IMPACT), int(Kind.ACCUMULATION), int(Kind.STICK)
 FINISHED, BUFFER_FULL = loop.FINISHED, loop.BUFFER_FULL
-STEP, ROW, EVENT = loop.STEP, loop.ROW, loop.EVENT
-NOW, LAST_EVENT, HOLD = loop.NOW, loop.LAST_EVENT, loop.HOLD
+EVENT, MAX_EVENTS = loop.EVENT, loop.MAX_EVENTS
+CONTACT, NOW, T_END = flight.CONTACT, flight.NOW, flight.T_END
 PERIODS_OF_SPAN = 4  # of the span that the scan for events is made for
 NO_LIMIT = 2**62
 UNREACHED = -1
@@ -57,70 +56,48 @@ class Task(NamedTuple):
     strict: bool  # a start inside of the obstacle ends its run
 
 
-def follow(
-    model: Any, flow: Any, piece: Any, tab: Any, w: Any, record: Any, count: Any, x: Any, task: Any
-) -> None:
-    """Kernel: every run in turn."""
-    n = len(piece.q)
+def follow(s: Any, fresh: Any, record: Any, count: Any, task: Any) -> None:
+    """Kernel: every run in turn. fresh: the numbers of a flight that has not begun."""
     for i in range(len(task.starts)):
-        for j in range(n):
-            piece.q[j], piece.v[j] = task.starts[i, j], task.starts[i, n + j]
+        s.q[0], s.v[0] = task.starts[i, 0], task.starts[i, 1]
         code, k = FINISHED, 0
-        if task.strict and not admissible(model, flow, piece, task.t_start):
+        if task.strict and not admissible(s, fresh, task.t_start):
             code = INSIDE
         while k < task.periods and code == FINISHED and task.reached[i] == UNREACHED:
-            code = one_period(model, flow, piece, tab, w, record, count, x, task, i, k - task.drop)
+            code = one_period(s, fresh, record, count, task, i, k - task.drop)
             k += 1
             if code == FINISHED and k > task.drop:
-                for j in range(n):
-                    task.states[i, k - 1 - task.drop, j] = piece.q[j]
-                    task.states[i, k - 1 - task.drop, n + j] = piece.v[j]
+                task.states[i, k - 1 - task.drop, 0] = s.q[0]
+                task.states[i, k - 1 - task.drop, 1] = s.v[0]
             if code == FINISHED and len(task.targets) > 0:
-                task.reached[i] = near(task, piece, n)
-        for j in range(n):
-            task.final[i, j], task.final[i, n + j] = piece.q[j], piece.v[j]
+                task.reached[i] = near(task, s)
+        task.final[i, 0], task.final[i, 1] = s.q[0], s.v[0]
         task.codes[i], task.taken[i] = code, k
 
 
-def admissible(model: Any, flow: Any, piece: Any, t: float) -> bool:
-    """Kernel: whether the state piece.q, piece.v lies outside of the obstacle, up to rounding."""
-    if not flow.contact:
+def admissible(s: Any, fresh: Any, t: float) -> bool:
+    """Kernel: whether the state s.q, s.v lies outside of the obstacle, up to rounding."""
+    if fresh[CONTACT] == 0.0:
         return True
-    gaps(model, t, piece.q, piece.v, piece.g)
-    size = 1.0
-    for j in range(len(piece.q)):
-        size = max(size, abs(piece.q[j]))
-    return piece.g[0] >= -ON_THE_SURFACE * size
+    q, v = s.q[0], s.v[0]
+    assign(s.x, fresh)
+    find_corners(s, t)
+    rebase(s, t)
+    g, _, _ = free(s, 0.0)
+    s.q[0], s.v[0] = q, v
+    return bool(g >= -ON_THE_SURFACE * max(1.0, abs(q)))
 
 
-def one_period(
-    model: Any,
-    flow: Any,
-    piece: Any,
-    tab: Any,
-    w: Any,
-    record: Any,
-    count: Any,
-    x: Any,
-    task: Any,
-    i: int,
-    k: int,
-) -> int:
-    """Kernel: the state piece.q, piece.v one period later; its events noted if k >= 0."""
-    scale = piece.x[SCALE]
-    for j in range(len(piece.x)):
-        piece.x[j] = 0.0
-    piece.x[MODE], piece.x[SCALE] = FREE, scale
+def one_period(s: Any, fresh: Any, record: Any, count: Any, task: Any, i: int, k: int) -> int:
+    """Kernel: the state s.q, s.v one period later; its events noted if k >= 0."""
+    assign(s.x, fresh)
+    most = count[MAX_EVENTS]
     for j in range(len(count)):
         count[j] = 0
-    for j in range(len(x)):
-        x[j] = 0.0
-    x[NOW], x[LAST_EVENT], x[HOLD] = task.t_start, -math.inf, -math.inf
-    for j in range(len(piece.q)):
-        piece.q0[j], piece.v0[j] = piece.q[j], piece.v[j]
+    count[MAX_EVENTS] = most
     code = BUFFER_FULL
     while code == BUFFER_FULL:
-        code = run(model, flow, piece, tab, w, record, count, x, NO_LIMIT)
+        code = run(s, record, count, NO_LIMIT)
         if k >= 0:
             note_events(record, count, task, i, k)
         count[EVENT] = 0
@@ -142,13 +119,11 @@ def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
             task.counts[i, k, ENDS] += 1
 
 
-def near(task: Any, piece: Any, n: int) -> int:
+def near(task: Any, s: Any) -> int:
     """Kernel: the first target within its radius of the state, or UNREACHED."""
     for k in range(len(task.targets)):
-        distance = 0.0
-        for j in range(n):
-            distance = max(distance, abs(piece.q[j] - task.targets[k, j]) / task.scale[j])
-            distance = max(distance, abs(piece.v[j] - task.targets[k, n + j]) / task.scale[n + j])
+        distance = abs(s.q[0] - task.targets[k, 0]) / task.scale[0]
+        distance = max(distance, abs(s.v[0] - task.targets[k, 1]) / task.scale[1])
         if distance <= task.radius[k]:
             return k
     return UNREACHED
@@ -166,26 +141,22 @@ class Follower:
     """A scene made ready for `follow`: its model, and work space. One thread at a time may use it."""
 
     def __init__(self, scene: Scene, method: EventDriven, t_start: float) -> None:
-        self.scene = scene
+        self.scene, self.method = scene, method
         self.model, self.fast = model(scene)
-        long = (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
-        prepared = flow(replace(scene, t_span=long), self.model, method)
-        self.flow = prepared._replace(t_end=t_start + scene.period)
-
-    @property
-    def usable(self) -> bool:
-        """Whether the motion is known in closed form; other systems take the general way."""
-        return bool(self.flow.closed_form)
+        oscillator = oscillator_of(scene, self.model)
+        self.usable = oscillator is not None  # in closed form; other systems take the general way
+        if oscillator is not None:
+            long = (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
+            self.fresh = numbers(replace(scene, t_span=long), self.model, oscillator, method)
+            self.fresh[NOW], self.fresh[T_END] = t_start, t_start + scene.period
 
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
         scene = self.scene
         record = Recorder(scene.n_q, scene.n_c, Kept(0, True, np.zeros(0)), 2 * loop.SLACK).buffers
         record = record._replace(on_events=False)
-        count, x = np.zeros(loop.N_COUNTERS, dtype=np.int64), np.zeros(loop.N_NUMBERS)
-        kernel = compiled(follow, NEVER_CLOSED_FORM) if self.fast else follow
-        work = dop853.work(2 * scene.n_q)
-        kernel(
-            self.model, self.flow, piece(scene, self.model), dop853.tableau(), work, record, count, x,
-            task._replace(strict=strict),
-        )  # fmt: skip
+        count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
+        count[MAX_EVENTS] = self.method.max_events
+        kernel = compiled(follow) if self.fast else follow
+        s = flight_of(scene, self.model, self.fresh.copy())
+        kernel(s, self.fresh, record, count, task._replace(strict=strict))

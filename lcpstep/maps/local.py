@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.dynamics import gap_rates
-from lcpstep.events.driven import piece
 from lcpstep.events.flow import contact_response, free_acceleration, gap_bias
+from lcpstep.events.runge_kutta import piece
 from lcpstep.model import plain_model
 
 Array = NDArray[np.float64]
