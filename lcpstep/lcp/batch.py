@@ -69,7 +69,7 @@ def solve_lcp_batch(
         raise ValueError(f"guess must have the shape of b, {b.shape}, not {z.shape}")
     w, residual = np.empty((m, n)), np.zeros(m)
     status, iterations = np.zeros(m, dtype=np.int64), np.zeros(m, dtype=np.int64)
-    limit = max(ENOUGH, PER_UNKNOWN * n) if max_iterations is None else max_iterations
+    limit = ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
     if n > 0:
         matrices = W if W.ndim == 3 else W[None]
         compiled(solve_all)(matrices, b, z, w, status, iterations, residual, tol, limit, workspace(n))

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from lcpstep.compiled import compiled
 from lcpstep.lcp.enumeration import enumerate_bases
-from lcpstep.lcp.infeasible import farkas
+from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.judge import judge
-from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
+from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_closed, solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
-from lcpstep.lcp.small import solve_one, solve_two
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
 from lcpstep.lcp.workspace import (
     BEST_RESIDUAL,
@@ -29,8 +27,7 @@ from lcpstep.lcp.workspace import (
     SIZE,
     SLACK,
     carve,
-    integers_needed,
-    numbers_needed,
+    length_needed,
 )
 
 NOT_FINITE = -1
@@ -39,59 +36,46 @@ LARGEST_KEPT = 100  # unknowns up to which work arrays are kept: 250 kB at most
 LARGEST_ENUMERATION = 20  # unknowns; a million bases
 
 
-@cache
-def kernel(entry: Callable[..., Any]) -> Callable[..., Any]:
-    """The compiled twin of an entry, looked up once."""
-    return compiled(entry)
-
-
 class _Kept(threading.local):
-    """Work arrays of small problems by size, kept from call to call; every thread has its own."""
+    """What problems of one size need, kept from call to call; every thread has its own."""
 
     def __init__(self) -> None:
-        self.blocks: dict[int, tuple[Any, Any]] = {}
+        self.tools: dict[int, tuple[Callable[..., Any], Any]] = {}
 
 
 _kept = _Kept()
 
 
-def blocks(n: int) -> tuple[Any, Any]:
-    """Blocks for the work arrays of n unknowns."""
-    found = _kept.blocks.get(n)
-    if found is None:
-        found = np.empty(numbers_needed(n)), np.zeros(integers_needed(n), np.int64)
-        if n <= LARGEST_KEPT:
-            _kept.blocks[n] = found
+def tools_for(n: int) -> tuple[Callable[..., Any], Any]:
+    """The compiled `pivot_once`, and a block for the work arrays of n unknowns."""
+    found = compiled(pivot_once), np.zeros(length_needed(n))
+    if n <= LARGEST_KEPT:
+        _kept.tools[n] = found
     return found
 
 
 def pivot_once(
-    W: Any, b: Any, z: Any, w: Any, numbers: Any, integers: Any, tolerance: float, max_pivots: int
+    W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float, max_pivots: int
 ) -> tuple[int, int, float]:
-    """`solve_dense` on work arrays carved from two blocks: status, iterations, residual; fills z and w."""
+    """`solve_dense` on work arrays carved from a block: status, iterations, residual; fills z and w."""
+    n = b.shape[0]
     if not all_finite(W, b):
         return NOT_FINITE, 0, np.inf
-    work = carve(numbers, integers, b.shape[0])
-    status = solve_dense(W, b, z, tolerance, max_pivots, work)
-    return finish(status, w, work)
-
-
-def closed_form(W: Any, b: Any, out: Any, tolerance: float) -> float:
-    """Residual of the closed form for one or two unknowns, infinite if it has none; out holds z, w and sizes."""
-    if not all_finite(W, b):
-        return np.inf
-    if b.shape[0] == 1:
-        return solve_one(W, b, out[0], out[1], out[2])
-    return solve_two(W, b, out[0], out[1], out[2], tolerance)
+    if n <= 2:  # before the work arrays are made
+        residual = solve_closed(W, b, z, w, block[:n], tolerance)
+        if residual <= tolerance:
+            return SOLVED, 0, residual
+    work = carve(block, n)
+    return finish(solve_dense(W, b, z, tolerance, max_pivots, work), w, work)
 
 
 def enumerate_once(
-    W: Any, b: Any, z: Any, w: Any, numbers: Any, integers: Any, tolerance: float, limit: int
+    W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float, limit: int
 ) -> tuple[int, int, float]:
     """`enumerate_bases` in the same way."""
     if not all_finite(W, b):
         return NOT_FINITE, 0, np.inf
-    work = carve(numbers, integers, b.shape[0])
+    work = carve(block, b.shape[0])
     work.report[ITERATIONS], work.report[BEST_RESIDUAL] = 0.0, tolerance
     status = enumerate_bases(W, b, z, tolerance, limit, work)
     if status != SOLVED:
@@ -121,15 +105,23 @@ def all_finite(W: Any, b: Any) -> bool:
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Principal and Lemke's pivoting; where they end in a ray, the search for a proof of infeasibility."""
     n = len(b)
-    if n <= 2:
-        out = np.empty((3, n))
-        residual = kernel(closed_form)(W, b, out, tol)
-        if residual <= tol:
-            return Solution(out[0], out[1], STATUS[SOLVED], 0, residual, "lemke")
-    limit = max_iterations
-    if limit is None:
-        limit = ENOUGH if n < ENOUGH // PER_UNKNOWN else PER_UNKNOWN * n
-    return _call(pivot_once, "lemke", W, b, z, tol, limit)
+    pivot, block = _kept.tools.get(n) or tools_for(n)
+    w, limit = np.empty(n), ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
+    status, iterations, residual = pivot(W, b, z, w, block, tol, limit)
+    if status == SOLVED:
+        return Solution(z, w, STATUS[SOLVED], iterations, residual, "lemke")
+    if status == NOT_FINITE:
+        check_finite(W, b)
+    certificate: Any = None
+    if status == INFEASIBLE:
+        certificate = carve(block, n).vectors[RAY_DIRECTION, :n].copy()
+    elif status == RAY:
+        certificate = farkas(W, b)
+        if certificate is not None:
+            status = INFEASIBLE
+        else:
+            certificate = ray(carve(block, n), n)
+    return Solution(z, w, STATUS[status], iterations, residual, "lemke", certificate)
 
 
 def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
@@ -138,27 +130,12 @@ def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) 
     if n > LARGEST_ENUMERATION:
         raise ValueError(f"W is too large to enumerate: 2^{n} bases; at most {LARGEST_ENUMERATION} unknowns")
     limit = 2**n if max_iterations is None else max_iterations
-    return _call(enumerate_once, "enumeration", W, b, z, tol, limit)
-
-
-def _call(entry: Callable[..., Any], method: str, W: Any, b: Any, z: Any, tol: float, limit: int) -> Solution:
-    n = len(b)
-    w, (numbers, integers) = np.empty(n), blocks(n)
-    status, iterations, residual = kernel(entry)(W, b, z, w, numbers, integers, tol, limit)
-    if status == SOLVED:
-        return Solution(z, w, STATUS[SOLVED], iterations, residual, method)
+    w, block = np.empty(n), tools_for(n)[1]
+    status, iterations, residual = compiled(enumerate_once)(W, b, z, w, block, tol, limit)
     if status == NOT_FINITE:
         check_finite(W, b)
-    certificate: Any = None
-    if status == INFEASIBLE:
-        certificate = carve(numbers, integers, n).vectors[RAY_DIRECTION, :n].copy()
-    elif status == RAY or (status == FAILED and entry is enumerate_once):
-        certificate = farkas(W, b)
-        if certificate is not None:
-            status = INFEASIBLE
-        elif status == RAY:
-            certificate = ray(carve(numbers, integers, n), n)
-    return Solution(z, w, STATUS[status], iterations, residual, method, certificate)
+    found = Solution(z, w, STATUS[status], iterations, residual, "enumeration")
+    return explained(W, b, found) if status == FAILED else found
 
 
 def ray(work: Any, n: int) -> Ray:

@@ -11,7 +11,6 @@ which is positive semidefinite, so Lemke's method solves it or leaves along a ra
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,7 +33,7 @@ def explained(W: Any, b: Any, solution: Solution) -> Solution:
     if solution.solved or len(b) > LARGEST:
         return solution
     y = farkas(W.toarray() if is_sparse(W) else W, b)
-    return solution if y is None else replace(solution, status=Status.INFEASIBLE, certificate=y)
+    return solution if y is None else solution._replace(status=Status.INFEASIBLE, certificate=y)
 
 
 def farkas(W: Any, b: Any) -> Any:

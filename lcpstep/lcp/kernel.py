@@ -4,8 +4,9 @@
 
 z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
 beyond, principal pivoting starts from the positive z of the guess, or where b is negative if n is small;
-where a few exchanges do not end it, Lemke's method finds a basis, whose answer is computed afresh from W and
-b. Every answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
+where a few exchanges do not end it, Lemke's method finds a basis on a tableau and, where the judge refuses
+that answer, again in revised form with fresh factors. Every answer is judged before it is called one, and a
+problem of a few unknowns is enumerated at last.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from lcpstep.lcp.principal import exchange_indices
 from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.small import solve_one, solve_two
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, TOLERANCE
+from lcpstep.lcp.tableau import correct, mark_basis, pivot_tableau
 from lcpstep.lcp.workspace import (
     BEST,
     BEST_RESIDUAL,
@@ -36,14 +38,14 @@ from lcpstep.lcp.workspace import (
 
 __all__ = ["Workspace", "solve_small", "workspace"]
 
-FEW = 20  # unknowns up to which exchanges without a guess are faster than Lemke's path
+FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 STARTS = 12  # times that Lemke's method is started
 STRIDE = 7919  # a prime that scatters them
 SMALLEST_PIVOTS = (1e-11, 1e-8)  # relative to the largest entry of a direction, in turn
 TINY = 8  # up to this size every basis is tried at last
-ENOUGH = 1000  # pivots granted at least, and per unknown
+ENOUGH = 1000  # pivots granted, and as many more per unknown:
 PER_UNKNOWN = 20
 
 
@@ -61,15 +63,17 @@ def solve_small(W: Any, b: Any, z: Any, work: Any) -> int:
     A Status as an int, SOLVED = 0.
     """
     n = b.shape[0]
-    return solve_dense(W, b, z, TOLERANCE, max(ENOUGH, PER_UNKNOWN * n), work)
+    return solve_dense(W, b, z, TOLERANCE, ENOUGH + PER_UNKNOWN * n, work)
 
 
 def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
     """`solve_small` with the judge's tolerance and the limit on pivots."""
     n = b.shape[0]
     work.report[RESIDUAL] = work.report[ITERATIONS] = 0.0
-    if n <= 2 and solve_closed(W, b, z, tolerance, work):
-        return SOLVED
+    if n <= 2:
+        work.report[RESIDUAL] = solve_closed(W, b, z, work.vectors[SLACK], work.vectors[SIZE], tolerance)
+        if work.report[RESIDUAL] <= tolerance:
+            return SOLVED
     if n == 1:
         work.vectors[RAY_DIRECTION, 0] = 1.0  # W <= 0 and b < 0: it proves itself
         return INFEASIBLE if b[0] < 0.0 and W[0, 0] <= 0.0 else FAILED
@@ -78,21 +82,32 @@ def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work:
     promising = choose_positive(z, work) or not choose_negative(b, work) or n <= FEW
     if promising and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
         return SOLVED
+    if pivot_fast(W, b, z, strict, max_pivots, work) == SOLVED:
+        return SOLVED
     return pivot_on(W, b, z, tolerance, max_pivots, work)
 
 
-def solve_closed(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
-    """Whether the closed form for one or two unknowns passes the judge."""
-    w, s = work.vectors[SLACK], work.vectors[SIZE]
+def solve_closed(W: Any, b: Any, z: Any, w: Any, s: Any, tolerance: float) -> float:
+    """Residual of the closed form for one or two unknowns; fills z, w and the sizes s of the terms of w."""
     if b.shape[0] == 1:
-        work.report[RESIDUAL] = solve_one(W, b, z, w, s)
-    else:
-        work.report[RESIDUAL] = solve_two(W, b, z, w, s, tolerance)
-    return bool(work.report[RESIDUAL] <= tolerance)
+        return solve_one(W, b, z, w, s)
+    return solve_two(W, b, z, w, s, tolerance)
+
+
+def pivot_fast(W: Any, b: Any, z: Any, strict: float, max_pivots: int, work: Any) -> int:
+    """Lemke's method on a tableau; its basis by fresh factors where the judge refuses the answer."""
+    n = b.shape[0]
+    equilibrate(W, b, work)
+    if pivot_tableau(n, max_pivots, work) != SOLVED:
+        return FAILED
+    if correct(W, b, z, strict, work) <= strict:
+        return SOLVED
+    mark_basis(n, work)
+    return exchange_indices(W, b, z, strict, EXCHANGES, work)
 
 
 def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: Any) -> int:
-    """Lemke's method from z = 0 and, where that ends in a ray or an answer is refused, from other bases."""
+    """Lemke's method in revised form, from z = 0 and, after a ray or a refused answer, from other bases."""
     n, strict, status = b.shape[0], min(tolerance, STRICT), FAILED
     equilibrate(W, b, work)
     for attempt in range(STARTS):

@@ -34,8 +34,7 @@ class Ray(NamedTuple):
     d: Any
 
 
-@dataclass(frozen=True, init=False)
-class Solution:
+class Solution(NamedTuple):
     """What a solver found.
 
     Attributes
@@ -55,23 +54,7 @@ class Solution:
     iterations: int
     residual: float
     method: str
-    certificate: Any
-
-    def __init__(
-        self,
-        z: Any,
-        w: Any,
-        status: Status,
-        iterations: int,
-        residual: float,
-        method: str,
-        certificate: Any = None,
-    ) -> None:
-        # straight into the dictionary: seven checked assignments would take as long as a small problem
-        fields = self.__dict__
-        fields["z"], fields["w"], fields["status"] = z, w, status
-        fields["iterations"], fields["residual"] = iterations, residual
-        fields["method"], fields["certificate"] = method, certificate
+    certificate: Any = None
 
     @property
     def solved(self) -> bool:
@@ -104,10 +87,6 @@ def is_sparse(W: Any) -> bool:
 
 def as_arrays(W: Any, b: Any) -> tuple[Any, Any]:
     """W and b as float64 arrays in C order (a sparse W as CSR) of matching shapes; copied only if need be."""
-    if type(W) is np.ndarray and type(b) is np.ndarray and W.dtype is FLOAT and b.dtype is FLOAT:
-        n = len(b)
-        if W.shape == (n, n) and b.ndim == 1 and W.flags.carray and b.flags.carray:
-            return W, b
     W = _sparse_matrix(W) if is_sparse(W) else as_array(W, "W", 2)
     b = as_array(b, "b", 1)
     if W.shape[0] != W.shape[1]:

@@ -12,13 +12,13 @@ from typing import Any
 
 from lcpstep.lcp.workspace import COLUMN_SCALE, DSLACK, ROW_SCALE, SCALED_B
 
+BLOCK = 8  # columns that are filled together
+
 
 def equilibrate(W: Any, b: Any, work: Any) -> None:
     """Fill columns, b, rows_by and columns_by of the work arrays with the scaled problem."""
     n = b.shape[0]
     columns, r, c = work.columns, work.vectors[ROW_SCALE], work.vectors[COLUMN_SCALE]
-    for j in range(n):
-        c[j] = 1.0
     balance(W, r, c, n, work.vectors[DSLACK])
     largest = 0.0
     for i in range(n):
@@ -26,9 +26,11 @@ def equilibrate(W: Any, b: Any, work: Any) -> None:
     unit = 1.0 / inverse_power_of_two(largest)
     for i in range(n):
         work.vectors[SCALED_B, i] = r[i] * b[i] / unit
-    for i in range(n):
-        for j in range(n):
-            columns[j, i] = W[i, j] * r[i] * c[j]
+    for first in range(0, n, BLOCK):  # a few columns at a time: all of them would not fit into the caches
+        last = min(first + BLOCK, n)
+        for i in range(n):
+            for j in range(first, last):
+                columns[j, i] = W[i, j] * r[i] * c[j]
     for i in range(n):
         r[i], c[i] = r[i] / unit, c[i] * unit
 
@@ -38,14 +40,24 @@ def balance(W: Any, r: Any, c: Any, n: int, largest: Any) -> None:
     for j in range(n):
         largest[j] = 0.0
     for i in range(n):
-        row = 0.0
+        row = W[i]
+        r[i] = inverse_power_of_two(largest_entry(row, n))
         for j in range(n):
-            row = max(row, abs(W[i, j]) * c[j])
-        r[i] = inverse_power_of_two(row)
-        for j in range(n):
-            largest[j] = max(largest[j], abs(W[i, j]) * r[i])
+            largest[j] = max(largest[j], abs(row[j]) * r[i])
     for j in range(n):
         c[j] = inverse_power_of_two(largest[j])
+
+
+def largest_entry(x: Any, n: int) -> float:
+    """Largest |x_i| for i < n, in four parts that the processor can overlap."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a, b = max(a, abs(x[i])), max(b, abs(x[i + 1]))
+        c, d = max(c, abs(x[i + 2])), max(d, abs(x[i + 3]))
+    for i in range(whole, n):
+        a = max(a, abs(x[i]))
+    return max(max(a, b), max(c, d))
 
 
 def inverse_power_of_two(x: float) -> float:

@@ -13,7 +13,7 @@ from lcpstep.lcp.automatic import automatic, dense
 from lcpstep.lcp.dense import enumeration, pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.pgs import pgs
-from lcpstep.lcp.problem import Solution, as_arrays, as_guess
+from lcpstep.lcp.problem import FLOAT, Solution, as_arrays, as_guess
 from lcpstep.lcp.qp import DEFAULT, known_solvers, parse, quadratic, require_solver, unpolished
 from lcpstep.lcp.status import TOLERANCE, Status
 
@@ -67,8 +67,18 @@ def solve_lcp(
     ValueError : W or b are not real, finite and of matching shapes; W is outside of what the method solves
     UnknownName, MissingSolver : no such method; its package is not installed
     """
-    W, b = as_arrays(W, b)
-    n = b.shape[0]
+    if not (  # asked here and not in a function: calling one would take as long as a small problem's pivots
+        type(W) is np.ndarray
+        and type(b) is np.ndarray
+        and W.dtype is FLOAT
+        and b.dtype is FLOAT
+        and b.ndim == 1
+        and W.shape == b.shape * 2
+        and W.flags.carray
+        and b.flags.carray
+    ):
+        W, b = as_arrays(W, b)
+    n = len(b)
     z = np.zeros(n) if guess is None else as_guess(guess, n)
     if n == 0:
         check_method(method)

@@ -23,7 +23,9 @@ RAY_DIRECTION, RAY_START = (
     11,
 )  # the ray that pivoting left along, in the units of z
 BEST = 12  # the best answer so far that passes the tolerance asked for
-VECTORS = 13
+CHANGES = 13  # of the tableau: changes that are still to be made, four rows
+SHARES = 17  # what each column takes of them
+VECTORS = 21
 
 # entries of Workspace.report
 RESIDUAL, ITERATIONS = 0, 1  # of the last problem
@@ -38,17 +40,18 @@ Z_PLACE, W_PLACE = 2, 3  # position of z_j in BASIC, of w_i in TIGHT; -1 where t
 TIED = 4  # variables that reach zero together
 ORDER = 5  # row interchanges of an elimination
 ACTIVE, CHOSEN = 6, 7  # indices of a principal submatrix, and 1 for each of them, else 0
-INDICES = 8
+NONBASIC, PLACE = 8, 9  # of the tableau: variable by column; column by variable, -1 for a basic one
+INDICES = 10
 
 
 class Workspace(NamedTuple):
     """Work arrays for problems of up to n unknowns.
 
-    columns : (n+1, n)   columns of the scaled W, each in one piece; the last is Lemke's covering vector
+    columns : (n+1, n)   columns of the scaled W, each in one piece, the last Lemke's covering vector; or the tableau
     inverse : (n, n)     inverse of the basis matrix
     factor : (n, n)      LU factors of a principal submatrix
-    vectors : (13, n+1)  see the names of its rows in this module
-    indices : (8, 2n+1)  likewise
+    vectors : (21, n+1)  see the names of its rows in this module
+    indices : (10, 2n+1)  likewise
     report : (6,)        likewise: residual, number of iterations, ...
     """
 
@@ -62,30 +65,26 @@ class Workspace(NamedTuple):
 
 def workspace(n_max: int) -> Workspace:
     """Work arrays for problems of up to n_max unknowns; every thread needs its own."""
-    return carve(np.empty(numbers_needed(n_max)), np.zeros(integers_needed(n_max), np.int64), n_max)
+    return carve(np.zeros(length_needed(n_max)), n_max)
 
 
-def numbers_needed(n: int) -> int:
-    """Length of the block of floats that `carve` divides."""
-    return (n + 1) * n + 2 * n * n + VECTORS * (n + 1) + REPORT
+def length_needed(n: int) -> int:
+    """Length of the block of numbers that `carve` divides."""
+    return (n + 1) * n + 2 * n * n + VECTORS * (n + 1) + REPORT + INDICES * (2 * n + 1)
 
 
-def integers_needed(n: int) -> int:
-    """Length of the block of integers."""
-    return INDICES * (2 * n + 1)
-
-
-def carve(numbers: Any, integers: Any, n: int) -> Workspace:
-    """Work arrays for n unknowns as parts of two blocks; for kernels that are handed the blocks."""
+def carve(block: Any, n: int) -> Workspace:
+    """Work arrays for n unknowns as parts of one block of floats; for kernels that are handed the block."""
     inverse = (n + 1) * n
     factor = inverse + n * n
     vectors = factor + n * n
     report = vectors + VECTORS * (n + 1)
+    indices = report + REPORT
     return Workspace(
-        numbers[:inverse].reshape((n + 1, n)),
-        numbers[inverse:factor].reshape((n, n)),
-        numbers[factor:vectors].reshape((n, n)),
-        numbers[vectors:report].reshape((VECTORS, n + 1)),
-        integers[: INDICES * (2 * n + 1)].reshape((INDICES, 2 * n + 1)),
-        numbers[report : report + REPORT],
+        block[:inverse].reshape((n + 1, n)),
+        block[inverse:factor].reshape((n, n)),
+        block[factor:vectors].reshape((n, n)),
+        block[vectors:report].reshape((VECTORS, n + 1)),
+        block[indices:].view(np.int64).reshape((INDICES, 2 * n + 1)),
+        block[report:indices],
     )

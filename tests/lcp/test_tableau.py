@@ -1,0 +1,71 @@
+"""The tableau against linear algebra: what it holds after any number of pivots, and the answer read off it."""
+
+import numpy as np
+import pytest
+
+from lcpstep.compiled import compiled
+from lcpstep.lcp import Status, residual
+from lcpstep.lcp.kernel import workspace
+from lcpstep.lcp.scaling import equilibrate
+from lcpstep.lcp.tableau import LARGE, correct, pivot_tableau
+from lcpstep.lcp.workspace import BASIC, NONBASIC, SCALED_B
+
+SIZES = (7, LARGE + 3)  # changes made one by one, and several together
+
+
+def problem(n, rank, seed):
+    """Semidefinite, and degenerate where rank < n; a solution is planted."""
+    rng = np.random.default_rng(seed)
+    G = rng.normal(size=(n, rank))
+    z = np.maximum(rng.normal(size=n), 0.0)
+    W = G @ G.T
+    return W, np.where(z > 0.0, 0.0, rng.random(n)) - W @ z
+
+
+@pytest.mark.parametrize("n", SIZES)
+def test_the_answer_is_right_to_rounding(n):
+    work = workspace(n)
+    for seed in range(20):
+        W, b = problem(n, n - seed % 3, seed)
+        z = np.zeros(n)
+        compiled(equilibrate)(W, b, work)
+        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
+        assert compiled(correct)(W, b, z, 1e-13, work) <= 1e-13
+        assert residual(W, b, z) <= 1e-13
+
+
+@pytest.mark.parametrize("n", SIZES)
+def test_the_tableau_is_the_solution_of_the_equations_for_its_basis(n):
+    """y = q + T x with w = W z + b + e z_0, after every number of pivots up to the end."""
+    W, b = problem(n, n, 0)
+    work = workspace(n)
+    for limit in (1, 2, 3, 5, 1000):
+        compiled(equilibrate)(W, b, work)
+        A, q0 = work.columns[:n].T.copy(), work.vectors[SCALED_B, :n].copy()
+        ended = compiled(pivot_tableau)(n, limit, work)
+        M = np.hstack((A, np.ones((n, 1)), -np.eye(n)))  # of (z, z_0, w): M v = -b
+        basic, nonbasic = work.indices[BASIC, :n], work.indices[NONBASIC, : n + 1]
+        assert sorted([*basic, *nonbasic]) == list(range(2 * n + 1))
+        q = np.linalg.solve(M[:, basic], -q0)
+        assert work.vectors[SCALED_B, :n] == pytest.approx(q, rel=1e-9, abs=1e-9)
+        if ended == Status.SOLVED:  # all changes are made
+            T = np.linalg.solve(M[:, basic], -M[:, nonbasic])
+            np.testing.assert_allclose(work.columns[:, :n].T, T, rtol=1e-8, atol=1e-8)
+    assert ended == Status.SOLVED
+
+
+def test_a_ray_is_not_a_solution():
+    work = workspace(3)
+    compiled(equilibrate)(-np.eye(3), -np.ones(3), work)
+    assert compiled(pivot_tableau)(3, 100, work) == Status.RAY
+
+
+@pytest.mark.parametrize("n", SIZES)
+def test_ties_everywhere_end(n):
+    """Every contact twice, or b = 0: the rows tie in pairs, or all of them."""
+    G = np.repeat(np.random.default_rng(n).normal(size=((n + 1) // 2, n)), 2, axis=0)[:n]
+    W, z, work = G @ G.T, np.zeros(n), workspace(n)
+    for b in (np.repeat(-G[::2] @ G[::2].sum(axis=0), 2)[:n], np.zeros(n)):
+        compiled(equilibrate)(W, b, work)
+        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
+        assert compiled(correct)(W, b, z, 1e-13, work) <= 1e-13
