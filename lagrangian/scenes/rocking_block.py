@@ -148,9 +148,10 @@ def rocking_times(theta0: float, alpha: float, p: float, r: float, n: int) -> tu
     low, high = math.cos(0.5 * alpha), math.sin(0.5 * alpha)
     # cos^2((alpha - theta0)/2) - cos^2(alpha/2), without a difference of near numbers
     first = 2.0 * p * math.sqrt(math.sin(alpha - 0.5 * theta0) * math.sin(0.5 * theta0))
-    rates = first * r ** np.arange(n)
+    rates = np.asarray(first * r ** np.arange(n), dtype=float)
     k2 = low**2 + (0.5 * rates / p) ** 2
-    halves = ellipkinc(np.arcsin(np.minimum(0.5 * rates / (p * np.sqrt(k2) * high), 1.0)), k2) / p
+    amplitude = np.minimum(0.5 * rates / (p * np.sqrt(k2) * high), 1.0)
+    halves = ellipkinc(np.arcsin(amplitude), k2) / p
     return np.cumsum(np.where(np.arange(n) == 0, 1.0, 2.0) * halves), rates
 
 
