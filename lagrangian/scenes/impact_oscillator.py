@@ -89,10 +89,10 @@ def sticking_oscillator(
 @checked
 def chaotic_oscillator(
     zeta: float = 0.02,
-    omega: float = 2.6,
+    omega: float = 2.2,
     amplitude: float = 1.0,
-    stop: float = 0.0,
-    restitution: float = 0.95,
+    stop: float = 0.3,
+    restitution: float = 0.8,
     q0: float = -0.5,
     v0: float = 0.0,
     t_end: float = 500.0,

@@ -10,11 +10,11 @@ import sys
 from collections.abc import Sequence
 
 from lcpstep import __version__
-from lcpstep.cli import compare, scenes, simulate, study
+from lcpstep.cli import compare, hard, scenes, simulate, study
 from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 
-COMMANDS = (compare, simulate, scenes, study)
+COMMANDS = (compare, simulate, scenes, study, hard)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

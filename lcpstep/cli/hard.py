@@ -1,0 +1,52 @@
+"""`lcpstep hard`: the hard cases by every method that fits, as a table, JSON or Markdown."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from typing import Any
+
+from lcpstep.cli.common import DONE, FAILED
+from lcpstep.hard import METHODS, Row, table
+from lcpstep.hard.report import line, markdown, summary
+
+
+def add(commands: Any) -> None:
+    """Arguments of the command."""
+    p = commands.add_parser(
+        "hard",
+        help="run the hard cases and say which methods pass",
+        description="Runs the scenes of the catalogue by every method that fits and compares with their known "
+        "answers: passed, failed (how far off), or refused. Exit status 1 where a check failed.",
+        epilog="Example: lcpstep hard --scene bouncing-ball elastic-gas --method event-driven",
+    )
+    p.add_argument("--scene", nargs="+", default=[], metavar="SCENE", help="only these (see: lcpstep scenes)")
+    p.add_argument(
+        "--method", nargs="+", default=[], metavar="METHOD", help=f"only these of: {', '.join(METHODS)}"
+    )
+    p.add_argument("--full", action="store_true", help="the heavy checks too; takes minutes")
+    form = p.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="print JSON")
+    form.add_argument("--markdown", action="store_true", help="print the page docs/hard-cases.md")
+    p.set_defaults(run=run_hard)
+
+
+def run_hard(options: argparse.Namespace) -> int:
+    """`lcpstep hard`."""
+    plain = not (options.json or options.markdown)
+
+    def show(row: Row) -> None:
+        if plain:
+            print(line(row), flush=True)
+        elif sys.stderr.isatty():
+            print(f"{row.scene}: {row.what}, {row.method}", file=sys.stderr)
+
+    rows = table(options.scene, options.method, options.full, show)
+    if options.json:
+        print(json.dumps([row.as_json() for row in rows], indent=2))
+    elif options.markdown:
+        print(markdown(rows))
+    else:
+        print(summary(rows))
+    return FAILED if any(row.outcome == "failed" for row in rows) else DONE

@@ -1,0 +1,89 @@
+"""Checks on the cam-follower: where it leaves the cam, and its motion at the speeds of the thesis."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from lagrangian import scenes
+from lagrangian.scenes.cam_follower import HALF_TURN, NOSE_END, NOSE_START, detachment_rpm
+from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.trajectory import Kind
+
+SHARE = 1e-3  # of a turn before and after the corner, through which the follower starts at rest on the cam
+PRECISION = 1e-10  # relative, of the bisection
+AT_ONCE = 1e-13  # after the corner, relative to a turn
+
+
+def _left(solve: Solver, rpm: float, beta: float) -> float:
+    """Where the follower leaves the cam after the corner beta, in turns; infinite where it does not."""
+    scene = scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0)
+    corner = (beta - HALF_TURN) / (2.0 * math.pi)
+    span = ((corner - SHARE) * scene.period, (corner + SHARE) * scene.period)
+    log = solve(replace(scene, t_span=span)).impacts
+    times = log.time[log.kind == Kind.RELEASE]
+    return float(times[0] / scene.period - corner) if len(times) else math.inf
+
+
+def _lowest_speed(solve: Solver, beta: float) -> float:
+    """Speed from which on the follower leaves the cam at the corner beta itself, by bisection [rpm]."""
+    low, high = 100.0, 150.0
+    while high - low > PRECISION * low:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if _left(solve, middle, beta) <= AT_ONCE else (middle, high)
+    return 0.5 * (low + high)
+
+
+@check("cam-follower", "first detachment, 114.979 rpm, relative", period=0.09, event_driven=1e-8)
+def first_detachment(solve: Solver) -> Found:
+    speed = _lowest_speed(solve, NOSE_START)
+    return Found(abs(speed / detachment_rpm(NOSE_START) - 1.0), f"{speed:.9f} rpm")
+
+
+@check(
+    "cam-follower", "detachment at the end of the nose, 134.873 rpm, relative", period=0.09, event_driven=1e-8
+)
+def end_of_nose(solve: Solver) -> Found:
+    # On the way down, where the follower comes off the top dwell: below this speed it leaves further down the nose
+    speed = _lowest_speed(solve, 2.0 * math.pi - NOSE_END)
+    return Found(abs(speed / detachment_rpm(NOSE_END - 1e-14) - 1.0), f"{speed:.9f} rpm")
+
+
+def _motion(solve: Solver, rpm: float, t_end: float, coordinates: str = "relative") -> float:
+    return state_error(solve, scenes.cam_follower(rpm=rpm, t_end=t_end, coordinates=coordinates))
+
+
+@check("cam-follower", "states at 100 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+def slow(solve: Solver) -> float:
+    return _motion(solve, 100.0, 2.0)
+
+
+@check("cam-follower", "states at 120 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+def leaving(solve: Solver) -> float:
+    return _motion(solve, 120.0, 2.0)
+
+
+@check("cam-follower", "states at 358 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+def fast(solve: Solver) -> float:
+    return _motion(solve, 358.0, 2.0)
+
+
+@check(
+    "cam-follower",
+    "states at 358 rpm, 2 s, absolute coordinates",
+    period=0.18,
+    event_driven=1e-10,
+    moreau=FIRST_ORDER,
+)
+def fast_absolute(solve: Solver) -> float:
+    return _motion(solve, 358.0, 2.0, "absolute")
+
+
+@check("cam-follower", "states at 660 rpm, 2 s: chaotic", period=0.09, event_driven=1e-9, moreau=FIRST_ORDER)
+def chaotic(solve: Solver) -> float:
+    return _motion(solve, 660.0, 2.0)
+
+
+@check("cam-follower", "states at 700 rpm, 2 s", period=0.09, event_driven=1e-9, moreau=FIRST_ORDER)
+def faster(solve: Solver) -> float:
+    return _motion(solve, 700.0, 2.0)

@@ -1,0 +1,186 @@
+"""One check: a scene, what is measured on it, and the bound that each method has to meet.
+
+A check is a function that gets a `Solver` and returns how far off the method is; `@check` registers it:
+
+    @check("bouncing-ball", "states", period=0.9, event_driven=1e-13, moreau=FIRST_ORDER)
+    def ball(solve):
+        return state_error(solve, bouncing_ball())
+
+The bounds are those of excellent code with default settings, never fitted to what a method gives. `FIRST_ORDER`
+stands for what plain Moreau time-stepping promises: an impact moved by a step displaces the motion by no more than
+
+    h (sum of |u+ - u-| over all impacts + largest speed),  and no more than 5 % of the size of the motion.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.errors import LcpStepError, SimulationError
+from lcpstep.hard.methods import METHODS, MOREAU
+from lcpstep.recording import Keep
+from lcpstep.simulate import simulate
+from lcpstep.trajectory import Kind, Status, Trajectory
+
+Array = NDArray[np.float64]
+SAMPLES = 997  # times at which a motion is compared; a prime, to meet no grid of steps
+STEPS = 100  # per typical period
+MOREAU_STEPS = 1000  # the same for plain Moreau, which is of order one
+WORTHLESS = 0.05  # a motion that is off by this part of its size is another motion
+FIRST_ORDER = -1.0  # in the place of a bound
+
+
+class Stopped(Exception):
+    """A run that ended before its time."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a check measured: how far off, and a remark."""
+
+    error: float
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table.
+
+    Attributes
+    ----------
+    scene, what, method : which check, by which method
+    outcome : "passed", "failed", or "refused": the method says that it does not treat this scene
+    error, bound : how far off, and how far it may be; None where there is none
+    seconds : time of the runs, compilation left out
+    note : why it failed or was refused, or a remark
+    """
+
+    scene: str
+    what: str
+    method: str
+    outcome: str
+    error: float | None
+    bound: float | None
+    seconds: float
+    note: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the method met the bound."""
+        return self.outcome == "passed"
+
+    def as_json(self) -> dict[str, Any]:
+        """The line as JSON carries it: finite numbers or null."""
+        finite = {
+            name: x if x is not None and np.isfinite(x) else None
+            for name, x in (("error", self.error), ("bound", self.bound))
+        }
+        return {
+            "scene": self.scene, "what": self.what, "method": self.method, "passed": self.passed,
+            "outcome": self.outcome, **finite, "seconds": self.seconds, "note": self.note,
+        }  # fmt: skip
+
+
+class Solver:
+    """Runs scenes by one method with the step of the check, and keeps account of the work."""
+
+    def __init__(self, method: str, period: float) -> None:
+        self.method = method
+        self.h = period / (MOREAU_STEPS if method == MOREAU else STEPS)
+        self.seconds = self.jumps = self.speed = self.size = 0.0
+
+    def __call__(self, scene: Scene, keep: Keep = 1, h: float | None = None) -> Trajectory:
+        """The motion of a scene; `Stopped` where the run ends early."""
+        method = METHODS[self.method](self.h if h is None else h)
+        t_start, t_end = scene.t_span
+        warm = replace(scene, t_span=(t_start, t_start + 1e-9 * (t_end - t_start)))
+        simulate(warm, METHODS[self.method](1e-9 * (t_end - t_start)))  # takes the compilation
+        begin = time.perf_counter()
+        run = simulate(scene, method, keep=keep)
+        self.seconds += time.perf_counter() - begin
+        if run.status != Status.DONE:
+            raise Stopped(f"{run.status.name}: {run.message}")
+        log = run.impacts[run.impacts.kind == Kind.IMPACT]
+        self.jumps = max(self.jumps, float(np.sum(np.abs(log.after - log.before))))
+        self.speed = max(self.speed, float(np.max(np.abs(run.v), initial=0.0)))
+        self.size = max(self.size, float(np.max(np.ptp(run.q, axis=0), initial=0.0)))
+        return run
+
+    def first_order(self) -> float:
+        """What order one allows: see the head of this file."""
+        return min(self.h * (self.jumps + self.speed), WORTHLESS * self.size)
+
+
+@dataclass(frozen=True)
+class Check:
+    """A scene, what is measured on it, and the bound of every method that fits."""
+
+    scene: str
+    what: str
+    measure: Callable[[Solver], Found | float]
+    period: float
+    bounds: Mapping[str, float]
+    heavy: bool = False
+
+
+CHECKS: list[Check] = []
+
+
+def check(
+    scene: str, what: str, *, period: float = 1.0, heavy: bool = False, **bounds: float
+) -> Callable[[Callable[[Solver], Found | float]], Callable[[Solver], Found | float]]:
+    """Register a check; the methods are given by name, event_driven for "event-driven"."""
+
+    def registered(measure: Callable[[Solver], Found | float]) -> Callable[[Solver], Found | float]:
+        named = {name.replace("_", "-"): bound for name, bound in bounds.items()}
+        CHECKS.append(Check(scene, what, measure, period, named, heavy))
+        return measure
+
+    return registered
+
+
+def run_check(c: Check, method: str) -> Row:
+    """Put one method to a check."""
+    solve, bound = Solver(method, c.period), c.bounds[method]
+    shown = None if bound == FIRST_ORDER else bound
+    try:
+        found = c.measure(solve)
+    except Stopped as stopped:
+        return Row(c.scene, c.what, method, "failed", None, shown, solve.seconds, str(stopped))
+    except SimulationError as error:
+        return Row(c.scene, c.what, method, "failed", None, shown, solve.seconds, str(error))
+    except LcpStepError as refusal:
+        return Row(c.scene, c.what, method, "refused", None, shown, solve.seconds, str(refusal))
+    found = found if isinstance(found, Found) else Found(float(found))
+    if bound == FIRST_ORDER:
+        bound = solve.first_order()
+    outcome = "passed" if found.error <= bound else "failed"
+    return Row(c.scene, c.what, method, outcome, found.error, bound, solve.seconds, found.note)
+
+
+def sample_times(scene: Scene) -> Array:
+    """Times at which a motion is compared, spread over the span."""
+    t_start, t_end = scene.t_span
+    return t_start + (t_end - t_start) * (np.arange(SAMPLES) + 0.5) / SAMPLES
+
+
+def state_error(solve: Solver, scene: Scene) -> float:
+    """Largest |q - q_exact| [m] or, if that is more, the mean of |v - v_exact| [m/s].
+
+    The mean, for a velocity that jumps is wrong by the whole jump in between two times that are a rounding apart. Of
+    plain Moreau, which promises no times of impacts, the positions alone.
+    """
+    if scene.exact is None:
+        raise ValueError(f"scene: {scene.name!r} has no motion in closed form")
+    times = sample_times(scene)
+    run = solve(scene, keep=times)
+    q, v = scene.exact(times)
+    error = float(np.max(np.abs(run.q - q)))
+    return error if solve.method == MOREAU else max(error, float(np.max(np.mean(np.abs(run.v - v), axis=0))))

@@ -1,0 +1,97 @@
+"""Checks on dry friction: stopping, rolling, landing, and the impact that creates energy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from lagrangian import Scene, scenes
+from lagrangian.scenes.dry_friction import slip_time
+from lagrangian.scenes.kane_pendulum import after_impact, kinetic_energy
+from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+
+
+@check("coulomb-oscillator", "states", period=2.0 * math.pi, moreau=FIRST_ORDER, event_driven=1e-10)
+def oscillator(solve: Solver) -> float:
+    return state_error(solve, scenes.coulomb_oscillator())
+
+
+@check(
+    "coulomb-oscillator",
+    "stops exactly, within the dead zone",
+    period=2.0 * math.pi,
+    moreau=0.0,
+    event_driven=0.0,
+)
+def stops(solve: Solver) -> Found:
+    run = solve(scenes.coulomb_oscillator(), keep=np.array([18.0, 19.0, 20.0]))
+    moved = float(np.ptp(run.q[:, 0]))
+    speed = float(np.max(np.abs(run.v)))
+    return Found(max(moved, speed), f"at {run.q[-1, 0]:.12f}, speed {speed:.0e}")
+
+
+@check("slipping-wheel", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+def wheel(solve: Solver) -> float:
+    return state_error(solve, scenes.slipping_wheel())
+
+
+@check("slipping-wheel", "rolls without slip from then on", period=0.5, moreau=1e-12, event_driven=1e-12)
+def rolls(solve: Solver) -> float:
+    run = solve(scenes.slipping_wheel())
+    rolling = run.t > 1.05 * slip_time(1.0, 0.2, 0.5, 9.81)
+    return float(np.max(np.abs(run.v[rolling, 0] + 0.3 * run.v[rolling, 2])))
+
+
+@check("sliding-block", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+def block(solve: Solver) -> float:
+    return state_error(solve, scenes.sliding_block())
+
+
+@check("sliding-block", "stops exactly", period=0.5, moreau=0.0, event_driven=0.0)
+def block_stops(solve: Solver) -> float:
+    return float(np.max(np.abs(solve(scenes.sliding_block()).v[-1])))
+
+
+@check("slope-landing", "states: slides, then stops", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+def lands(solve: Solver) -> float:
+    return state_error(solve, scenes.slope_landing())
+
+
+@check("slope-landing", "states: sticks as it lands", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+def lands_and_sticks(solve: Solver) -> float:
+    return state_error(solve, scenes.slope_landing(mu=2.5))
+
+
+@check("slope-landing", "states: slides for ever", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+def lands_and_slides(solve: Solver) -> float:
+    return state_error(solve, scenes.slope_landing(mu=0.2))
+
+
+BRIEF = 1e-6  # after which the velocities are looked at [s]
+
+
+def _kane(solve: Solver, scene: Scene) -> tuple[float, float]:
+    """Error of the velocities after the impact, and the energy gained."""
+    v = solve(replace(scene, t_span=(0.0, BRIEF)), h=0.1 * BRIEF).v[-1]
+    q0 = np.array(scene.q0)
+    gained = kinetic_energy(q0, v) / kinetic_energy(q0, np.array(scene.v0)) - 1.0
+    return float(np.max(np.abs(v - after_impact(scene)))), gained
+
+
+@check("kane-pendulum", "velocities after the impact, Newton and Coulomb", moreau=1e-6, event_driven=1e-6)
+def kane_newton(solve: Solver) -> Found:
+    error, gained = _kane(solve, scenes.kane_pendulum(law="newton"))
+    return Found(error, f"energy {100.0 * gained:+.2f} %, as this law has it")
+
+
+@check("kane-pendulum", "velocities after the impact, Moreau's law", moreau=1e-6, event_driven=1e-6)
+def kane_moreau(solve: Solver) -> Found:
+    error, gained = _kane(solve, scenes.kane_pendulum())
+    return Found(error, f"energy {100.0 * gained:+.2f} %")
+
+
+@check("kane-pendulum", "energy gained under the default law", moreau=0.0, event_driven=0.0)
+def kane_energy(solve: Solver) -> float:
+    return max(0.0, _kane(solve, scenes.kane_pendulum())[1])

@@ -1,0 +1,16 @@
+"""The methods that the hard cases are put to, at their default settings but for the step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from lcpstep.events import EventDriven
+from lcpstep.simulate import Method
+from lcpstep.stepping.moreau import Moreau
+
+# A method for the step h [s], which event-driven integration does not have
+METHODS: dict[str, Callable[[float], Method]] = {
+    "event-driven": lambda h: EventDriven(),
+    "moreau": lambda h: Moreau(h=h),
+}
+EVENT, MOREAU = "event-driven", "moreau"
