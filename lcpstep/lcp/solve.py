@@ -68,12 +68,10 @@ def solve_lcp(
     UnknownName, MissingSolver : no such method; its package is not installed
     """
     if not (  # asked here and not in a function: calling one would take as long as a small problem's pivots
-        type(W) is np.ndarray
-        and type(b) is np.ndarray
-        and W.dtype is FLOAT
-        and b.dtype is FLOAT
+        type(W) is type(b) is np.ndarray
+        and W.dtype is b.dtype is FLOAT
         and b.ndim == 1
-        and W.shape == b.shape * 2
+        and W.shape == (len(b), len(b))
         and W.flags.carray
         and b.flags.carray
     ):
