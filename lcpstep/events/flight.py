@@ -204,7 +204,7 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float) -> floa
         converged = level == 0 and abs(curvature) * step * step <= RESOLUTION * abs(tau * slope)
         if tiny or converged:
             # At the end of a bracket the root may lie outside by rounding, and by no more
-            return tau + step if abs(step) <= 4.0 * RESOLUTION * abs(tau) or a < tau + step < b else tau
+            return tau + step if abs(step) <= 4.0 * RESOLUTION * abs(tau) else min(max(tau + step, a), b)
     return tau
 
 

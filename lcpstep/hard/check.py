@@ -158,6 +158,9 @@ def run_check(c: Check, method: str) -> Row:
         return Row(c.scene, c.what, method, "failed", None, shown, solve.seconds, str(error))
     except LcpStepError as refusal:
         return Row(c.scene, c.what, method, "refused", None, shown, solve.seconds, str(refusal))
+    except Exception as error:  # a method that breaks fails this check, and not the rest of the table
+        note = f"{type(error).__name__}: {error}"
+        return Row(c.scene, c.what, method, "failed", None, shown, solve.seconds, note)
     found = found if isinstance(found, Found) else Found(float(found))
     if bound == FIRST_ORDER:
         bound = solve.first_order()

@@ -9,13 +9,14 @@ from lagrangian.scenes.beads import weights_above
 from lcpstep.hard.check import Found, Solver, check
 
 STEPS_AT_REST = 100_000
+LAST = 2.0**-4  # time over which the forces are taken [s]
 
 
 def _feet(solve: Solver, n: int, steps: int) -> Found:
     """Speed, moves, and residuals of the balances of force and moment (relative), after many steps."""
     scene = scenes.block_on_feet(n=n)
-    run = solve(scene, keep=np.array([0.5, 1.0]), h=1.0 / steps)
-    forces = run.impulse[-1] / 0.5
+    run = solve(scene, keep=np.array([1.0 - LAST, 1.0]), h=1.0 / steps)
+    forces = run.impulse[-1] / LAST
     feet = np.linspace(-0.5, 0.5, n)
     parts = {
         "speed": float(np.max(np.abs(run.v))),
@@ -44,8 +45,8 @@ def many_feet(solve: Solver) -> Found:
 
 @check("stack", "at rest, 10 blocks on 20 feet, 1e4 steps", event_driven=1e-13, moreau=1e-13)
 def stack(solve: Solver) -> Found:
-    run = solve(scenes.stack(), keep=np.array([0.5, 1.0]), h=1e-4)
-    forces = run.impulse[-1].reshape(-1, 2) / 0.5
+    run = solve(scenes.stack(), keep=np.array([1.0 - LAST, 1.0]), h=1e-4)
+    forces = run.impulse[-1].reshape(-1, 2) / LAST
     weights = weights_above(np.ones(10), 9.81)
     parts = {
         "speed": float(np.max(np.abs(run.v))),
@@ -56,8 +57,8 @@ def stack(solve: Solver) -> Found:
 
 
 def _heavy(solve: Solver, ratio: float) -> Found:
-    run = solve(scenes.heavy_on_light(ratio=ratio), keep=np.array([0.5, 1.0]), h=1e-3)
-    error = run.impulse[-1] / 0.5 / weights_above([1.0, ratio], 9.81) - 1.0
+    run = solve(scenes.heavy_on_light(ratio=ratio), keep=np.array([1.0 - LAST, 1.0]), h=1e-3)
+    error = run.impulse[-1] / LAST / weights_above([1.0, ratio], 9.81) - 1.0
     # What the floor carries beyond the heavy block is the weight of the light one
     return Found(float(np.max(np.abs(error))), f"speed {float(np.max(np.abs(run.v))):.0e}")
 

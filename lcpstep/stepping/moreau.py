@@ -242,7 +242,7 @@ class _Run:
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
             impulse = np.vstack([impulse, self.state.impulse])
-        if abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
         count = self.count
         return Trajectory(

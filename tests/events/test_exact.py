@@ -182,3 +182,11 @@ def test_the_follower_that_leaves_and_regains_the_cam_agrees_between_its_rows(rp
         np.testing.assert_allclose(m.impacts.time[m.impacts.kind == kind], expected, rtol=0, atol=1e-11)
     times = np.linspace(0.0, 2 * period, 401)[1:-1]
     assert state_difference(m, exact, times, lambda t: exact.body.s(t, t)[0]) < 1e-11
+
+
+@pytest.mark.parametrize("t_end", [1.0, 5.0, 10.0])
+def test_impacts_at_the_end_of_a_scan_interval_keep_all_their_digits(t_end):
+    # one period is a whole number of scan intervals, and every impact lies within rounding of the end of one
+    scene = scenes.ball_on_table(t_end=t_end)
+    log = simulate(scene, EventDriven()).impacts
+    np.testing.assert_allclose(log.time / scene.period, np.arange(1, len(log) + 1), rtol=1e-13)
