@@ -1,0 +1,1 @@
+"""Error against CPU time of the library's methods and of Siconos' Moreau-Jean scheme."""
