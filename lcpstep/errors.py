@@ -52,3 +52,7 @@ class StudyInterrupted(KeyboardInterrupt):
     def __init__(self, study: Any) -> None:
         super().__init__("interrupted; what was measured so far is in the attribute `study`")
         self.study = study
+
+
+class SweepStopped(LcpStepError):
+    """A long computation that could not go on; the parts finished before are kept where it was told to keep them."""

@@ -38,7 +38,8 @@ class Periods:
     time, before, after : (m, kept, most)   time [s] and gap velocities [m/s] of the first impacts in each period,
         nan where there were fewer
     impacts : (m, kept)   number of impacts in each period
-    ends : (m, kept)   how often in each period the contact closed for good: chattering sequences that ended
+    ends : (m, kept)   how often in each period the contact closed for good: chattering sequences that ended, and
+        impacts without rebound
     reached : (m,)   number of the target a run came near to, -1 for none
     taken : (m,)   periods taken
     final : (m, 2 n_q)   last state
@@ -104,8 +105,8 @@ def periods(
         raise ValueError(f"drop: expected 0 <= drop <= n = {n}, got {drop}")
     task = _task(scene, starts, n, drop, section(phase) * scene.period, most, targets)
     fast: follow.Follower | lockstep.Lockstep | None = None
-    if isinstance(method, EventDriven) and scene.n_c == 1:
-        fast = follow.Follower(scene, method, task.t_start)
+    if isinstance(method, EventDriven) and scene.n_c <= 1:
+        fast = follow.Follower(scene, method)
         codes = follow.CODES
     elif isinstance(method, Moreau) and targets is None:
         fast = lockstep.Lockstep(scene, method)
@@ -185,9 +186,10 @@ def _one_period(
         return x, int(run.status)
     if k >= 0:
         log = run.impacts[run.impacts.kind == Kind.IMPACT]
+        later = run.impacts[run.impacts.time > task.t_start]  # a contact closed at the section is no landing
         shown = log[: task.impacts.shape[2]]
         task.impacts[i, k, : len(shown)] = np.stack([shown.time, shown.before, shown.after], axis=1)
-        task.counts[i, k] = len(log), int(np.sum(run.impacts.kind == Kind.STICK))
+        task.counts[i, k] = len(log), int(np.sum(later.kind == Kind.STICK))
     return np.concatenate([run.q[-1], run.v[-1]]), int(Status.DONE)
 
 

@@ -3,6 +3,10 @@
 For systems whose smooth motion is known in closed form a period takes microseconds, and all that Python does per
 run would cost more than the run. Each period starts afresh at the time of the section, so that equal states have
 equal images to the last bit, and following n periods is iterating the stroboscopic map n times.
+
+A state that recurs exactly during the periods to be dropped has shown its whole future, and whole cycles of it are
+skipped. But where a motion sticks, forgets, and then amplifies rounding errors to its own size before it sticks
+again, rounding alone can close a cycle. So the cycle must first survive small kicks, which a stable orbit forgets.
 """
 
 from __future__ import annotations
@@ -13,23 +17,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.compiled import compiled
-from lcpstep.dense import assign
-from lcpstep.events import EventDriven, flight
-from lcpstep.events import run as loop
+from lcpstep.compiled import call, compiled
+from lcpstep.events import EventDriven
 from lcpstep.events.closed_form import flight_of, numbers, oscillator_of
-from lcpstep.events.flight import find_corners, free, rebase
-from lcpstep.events.single import ON_THE_SURFACE, run
-from lcpstep.model import model
+from lcpstep.events.flight import CONTACT, NOW, OFFSET, T_END, G
+from lcpstep.events.run import BUFFER_FULL, EVENT, FINISHED, MAX_EVENTS, N_COUNTERS, SLACK, STATUS
+from lcpstep.events.single import IMPACT, ON_THE_SURFACE, STICK, run
+from lcpstep.model import ABSENT, model
 from lcpstep.recording import Kept, Recorder
-from lcpstep.trajectory import Kind, Status
 
-IMPACT, ACCUMULATION, STICK = int(Kind.IMPACT), int(Kind.ACCUMULATION), int(Kind.STICK)
-FINISHED, BUFFER_FULL = loop.FINISHED, loop.BUFFER_FULL
-EVENT, MAX_EVENTS = loop.EVENT, loop.MAX_EVENTS
-CONTACT, NOW, T_END = flight.CONTACT, flight.NOW, flight.T_END
+CODES = STATUS
 PERIODS_OF_SPAN = 4  # of the span that the scan for events is made for
 NO_LIMIT = 2**62
+KICKS, KICK = 3, 1e-10  # how often a cycle is tried, and with what share of the motion's size
 UNREACHED = -1
 INSIDE = -1  # among the codes: a start inside of the obstacle
 IMPACTS, ENDS = 0, 1  # places in the counts of a period: impacts, chattering sequences or landings
@@ -42,55 +42,70 @@ class Task(NamedTuple):
     t_end: float  # one period later
     drop: int  # periods before the kept ones
     periods: int  # in all
-    starts: Any  # (m, 2 n_q) states (q, v) at t_start
-    targets: Any  # (k, 2 n_q) a run ends where it comes near one of these
+    starts: Any  # (m, 2) states (q, v) at t_start
+    targets: Any  # (k, 2) a run ends where it comes near one of these
     radius: Any  # (k,) how near, in units of `scale`
-    scale: Any  # (2 n_q,)
-    states: Any  # (m, kept, 2 n_q) after each kept period
+    scale: Any  # (2,)
+    states: Any  # (m, kept, 2) after each kept period
     impacts: Any  # (m, kept, most, 3) time and gap velocities before and after; the first ones of each period
     counts: Any  # (m, kept, 2) see IMPACTS, ENDS
     reached: Any  # (m,) the target that was reached, or UNREACHED
     taken: Any  # (m,) periods taken
-    final: Any  # (m, 2 n_q) the last state
+    final: Any  # (m, 2) the last state
     codes: Any  # (m,) why the loop over events returned
     strict: bool  # a start inside of the obstacle ends its run
 
 
-def follow(s: Any, fresh: Any, record: Any, count: Any, task: Any) -> None:
-    """Kernel: every run in turn. fresh: the numbers of a flight that has not begun."""
+def follow(s: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
+    """Kernel: every run in turn; x0: constants and first numbers of a flight."""
+    q, v = s.q, s.v
     for i in range(len(task.starts)):
-        s.q[0], s.v[0] = task.starts[i, 0], task.starts[i, 1]
-        code, k = FINISHED, 0
-        if task.strict and not admissible(s, fresh, task.t_start):
+        q[0], v[0] = task.starts[i, 0], task.starts[i, 1]
+        code, k, age, power, kicks, length, speed = FINISHED, 0, 0, 1, 0, 0.0, 0.0
+        if task.strict and not admissible(s, x0, task.t_start):
             code = INSIDE
+        old_q, old_v = q[0], v[0]
         while k < task.periods and code == FINISHED and task.reached[i] == UNREACHED:
-            code = one_period(s, fresh, record, count, task, i, k - task.drop)
+            code = one_period(s, x0, record, count, task, i, k - task.drop)
             k += 1
+            age += 1
+            length, speed = max(length, abs(q[0])), max(speed, abs(v[0]))
+            if k < task.drop and age > 0 and q[0] == old_q and v[0] == old_v:  # R. Brent's search for a cycle
+                if kicks < KICKS:
+                    q[0] += KICK * length
+                    v[0] += KICK * speed
+                    kicks += 1
+                    old_q, old_v, age, power = q[0], v[0], 0, 1
+                else:
+                    k += (task.drop - k) // age * age
+                    age = -NO_LIMIT
+            elif age == power:
+                old_q, old_v, age, power = q[0], v[0], 0, 2 * power
             if code == FINISHED and k > task.drop:
-                task.states[i, k - 1 - task.drop, 0] = s.q[0]
-                task.states[i, k - 1 - task.drop, 1] = s.v[0]
+                task.states[i, k - 1 - task.drop, 0] = q[0]
+                task.states[i, k - 1 - task.drop, 1] = v[0]
             if code == FINISHED and len(task.targets) > 0:
-                task.reached[i] = near(task, s)
-        task.final[i, 0], task.final[i, 1] = s.q[0], s.v[0]
+                task.reached[i] = near(task, q[0], v[0])
+        task.final[i, 0], task.final[i, 1] = q[0], v[0]
         task.codes[i], task.taken[i] = code, k
 
 
-def admissible(s: Any, fresh: Any, t: float) -> bool:
+def admissible(s: Any, x0: Any, t: float) -> bool:
     """Kernel: whether the state s.q, s.v lies outside of the obstacle, up to rounding."""
-    if fresh[CONTACT] == 0.0:
+    if x0[CONTACT] == 0.0:
         return True
-    q, v = s.q[0], s.v[0]
-    assign(s.x, fresh)
-    find_corners(s, t)
-    rebase(s, t)
-    g, _, _ = free(s, 0.0)
-    s.q[0], s.v[0] = q, v
-    return bool(g >= -ON_THE_SURFACE * max(1.0, abs(q)))
+    gap = x0[OFFSET] + x0[G] * s.q[0]
+    if s.motion != ABSENT:
+        call(s.motion, t, s.q, s.v, s.p, s.now)
+        gap -= s.now[0, 0]
+    return bool(gap >= -ON_THE_SURFACE * max(1.0, abs(s.q[0])))
 
 
-def one_period(s: Any, fresh: Any, record: Any, count: Any, task: Any, i: int, k: int) -> int:
+def one_period(s: Any, x0: Any, record: Any, count: Any, task: Any, i: int, k: int) -> int:
     """Kernel: the state s.q, s.v one period later; its events noted if k >= 0."""
-    assign(s.x, fresh)
+    for j in range(len(x0)):
+        s.x[j] = x0[j]
+    s.x[NOW], s.x[T_END] = task.t_start, task.t_end
     most = count[MAX_EVENTS]
     for j in range(len(count)):
         count[j] = 0
@@ -115,48 +130,40 @@ def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
                 task.impacts[i, k, place, 1] = record.events[e, 2]
                 task.impacts[i, k, place, 2] = record.events[e, 3]
             task.counts[i, k, IMPACTS] += 1
-        elif kind == STICK:
+        elif kind == STICK and record.events[e, 0] > task.t_start:
             task.counts[i, k, ENDS] += 1
 
 
-def near(task: Any, s: Any) -> int:
+def near(task: Any, q: float, v: float) -> int:
     """Kernel: the first target within its radius of the state, or UNREACHED."""
     for k in range(len(task.targets)):
-        distance = abs(s.q[0] - task.targets[k, 0]) / task.scale[0]
-        distance = max(distance, abs(s.v[0] - task.targets[k, 1]) / task.scale[1])
-        if distance <= task.radius[k]:
+        along = abs(q - task.targets[k, 0]) / task.scale[0]
+        across = abs(v - task.targets[k, 1]) / task.scale[1]
+        if max(along, across) <= task.radius[k]:
             return k
     return UNREACHED
-
-
-CODES = {
-    loop.FINISHED: Status.DONE,
-    loop.NOT_FINITE: Status.NOT_FINITE,
-    loop.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
-    loop.STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
-}
 
 
 class Follower:
     """A scene made ready for `follow`: its model, and work space. One thread at a time may use it."""
 
-    def __init__(self, scene: Scene, method: EventDriven, t_start: float) -> None:
+    def __init__(self, scene: Scene, method: EventDriven) -> None:
         self.scene, self.method = scene, method
         self.model, self.fast = model(scene)
-        oscillator = oscillator_of(scene, self.model)
-        self.usable = oscillator is not None  # in closed form; other systems take the general way
-        if oscillator is not None:
-            long = (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
-            self.fresh = numbers(replace(scene, t_span=long), self.model, oscillator, method)
-            self.fresh[NOW], self.fresh[T_END] = t_start, t_start + scene.period
+        self.oscillator = oscillator_of(scene, self.model)
+
+    @property
+    def usable(self) -> bool:
+        """Whether the motion is known in closed form; other systems take the general way."""
+        return self.oscillator is not None
 
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
         scene = self.scene
-        record = Recorder(scene.n_q, scene.n_c, Kept(0, True, np.zeros(0)), 2 * loop.SLACK).buffers
-        record = record._replace(on_events=False)
-        count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
+        span = (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
+        x0 = numbers(replace(scene, t_span=span), self.model, self.oscillator, self.method)  # type: ignore[arg-type]
+        record = Recorder(1, scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).buffers
+        count = np.zeros(N_COUNTERS, dtype=np.int64)
         count[MAX_EVENTS] = self.method.max_events
         kernel = compiled(follow) if self.fast else follow
-        s = flight_of(scene, self.model, self.fresh.copy())
-        kernel(s, self.fresh, record, count, task._replace(strict=strict))
+        kernel(flight_of(scene, self.model, x0.copy()), x0, record, count, task._replace(strict=strict))

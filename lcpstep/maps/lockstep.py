@@ -125,7 +125,6 @@ class Lockstep:
         for period in range(task.periods):
             k = period - task.drop
             self.measure(lanes, task.t_start)
-            lanes.closed[:] = OPEN
             for p, t0, first, last in stretches:
                 kernel(m, p, lanes, task, t0, first, last, k)
             if k >= 0:

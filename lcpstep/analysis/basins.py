@@ -1,0 +1,306 @@
+"""Basins of attraction on a grid of initial states, by cell mapping with exact trajectories.
+
+1. Every cell's centre is carried through a few periods; its images are exact states, not cells.
+2. A cell is settled once an image lies near an attractor, or in a cell that is settled on the same attractor as
+   all its eight neighbours. Repeated until nothing changes, the labels spread outwards from the attractors.
+3. Cells left over, those between basins, are followed further, until they come near an attractor themselves.
+
+So only the labels of homogeneous neighbourhoods are shared, and a label depends neither on the order of the cells
+nor on how the work is divided. The share of an attractor is that of its cells; its uncertainty is that of a grid
+estimate of an area (binomial, of the cells at a boundary alone) together with the share of wrong labels, bounded from
+a random sample of cells that are followed to their end one by one. Source of the idea: C. S. Hsu, Cell-to-Cell
+Mapping (Springer 1987).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.analysis.attractors import Attractor, Attractors, attractors, random_starts
+from lcpstep.dataset import Progress, labelled, provenance
+from lcpstep.events import EventDriven
+from lcpstep.maps.batch import INSIDE, Targets, periods
+from lcpstep.simulate import Method
+from lcpstep.sweep import Arrays, sweep
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+UNKNOWN, OBSTACLE = -1, -2  # labels: no attractor was reached; the cell's centre lies inside of the obstacle
+PART = 8192  # cells of a part
+IMAGES = 4  # exact images of every cell before labels are shared
+STARTS = 200  # random states from which attractors are looked for
+RADII = np.geomspace(
+    1e-1, 1e-6, 26
+)  # candidates for the neighbourhood of an attractor that goes to it, of its size
+PROBES = 64  # states on whose fate a radius is judged
+CONFIDENCE = 0.95
+
+
+def basins(
+    scene: Scene,
+    lowest: ArrayLike,
+    highest: ArrayLike,
+    shape: tuple[int, int] = (200, 200),
+    *,
+    method: Method | None = None,
+    known: Attractors | None = None,
+    phase: float = 0.0,
+    longest: int = 1000,
+    sample: int = 500,
+    seed: int = 0,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    out: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Any:
+    """Basins of attraction over a rectangle of states of one degree of freedom.
+
+    Parameters
+    ----------
+    scene : lagrangian.Scene with a period and one coordinate
+    lowest, highest : (2,)   corners of the rectangle of states (q, v) at the section
+    shape : number of cells along q and along v
+    method : EventDriven() where not given
+    known : attractors, from `attractors`; looked for from random states of the rectangle where not given
+    phase : of the section, as a share of the period in [0, 1)
+    longest : periods after which a motion that has reached no attractor is left unlabelled
+    sample : number of cells followed one by one to judge the labels; 0 for none
+    seed : of the random states and of the sample
+    executor, jobs, out, progress : see `lcpstep.sweep.sweep`
+
+    Returns
+    -------
+    xarray.Dataset   label on (v, q): number of the attractor, -1 for none, -2 for cells inside of the
+        obstacle; and on (attractor): name, share of the admissible cells, share_error (half of its 95 % interval)
+
+    Raises
+    ------
+    ValueError   an empty or reversed rectangle, a grid without cells, more than one coordinate
+    SweepStopped   the executor died; finished parts are kept in `out`
+    """
+    if scene.n_q != 1:
+        raise ValueError(f"scene: expected one coordinate, {scene.name!r} has {scene.n_q}")
+    low, high = checks.array("lowest", lowest, (2,)), checks.array("highest", highest, (2,))
+    if not np.all(low < high):
+        raise ValueError(f"lowest, highest: expected an increasing range of q and of v, got {low} and {high}")
+    n_q, n_v = (checks.count("shape", n) for n in shape)
+    longest, method = checks.count("longest", longest), method or EventDriven()
+    if known is None:
+        starts = outside(scene, random_starts([low, high], STARTS, seed), phase)
+        known = attractors(scene, method, starts, phase=phase, transient=longest)
+    grid = Grid(low, high, n_q, n_v)
+    targets = neighbourhoods(scene, method, known.found, phase, longest, seed)
+    study = _Study(scene, method, grid, targets, phase, longest)
+    inputs = study.inputs(known)
+    cells = np.arange(n_q * n_v)
+    parts = [[cells[i : i + PART]] for i in range(0, len(cells), PART)]
+
+    def stage(name: str, chains: list[list[Any]], work: Callable[..., Any]) -> list[Arrays]:
+        folder = None if out is None else Path(out) / name
+        done = sweep(
+            work,
+            chains,
+            inputs | {"stage": name},
+            out=folder,
+            executor=executor,
+            jobs=jobs,
+            progress=progress,
+        )
+        return [chain[0] for chain in done]
+
+    first = stage("images", parts, study.images)
+    images = np.concatenate([part["images"] for part in first])
+    label = np.concatenate([part["label"] for part in first])
+    spread(grid, images, label)
+    rest = np.flatnonzero(label == UNKNOWN)
+    chains = [[rest[i : i + PART // 8]] for i in range(0, len(rest), PART // 8)]
+    for part in stage("rest", chains, study.to_the_end):
+        label[part["cells"]] = part["label"]
+    wrong = _wrong(study, label, sample, seed)
+    return study.dataset(known, label, wrong, seed, sample)
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Cells of equal size; cell (i, k) has the number i + n_q k."""
+
+    low: Array
+    high: Array
+    n_q: int
+    n_v: int
+
+    def centres(self, cells: Ints) -> Array:
+        """(m, 2) states."""
+        share = np.stack([(cells % self.n_q + 0.5) / self.n_q, (cells // self.n_q + 0.5) / self.n_v], axis=1)
+        return self.low + share * (self.high - self.low)
+
+    def cell(self, x: Array) -> Ints:
+        """Numbers of the cells that states (m, 2) lie in, -1 outside of the grid."""
+        place = np.floor((x - self.low) / (self.high - self.low) * (self.n_q, self.n_v))
+        within = np.all((place >= 0) & (place < (self.n_q, self.n_v)), axis=1)
+        place = np.where(within[:, None], place, 0).astype(np.int64)
+        return np.where(within, place[:, 0] + self.n_q * place[:, 1], -1)
+
+
+def outside(scene: Scene, x: Array, phase: float) -> Array:
+    """Those of the states (m, 2 n_q) that do not lie inside of the obstacle."""
+    t = phase * scene.period
+    n = scene.n_q
+    return x[[bool(np.all(scene.gap(t, y[:n], y[n:])[0] >= 0.0)) for y in x]]
+
+
+def neighbourhoods(
+    scene: Scene, method: Method, found: tuple[Attractor, ...], phase: float, longest: int, seed: int
+) -> tuple[Targets, Ints]:
+    """Balls around the points of periodic attractors that go there, judged by probes on them; and whose they are."""
+    points = [a.points for a in found if a.periods]
+    owner = np.repeat([k for k, a in enumerate(found) if a.periods], [len(p) for p in points]).astype(
+        np.int64
+    )
+    if not points:
+        return Targets(np.zeros((0, 2)), np.zeros(0), np.ones(2)), owner
+    centre = np.concatenate(points)
+    scale = np.maximum(np.max(np.abs(centre), axis=0), 1e-9 * (1.0 + np.max(np.abs(centre))))
+    smallest = Targets(centre, np.full(len(centre), RADII[-1]), scale)
+    direction = np.random.default_rng([seed, 1]).uniform(-1.0, 1.0, (PROBES, 2))
+    direction /= np.max(np.abs(direction), axis=1, keepdims=True)
+    radius = np.full(len(centre), RADII[-1])
+    for k, x in enumerate(centre):
+        for r in RADII[:-1]:
+            probes = outside(scene, x + r * scale * direction, phase)
+            if len(probes) == 0:
+                continue
+            went = periods(
+                scene, method, probes, longest, drop=longest, phase=phase, targets=smallest
+            ).reached
+            if np.all(went >= 0) and np.all(owner[went] == owner[k]):
+                radius[k] = 0.5 * r
+                break
+    return Targets(centre, radius, scale), owner
+
+
+def spread(grid: Grid, images: Array, label: Ints) -> None:
+    """Label cells by images that fall into homogeneous neighbourhoods, until nothing changes; label in place."""
+    cells = grid.cell(images.reshape(-1, 2)).reshape(images.shape[:2])
+    while True:
+        inner = homogeneous(label.reshape(grid.n_v, grid.n_q)).ravel()
+        open_cells = np.flatnonzero(label == UNKNOWN)
+        changed = False
+        for k in range(images.shape[1]):
+            image = cells[open_cells, k]
+            fate = np.where(image >= 0, inner[image], UNKNOWN)
+            settled = fate >= 0
+            label[open_cells[settled]] = fate[settled]
+            changed |= bool(np.any(settled))
+            open_cells = open_cells[~settled]
+        if not changed:
+            return
+
+
+def homogeneous(label: Ints) -> Ints:
+    """The label of cells that share it with their eight neighbours, UNKNOWN elsewhere and at the edge."""
+    result = np.full(label.shape, UNKNOWN)
+    same = np.ones((label.shape[0] - 2, label.shape[1] - 2), dtype=bool)
+    middle = label[1:-1, 1:-1]
+    for i in range(3):
+        for k in range(3):
+            same &= label[i : i + same.shape[0], k : k + same.shape[1]] == middle
+    result[1:-1, 1:-1] = np.where(same & (middle >= 0), middle, UNKNOWN)
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Study:
+    """What every part knows."""
+
+    scene: Scene
+    method: Method
+    grid: Grid
+    targets: tuple[Targets, Ints]
+    phase: float
+    longest: int
+
+    def images(self, cells: Ints, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+        """Exact images of the cells' centres, and the labels of those that came near an attractor."""
+        found = self.follow(cells, IMAGES, 0)
+        return {"images": found.states, "label": self.label(found)}, None
+
+    def to_the_end(self, cells: Ints, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+        """Labels of cells that are followed until they are near an attractor."""
+        return {"cells": cells, "label": self.label(self.follow(cells, self.longest, self.longest))}, None
+
+    def follow(self, cells: Ints, n: int, drop: int) -> Any:
+        return periods(
+            self.scene, self.method, self.grid.centres(cells), n, drop=drop, phase=self.phase, most=0,
+            targets=self.targets[0],
+        )  # fmt: skip
+
+    def label(self, found: Any) -> Ints:
+        """Labels of runs."""
+        owner = np.append(self.targets[1], UNKNOWN)
+        return np.where(found.status == INSIDE, OBSTACLE, owner[found.reached]).astype(np.int64)
+
+    def inputs(self, known: Attractors) -> dict[str, Any]:
+        """What the result depends on."""
+        g = self.grid
+        return provenance(self.scene, self.method) | {
+            "lowest": g.low.tolist(), "highest": g.high.tolist(), "shape": [g.n_q, g.n_v], "phase": self.phase,
+            "longest": self.longest, "attractors": [a.name for a in known.found],
+            "points": self.targets[0].points.tolist(),
+        }  # fmt: skip
+
+    def dataset(self, known: Attractors, label: Ints, wrong: float, seed: int, sample: int) -> Any:
+        """Labels and shares."""
+        g = self.grid
+        names = [a.name for a in known.found] or ["none"]
+        admissible = max(int(np.sum(label != OBSTACLE)), 1)
+        share = np.array([np.sum(label == k) for k in range(len(names))]) / admissible
+        error = np.array([self.error(label, k, admissible) for k in range(len(names))]) + wrong
+        attributes = {k: v for k, v in self.inputs(known).items() if k not in ("points", "attractors")}
+        attributes |= {
+            "seed": seed, "sample": sample, "wrong_labels_upper_bound": wrong,
+            "unlabelled": float(np.sum(label == UNKNOWN)) / admissible,
+        }  # fmt: skip
+        cells = np.arange(max(g.n_q, g.n_v))
+        return labelled(
+            {
+                "label": (("v", "q"), label.reshape(g.n_v, g.n_q).astype(np.int16)),
+                "share": (("attractor",), share),
+                "share_error": (("attractor",), error),
+                "name": (("attractor",), np.array(names)),
+            },
+            {"q": g.centres(cells[: g.n_q])[:, 0], "v": g.centres(cells[: g.n_v] * g.n_q)[:, 1]},
+            attributes,
+        )
+
+    def error(self, label: Ints, k: int, admissible: int) -> float:
+        """Half-width of the 95 % interval of a share: cells at the boundary fall on either side by chance."""
+        mine = (label == k).reshape(self.grid.n_v, self.grid.n_q)
+        edge = np.zeros(mine.shape, dtype=bool)
+        for axis in (0, 1):
+            for shift in (1, -1):
+                edge |= mine != np.roll(mine, shift, axis)
+        return 1.96 * 0.5 * math.sqrt(float(np.sum(edge))) / admissible
+
+
+def _wrong(study: _Study, label: Ints, sample: int, seed: int) -> float:
+    """Upper 95 % bound on the share of wrong labels, from cells followed one by one without sharing any."""
+    from scipy.stats import binomtest
+
+    candidates = np.flatnonzero(label != OBSTACLE)
+    sample = min(int(checks.number("sample", sample, least=0)), len(candidates))
+    if sample == 0:
+        return math.nan
+    cells = np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
+    truth, _ = study.to_the_end(cells, None)
+    errors = int(np.sum(truth["label"] != label[cells]))
+    return float(binomtest(errors, sample).proportion_ci(CONFIDENCE).high)

@@ -1,0 +1,195 @@
+"""Brute-force bifurcation diagrams: simulate at every parameter value, drop the transient, record the rest.
+
+The motion at each value starts from a fixed state, from where the one before ended (forward or backward, which
+shows hysteresis), or from random states (Monte Carlo, which shows coexisting attractors). Both sections are
+recorded: the state once per period, and phase and velocities of the impacts. Source: G. Osorio, Complex Behavior in
+Impacting Systems, section 3.3.1 and chapter 4 (zero relative position and velocity, 60 periods).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian import Scene, checks
+from lcpstep.dataset import Progress, labelled, provenance
+from lcpstep.events import EventDriven
+from lcpstep.maps.batch import periods
+from lcpstep.simulate import Method
+from lcpstep.sweep import Arrays, sweep
+from lcpstep.trajectory import Status
+
+Array = NDArray[np.float64]
+Start = Literal["fixed", "forward", "backward", "random"]
+STARTS = ("fixed", "forward", "backward", "random")
+PART = 8  # parameter values of a part of the sweep
+WINDOWS = {  # rpm of the cam-follower, as in the thesis
+    "114-850": (114.0, 850.0),
+    "114-200": (114.0, 200.0),
+    "198-200": (198.0, 200.0),
+    "357.5-361.5": (357.5, 361.5),
+    "660-760": (660.0, 760.0),
+}
+
+
+def bifurcation(
+    make: Callable[..., Scene],
+    parameter: str,
+    values: ArrayLike,
+    *,
+    method: Method | None = None,
+    start: Start = "fixed",
+    x0: ArrayLike | None = None,
+    box: ArrayLike | None = None,
+    runs: int = 1,
+    seed: int = 0,
+    drop: int = 500,
+    keep: int = 60,
+    phase: float = 0.0,
+    most: int = 16,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    out: Path | str | None = None,
+    progress: Progress | None = None,
+) -> Any:
+    """Brute-force bifurcation diagram of a family of scenes.
+
+    Parameters
+    ----------
+    make : make(**{parameter: value}) -> scene, for example `lagrangian.scenes.cam_follower`
+    parameter, values : name and increasing values (n,) of the parameter
+    method : EventDriven() where not given
+    start : "fixed": every run from x0; "forward", "backward": the first from x0, each further one from where its
+        neighbour ended; "random": `runs` runs a value from states drawn uniformly from `box`
+    x0 : (2 n_q,)   state (q, v) at the section; zero where not given
+    box : (2, 2 n_q)   lowest and highest states of the random starts
+    runs, seed : number of random starts at each value, and the seed that they are drawn with
+    drop, keep : periods of the transient and of the record
+    phase : of the stroboscopic section, as a share of the period in [0, 1)
+    most : impacts recorded of each period; their number is recorded in any case
+    executor, jobs, out, progress : see `lcpstep.sweep.sweep`
+
+    Returns
+    -------
+    xarray.Dataset   on (run, <parameter>, period): q, v (with dimension `coordinate`), impacts (their number), ends
+        (chattering sequences and other landings), and on (.., impact) impact_phase, impact_before, impact_after;
+        status on (run, <parameter>). Everything that it was made from is in the attributes.
+
+    Raises
+    ------
+    ValueError   values empty or not increasing, keep not positive, an unknown kind of start, a box missing
+    SweepStopped   the executor died; finished parts are kept in `out`
+    """
+    values = checks.vector(parameter, values)
+    if len(values) == 0 or np.any(np.diff(values) <= 0.0):
+        raise ValueError(f"values: expected increasing values of {parameter}, got {values.tolist()}")
+    if start not in STARTS:
+        raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")
+    first = make(**{parameter: float(values[0])})
+    d = 2 * first.n_q
+    study = _Study(
+        make=make, parameter=parameter, values=values, method=method or EventDriven(), start=start,
+        x0=checks.array("x0", np.zeros(d) if x0 is None else x0, (d,)), box=_box(box, d, start),
+        runs=checks.count("runs", runs) if start == "random" else 1, seed=int(seed),
+        drop=int(checks.number("drop", drop, least=0)), keep=checks.count("keep", keep), phase=float(phase),
+        most=checks.count("most", most),
+    )  # fmt: skip
+    order = range(len(values)) if start != "backward" else range(len(values) - 1, -1, -1)
+    parts = [list(order)[i : i + PART] for i in range(0, len(values), PART)]
+    chains = [parts] if start in ("forward", "backward") else [[part] for part in parts]
+    done = sweep(study, chains, study.inputs(first), out=out, executor=executor, jobs=jobs, progress=progress)
+    return study.dataset(first, [part for chain in done for part in chain])
+
+
+def _box(box: ArrayLike | None, d: int, start: str) -> Array:
+    if start != "random":
+        return np.zeros((2, d))
+    if box is None:
+        raise ValueError("box: random starts need the lowest and highest states to draw from")
+    result = checks.array("box", box, (2, d))
+    if np.any(result[0] > result[1]):
+        raise ValueError(f"box: expected lowest and highest states, got {result.tolist()}")
+    return result
+
+
+@dataclass(frozen=True, eq=False)
+class _Study:
+    """What every part of the sweep knows; called with the indices of the values of the part."""
+
+    make: Callable[..., Scene]
+    parameter: str
+    values: Array
+    method: Method
+    start: str
+    x0: Array
+    box: Array
+    runs: int
+    seed: int
+    drop: int
+    keep: int
+    phase: float
+    most: int
+
+    def __call__(self, part: list[int], handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+        x = self.x0 if handed is None else handed["x"]
+        rows: list[Arrays] = []
+        for i in part:
+            scene = self.make(**{self.parameter: float(self.values[i])})
+            found = periods(
+                scene, self.method, self.starts(i, x), self.drop + self.keep, drop=self.drop,
+                phase=self.phase, most=self.most, strict=handed is None and i == part[0],
+            )  # fmt: skip
+            continued = self.start in ("forward", "backward") and found.status[0] == Status.DONE
+            x = found.final[0] if continued else self.x0
+            rows.append({
+                "states": found.states, "phase": found.time / scene.period % 1.0, "before": found.before,
+                "after": found.after, "impacts": found.impacts.astype(np.int32),
+                "ends": found.ends.astype(np.int32), "status": found.status.astype(np.int8),
+            })  # fmt: skip
+        arrays: Arrays = {name: np.stack([row[name] for row in rows], axis=1) for name in rows[0]}
+        return arrays | {"index": np.array(part)}, {"x": x}
+
+    def starts(self, i: int, x: Array) -> Array:
+        """States to start from at the i-th value; random ones depend on the seed and on i alone."""
+        if self.start != "random":
+            return x[None, :]
+        random = np.random.default_rng([self.seed, i])
+        return random.uniform(self.box[0], self.box[1], (self.runs, len(x)))
+
+    def inputs(self, first: Scene) -> dict[str, Any]:
+        """What the result depends on."""
+        names = ("start", "runs", "seed", "drop", "keep", "phase", "most")
+        return provenance(first, self.method) | {
+            "make": f"{getattr(self.make, '__module__', '')}.{getattr(self.make, '__qualname__', self.make)}",
+            "parameter": self.parameter, "values": self.values.tolist(), "x0": self.x0.tolist(),
+            "box": self.box.tolist(), **{name: getattr(self, name) for name in names},
+        }  # fmt: skip
+
+    def dataset(self, first: Scene, parts: list[Arrays]) -> Any:
+        """All parts in the order of the values."""
+        order = np.argsort(np.concatenate([part["index"] for part in parts]))
+        joined = {
+            name: np.concatenate([part[name] for part in parts], axis=1)[:, order]
+            for name in parts[0]
+            if name != "index"
+        }
+        n, at = first.n_q, ("run", self.parameter, "period")
+        variables = {
+            "q": ((*at, "coordinate"), joined["states"][..., :n]),
+            "v": ((*at, "coordinate"), joined["states"][..., n:]),
+            "impacts": (at, joined["impacts"]),
+            "ends": (at, joined["ends"]),
+            "impact_phase": ((*at, "impact"), joined["phase"]),
+            "impact_before": ((*at, "impact"), joined["before"]),
+            "impact_after": ((*at, "impact"), joined["after"]),
+            "status": (at[:2], joined["status"]),
+        }
+        attributes = {k: v for k, v in self.inputs(first).items() if k not in ("values", "box")}
+        attributes |= {"box": self.box.ravel()} if self.start == "random" else {}
+        return labelled(variables, {self.parameter: self.values}, attributes)

@@ -1,0 +1,71 @@
+"""Labelled results: an xarray dataset with units and all parameters, saved to NetCDF."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from lagrangian import Scene
+from lcpstep.simulate import Method
+
+COMPRESSION = {"zlib": True, "complevel": 4}
+UNITS = {  # of the variables that results are made of
+    "q": "m", "v": "m/s", "impact_phase": "1", "impact_before": "m/s", "impact_after": "m/s", "rpm": "1/min",
+}  # fmt: skip
+
+
+def labelled(
+    variables: Mapping[str, tuple[tuple[str, ...], Any]],
+    coordinates: Mapping[str, Any],
+    attributes: Mapping[str, Any],
+    units: Mapping[str, str] | None = None,
+) -> Any:
+    """Dataset of named arrays (dimensions, values) with their units."""
+    import xarray
+
+    data = xarray.Dataset(dict(variables), coords=dict(coordinates), attrs=dict(attributes))
+    for name in data.variables:
+        unit = {**UNITS, **(units or {})}.get(str(name))
+        if unit is not None:
+            data[name].attrs["units"] = unit
+    return data
+
+
+def provenance(scene: Scene, method: Method) -> dict[str, Any]:
+    """Attributes that say what was computed, and how."""
+    return {
+        "scene": scene.name,
+        "parameters": json.dumps(dict(scene.parameters)),
+        "method": repr(method),
+        "lcpstep": importlib.import_module("lcpstep").__version__,
+    }
+
+
+def check_new(file: Path | str | None, overwrite: bool) -> None:
+    """Refuse to write over a file that exists; called before any work starts."""
+    if file is not None and Path(file).exists() and not overwrite:
+        raise FileExistsError(f"{file} exists already")
+
+
+def save(data: Any, file: Path | str, *, overwrite: bool = False) -> Path:
+    """Write a dataset to NetCDF; the file appears complete or not at all.
+
+    Raises
+    ------
+    FileExistsError   the file exists and `overwrite` is not set
+    """
+    file = Path(file)
+    check_new(file, overwrite)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    partial = file.with_name(file.name + ".partial")
+    packed = {name: COMPRESSION for name, x in data.data_vars.items() if x.size > 1 and x.dtype.kind in "fiu"}
+    data.to_netcdf(partial, engine="netcdf4", encoding=packed)
+    os.replace(partial, file)
+    return file
+
+
+Progress = Callable[[int, int], None]

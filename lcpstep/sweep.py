@@ -1,0 +1,173 @@
+"""Long computations in parts: in parallel, on any executor, with every finished part on disk.
+
+A sweep is a number of chains of parts. The parts of a chain follow one another, each handed what the one before
+left; chains run side by side. A part is written to a file of its own, which appears all at once or not at all, so
+that a run killed at any moment has lost only the parts at hand, and the same call goes on from there with the
+same result to the last bit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lagrangian import checks
+from lcpstep.errors import LcpStepError, SweepStopped
+
+Arrays = dict[str, Any]  # named arrays
+Work = Callable[[Any, Arrays | None], tuple[Arrays, Arrays | None]]
+MANIFEST = "manifest.json"
+CARRY = "carry:"  # before the names of what a part hands to the next
+
+
+def sweep(
+    work: Work,
+    chains: Sequence[Sequence[Any]],
+    inputs: Mapping[str, Any],
+    *,
+    out: Path | str | None = None,
+    executor: Executor | None = None,
+    jobs: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> list[list[Arrays]]:
+    """Do all parts of a sweep, but for those that lie finished on disk.
+
+    Parameters
+    ----------
+    work : (part, handed) -> (arrays, handed on); must be picklable for executors of processes
+    chains : parts in their order; those of different chains do not depend on one another
+    inputs : all that the result depends on, as JSON; a folder with other inputs is refused
+    out : folder for finished parts; None keeps them in memory only
+    executor : any `concurrent.futures.Executor`; a pool of threads on all cores where not given. It is not shut down.
+    jobs : number of threads of that pool
+    progress : called with the number of finished parts and of all
+
+    Returns
+    -------
+    The arrays of every part, chain by chain
+
+    Raises
+    ------
+    ValueError   jobs is not positive
+    SweepStopped   the executor died, or `out` holds another sweep; finished parts are kept
+    Exception   whatever work raises; finished parts are kept
+    """
+    store = Store(out, inputs)
+    results = [[store.load(i, k) for k in range(len(chain))] for i, chain in enumerate(chains)]
+    total = sum(len(chain) for chain in chains)
+    own = None
+    if executor is None:
+        jobs = (os.cpu_count() or 1) if jobs is None else checks.count("jobs", jobs)
+        own = executor = ThreadPoolExecutor(max_workers=jobs)
+    running: dict[Future[Any], tuple[int, int]] = {}
+    try:
+        for i in range(len(chains)):
+            _submit(executor, work, chains, results, i, running)
+        while running:
+            report(progress, results, total)
+            done, _ = wait(running, return_when=FIRST_COMPLETED)
+            for future in done:
+                i, k = running.pop(future)
+                arrays, handed = future.result()
+                results[i][k] = (arrays, handed)
+                store.save(i, k, arrays, handed)
+                _submit(executor, work, chains, results, i, running)
+        report(progress, results, total)
+    except Exception as error:
+        if _of_the_work(error):
+            raise
+        finished = sum(part is not None for chain in results for part in chain)
+        kept = f"kept in {out}, the same call goes on from there" if out else "lost: no folder was given"
+        raise SweepStopped(
+            f"the executor failed ({type(error).__name__}: {error}); {finished} of {total} parts are {kept}"
+        ) from error
+    finally:
+        for future in running:
+            future.cancel()
+        if own is not None:
+            own.shutdown(wait=True, cancel_futures=True)
+    return [[part[0] for part in chain if part is not None] for chain in results]
+
+
+def report(progress: Callable[[int, int], None] | None, results: list[list[Any]], total: int) -> None:
+    """Tell how many parts are finished."""
+    if progress is not None:
+        progress(sum(part is not None for chain in results for part in chain), total)
+
+
+def _submit(
+    executor: Executor, work: Work, chains: Sequence[Sequence[Any]], results: list[list[Any]], i: int,
+    running: dict[Future[Any], tuple[int, int]],
+) -> None:  # fmt: skip
+    """Hand in the first part of chain i that is not finished."""
+    for k, part in enumerate(results[i]):
+        if part is None:
+            handed = None if k == 0 else results[i][k - 1][1]
+            running[executor.submit(work, chains[i][k], handed)] = (i, k)
+            return
+
+
+def _of_the_work(error: Exception) -> bool:
+    """Whether an error came from the work itself and not from the executor that did it."""
+    return isinstance(error, (LcpStepError, ValueError, TypeError, ArithmeticError, FileExistsError))
+
+
+class Store:
+    """Finished parts in a folder, and a manifest that says of what."""
+
+    def __init__(self, folder: Path | str | None, inputs: Mapping[str, Any]) -> None:
+        self.folder = None if folder is None else Path(folder)
+        if self.folder is None:
+            return
+        text = json.dumps({"sweep": inputs}, indent=1, sort_keys=True, default=str)
+        manifest = self.folder / MANIFEST
+        if manifest.exists():
+            if manifest.read_text() != text:
+                raise SweepStopped(
+                    f"out: {self.folder} holds the parts of another sweep; choose another folder"
+                )
+            return
+        if self.folder.exists() and any(self.folder.iterdir()):
+            raise FileExistsError(f"out: {self.folder} exists and is no folder of this sweep")
+        self.folder.mkdir(parents=True, exist_ok=True)
+        write_atomically(manifest, lambda file: file.write(text.encode()))
+
+    def save(self, i: int, k: int, arrays: Arrays, handed: Arrays | None) -> None:
+        """Keep a part."""
+        if self.folder is not None:
+            named = arrays | {CARRY + name: x for name, x in (handed or {}).items()}
+            write_atomically(self.file(i, k), lambda file: np.savez(file, **named))
+
+    def load(self, i: int, k: int) -> tuple[Arrays, Arrays | None] | None:
+        """A part that was kept, or None."""
+        if self.folder is None or not self.file(i, k).exists():
+            return None
+        with np.load(self.file(i, k)) as part:
+            arrays = {name: part[name] for name in part.files if not name.startswith(CARRY)}
+            handed = {name[len(CARRY) :]: part[name] for name in part.files if name.startswith(CARRY)}
+        return arrays, handed or None
+
+    def file(self, i: int, k: int) -> Path:
+        """Where a part lies."""
+        return Path(self.folder or "") / f"part-{i:05d}-{k:05d}.npz"
+
+
+def write_atomically(file: Path, write: Callable[[Any], Any]) -> None:
+    """Write a file that appears complete or not at all."""
+    handle, name = tempfile.mkstemp(dir=file.parent, prefix=file.name, suffix=".partial")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            write(stream)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(name, file)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
