@@ -8,6 +8,7 @@ from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, Simulat
 from lcpstep.events import EventDriven
 from lcpstep.lcp import solve_lcp
 from lcpstep.simulate import simulate
+from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.study import study
 from lcpstep.trajectory import Kind, Status, Trajectory
@@ -17,6 +18,7 @@ __all__ = [
     "EventDriven",
     "Kind",
     "LcpStepError",
+    "Located",
     "MissingSolver",
     "Moreau",
     "SimulationError",

@@ -107,7 +107,7 @@ class Recorder:
             on_events=kept.on_events,
             times=kept.times,
             rows=np.zeros((rows, LEAD + 2 * n_q + n_c)),
-            events=np.zeros((EVENT_CAPACITY + 2 * n_c, len(IMPACT_DTYPE.names or ()))),
+            events=np.zeros((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ()))),
             dense=np.zeros((rows if dense else 0, 7, 2 * n_q)),
         )
         b = self.buffers

@@ -1,0 +1,503 @@
+"""The loop of `Located`, as kernels: steps, and within each step the impacts at their own times.
+
+A step is a chain of pieces of smooth motion (`smooth`). A piece ends where the first gap closes, at a corner of
+the scene, or with the step; there the impulses are found (`impulses`), and the next piece begins with the
+velocities after them. Gaps of contacts that have just fired count from zero, so a chain of ever shorter hops is
+followed without loss of digits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.dense import assign
+from lcpstep.dynamics import external_force, gaps, obstacle, product
+from lcpstep.model import ABSENT
+from lcpstep.recording import LEAD, write_row
+from lcpstep.recording import TIME as ROW_TIME
+from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
+from lcpstep.stepping.located_work import (
+    BUFFER_FULL,
+    CLOSED,
+    END,
+    EPS,
+    EVENT,
+    EVENTS,
+    FINISHED,
+    FORCES,
+    HIGH,
+    LCP_FAILED,
+    LOW,
+    NEXT_TIME,
+    NOT_FINITE,
+    OPEN,
+    ROW,
+    SIGMA,
+    STEP,
+    UNDER_WAY,
+    WHOLE,
+)
+from lcpstep.stepping.quadratic import first_zero
+from lcpstep.stepping.smooth import (
+    ON_THE_SURFACE,
+    accelerate,
+    advance,
+    anything_closed,
+    free_acceleration,
+    gap_bias,
+    lift,
+    measure,
+    put_on_surface,
+    refactor,
+    respond,
+    within,
+)
+
+POLISHING = 8  # Newton iterations onto a gap that is no quadratic
+SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
+LATE = 1e-9  # of a step: what rounding may take from the last one's end
+NOBODY = -1
+
+
+def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
+    """Forces, gaps and status of the initial state, which is kept where states are."""
+    x[LOW], x[HIGH] = find_corners(plan, t)
+    if m.linear:
+        external_force(m, within(plan, x, t), w.q, w.v, w.force)
+    elif not free_acceleration(m, w, t, w.q, w.v, w.free):
+        return NOT_FINITE
+    count[FORCES] += 1
+    if plan.steady:
+        for i in range(len(w.q)):
+            w.free[i] = product(plan.A_inverse[WHOLE], w.force, i)
+    measure(m, plan, w, t)
+    if plan.constant:
+        respond(m, w)
+        for c in range(len(w.u)):
+            w.alpha[c] = product(m.G, w.free, c)
+    for c in range(len(w.u)):
+        if w.g[c] <= plan.slack:
+            w.g[c], w.grounded[c] = 0.0, 1
+            size = abs(w.g_t[c])
+            for i in range(len(w.q)):
+                size += abs(w.G[c, i] * w.v[i])
+            if abs(w.u[c]) <= 64 * EPS * size:
+                w.u[c], w.status[c] = 0.0, CLOSED
+    if len(record.times) == 0:
+        keep(w, record, count, t)
+    elif record.times[0] == t:
+        keep(w, record, count, t)
+        count[NEXT_TIME] = 1
+    return FINISHED
+
+
+def run(
+    model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t0: float, first: int, last: int
+) -> int:
+    """Steps count[STEP] .. last - 1, step `first` beginning at t0; says why it returned."""
+    n_c = len(w.u)
+    single = model.linear and model.flat and n_c <= 1 and len(w.q) == 1 and len(record.times) == 0
+    while count[STEP] < last:
+        if x[UNDER_WAY] == 0.0:
+            if single and (n_c == 0 or w.status[0] == OPEN):
+                end = last
+                if record.every > 0:
+                    end = min(last, count[STEP] + record.every - 1 - count[STEP] % record.every)
+                glide(model, plan, w, x, count, t0, first, end)
+                if count[STEP] >= last:
+                    return FINISHED
+            begin_step(w, x)
+        t = t0 + plan.h * (count[STEP] - first)
+        code = step(model, plan, w, x, record, count, t)
+        if code != FINISHED:
+            return code
+        t_next = t0 + plan.h * (count[STEP] + 1 - first)
+        keep_times(w, record, count, t_next + LATE * plan.h, t_next + LATE * plan.h)
+        count[STEP] += 1
+        x[UNDER_WAY] = 0.0
+        if not finite(w):
+            return NOT_FINITE
+        if record.every > 0 and count[STEP] % record.every == 0:
+            keep(w, record, count, t_next)
+    return FINISHED
+
+
+@inline
+def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: int, last: int) -> None:
+    """Steps of one linear degree of freedom without events, up to the first that may have one.
+
+    The arithmetic is that of `step`; only the state stays in registers, which halves the time.
+    """
+    h = plan.h
+    A_inverse, C, K = plan.A_inverse[WHOLE, 0, 0], model.C[0, 0], model.K[0, 0]
+    q, v, f = w.q[0], w.v[0], w.force[0]
+    g, u, G, offset, s = math.inf, 0.0, 0.0, 0.0, 0.0
+    contact, moving = len(w.u) > 0, model.motion != ABSENT
+    if contact:
+        g, u, G, offset = w.g[0], w.u[0], model.G[0, 0], model.offset[0]
+        if moving:
+            obstacle(model, within(plan, x, t0 + h * (count[STEP] - first)), w.q, w.v)
+            s = model.motion_now[0, 2]
+    k = start = count[STEP]
+    while k < last:
+        t = t0 + h * (k + 1 - first)
+        if t > x[HIGH]:
+            break
+        inner = within(plan, x, t)
+        external_force(model, inner, w.q, w.v, w.next_force)
+        f_next = w.next_force[0]
+        a = A_inverse * (0.5 * (f + f_next) - C * v - K * (q + 0.5 * h * v))
+        if a - a != 0.0:
+            break
+        if contact:
+            half, s_next = 0.5 * G * a, 0.0
+            if moving:
+                obstacle(model, inner, w.q, w.v)
+                s_next = model.motion_now[0, 2]
+                half -= s / 3.0 + s_next / 6.0
+            if first_zero(g, u, half) <= h + SAME_TIME * (abs(t) + h):
+                break
+            if moving:
+                obstacle(model, t, w.q, w.v)
+                q_next, v_next = q + h * (v + 0.5 * h * a), v + h * a
+                g_next = G * q_next + offset - model.motion_now[0, 0]
+                if not g_next > 0.0:
+                    break
+                g, u, s = g_next, G * v_next - model.motion_now[0, 1], s_next
+            else:
+                g, u = g + h * (u + h * half), u + 2.0 * h * half
+        q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
+        k += 1
+    w.q[0], w.v[0], w.force[0] = q, v, f
+    if contact:
+        w.g[0], w.u[0] = g, u
+    count[STEP] = k
+    count[FORCES] += k - start
+
+
+@inline
+def begin_step(w: Any, x: Any) -> None:
+    """Nothing has happened in this step yet."""
+    x[SIGMA] = x[EVENTS] = x[END] = 0.0
+    x[UNDER_WAY] = 1.0
+    for c in range(len(w.u)):
+        w.hits[c] = w.close_hits[c] = 0
+        w.last[c] = -1.0
+
+
+@inline
+def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
+    """The rest of the step that began at t: from x[SIGMA] to its end."""
+    n_c = len(w.u)
+    settled = False
+    while True:
+        if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
+            return BUFFER_FULL
+        if x[SIGMA] >= x[END]:
+            if x[END] >= plan.h:
+                return FINISHED
+            begin_interval(model, plan, w, x, count, t)
+        if not begin_piece(model, plan, w, x, record, t + x[SIGMA], count):
+            return LCP_FAILED if finite(w) else NOT_FINITE
+        rest = x[END] - x[SIGMA]
+        c, tau = NOBODY, rest
+        if not settled and x[EVENTS] > plan.max_events:
+            settled = True
+            if not settle_rest(model, plan, w, x, record, t + x[SIGMA], count):
+                return LCP_FAILED
+        if not settled:
+            c, tau = first_contact(plan, w, rest, t + x[END])
+            if c != NOBODY and not plan.plain:
+                c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
+        x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
+        code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
+        if code != FINISHED:
+            return code
+        if c != NOBODY:
+            code = event(model, plan, w, x, record, t, c, count)
+            if code != FINISHED:
+                return code
+
+
+@inline
+def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> None:
+    """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends."""
+    now = t + x[SIGMA]
+    if now >= x[HIGH] - plan.margin:
+        x[LOW], x[HIGH] = find_corners(plan, now)
+        if m.linear and not plan.steady:
+            external_force(m, within(plan, x, now), w.q, w.v, w.force)
+        elif not m.linear:
+            free_acceleration(m, w, within(plan, x, now), w.q, w.v, w.free)
+        count[FORCES] += 1
+    x[END] = plan.h
+    if t + plan.h > x[HIGH] + plan.margin:
+        x[END] = max(x[HIGH] - t, x[SIGMA])
+    end = within(plan, x, t + x[END])
+    if m.linear and not plan.steady:
+        external_force(m, end, w.q, w.v, w.next_force)
+        count[FORCES] += 1
+    if m.flat and m.motion != ABSENT:
+        obstacle(m, end, w.q, w.v)
+        for c in range(len(w.u)):
+            w.end_s[c] = m.motion_now[c, 2]
+
+
+@inline
+def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
+    """Accelerations and gap quadratics of the piece that begins at t."""
+    n_c = len(w.u)
+    place = accelerate(m, plan, w, x, t)
+    if n_c == 0:
+        assign(w.a, w.free)
+        return True
+    closed = anything_closed(w)
+    if m.flat:
+        flat_accelerations(m, plan, w, t, x)
+    elif needs_bias(w):
+        gap_bias(m, w, within(plan, x, t), w.q, w.v)
+        for c in range(n_c):
+            w.alpha[c] = product(w.G, w.free, c) + w.bias[c]
+    if closed and not plan.constant:
+        if not refactor(m, w, t):
+            return False
+        respond(m, w)
+    if not hold(m, plan, w, x, record, place, t, count):
+        return False
+    if plan.constant:
+        for c in range(n_c):
+            w.half[c] = 0.5 * (w.alpha[c] + w.bend[c])
+        if closed:
+            pressed(w, place)
+    else:
+        fitted(m, w, t, x[END] - x[SIGMA])
+    for c in range(n_c):
+        if w.status[c] == CLOSED:
+            w.g[c] = w.u[c] = w.half[c] = 0.0
+        elif w.grounded[c] == 1 and w.u[c] == 0.0:  # just released
+            w.half[c] = max(w.half[c], 0.0)
+    return True
+
+
+@inline
+def flat_accelerations(m: Any, plan: Any, w: Any, t: float, x: Any) -> None:
+    """Mean accelerations of the gaps of flat contacts over the piece without contact forces.
+
+    In w.alpha so that the velocity is right at the end; w.bend is what must be added for the position.
+    """
+    if not plan.steady or m.motion != ABSENT:
+        for c in range(len(w.u)):
+            w.alpha[c] = product(m.G, w.free, c)
+    if m.motion != ABSENT:
+        obstacle(m, within(plan, x, t), w.q, w.v)
+        for c in range(len(w.u)):
+            s, s_end = m.motion_now[c, 2], w.end_s[c]
+            w.alpha[c] -= 0.5 * (s + s_end)
+            w.bend[c] = (s_end - s) / 6.0
+
+
+@inline
+def pressed(w: Any, place: int) -> None:
+    """Add to the gap quadratics what contact forces do."""
+    for d in range(len(w.u)):
+        force = w.multiplier[d]
+        if w.status[d] == CLOSED and force > 0.0:
+            for c in range(len(w.u)):
+                w.half[c] += 0.5 * w.WA[place, c, d] * force
+
+
+@inline
+def fitted(m: Any, w: Any, t: float, rest: float) -> None:
+    """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
+    for i in range(len(w.q)):
+        w.q_try[i] = w.q[i] + rest * (w.v[i] + 0.5 * rest * w.a[i])
+    gaps(m, t + rest, w.q_try, w.v, w.g_try)
+    for c in range(len(w.u)):
+        if w.grounded[c] == 1:
+            w.half[c] = 0.5 * (product(w.G, w.a, c) + w.bias[c])
+        else:
+            w.half[c] = (w.g_try[c] - w.g[c] - rest * w.u[c]) / (rest * rest)
+
+
+@inline
+def needs_bias(w: Any) -> bool:
+    """Whether some contact is closed or has just been left."""
+    some = False
+    for c in range(len(w.u)):
+        some = some or w.status[c] == CLOSED or w.grounded[c] == 1
+    return some
+
+
+@inline
+def first_contact(plan: Any, w: Any, rest: float, t_end: float) -> tuple[int, float]:
+    """Which gap closes first, and when; NOBODY and the end of the piece if none does."""
+    found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
+    for c in range(len(w.u)):
+        if w.status[c] == OPEN:
+            zero = first_zero(w.g[c], w.u[c], w.half[c])
+            if zero < tau or (zero == 0.0 and tau == 0.0 and w.u[c] < w.u[found]):
+                found, tau = c, zero
+    return found, min(tau, rest)
+
+
+@inline
+def polish(m: Any, plan: Any, w: Any, c: int, t: float, tau: float, rest: float) -> tuple[int, float]:
+    """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
+    if tau == 0.0:
+        return c, 0.0
+    for _ in range(POLISHING):
+        for i in range(len(w.q)):
+            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+        gaps(m, t + tau, w.q_try, w.v, w.g_try)
+        u = w.u[c] + 2.0 * tau * w.half[c]
+        if abs(w.g_try[c]) <= 0.125 * plan.slack:
+            return c, tau
+        if u >= 0.0:
+            break
+        change = -w.g_try[c] / u
+        if tau + change > rest:
+            return NOBODY, rest
+        if tau + change <= 0.0:
+            break
+        tau += change
+        if abs(change) <= EPS * tau:
+            return c, tau
+    if w.g_try[c] > 0.0:
+        return NOBODY, tau
+    return c, tau
+
+
+@inline
+def move(
+    m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, to_end: bool, count: Any
+) -> int:
+    """Go on to x[SIGMA] + tau; contacts that were closed all the way stay on the surface."""
+    now = t + x[SIGMA]
+    keep_times(w, record, count, now, now + tau)
+    if tau > 0.0:
+        for c in range(len(w.u)):
+            w.grounded[c] = 0
+        if not advance(m, plan, w, within(plan, x, now), tau, count):
+            return NOT_FINITE
+    x[SIGMA] = x[END] if to_end else x[SIGMA] + tau
+    if to_end and m.linear and not plan.steady:
+        assign(w.force, w.next_force)
+    if tau > 0.0 and (anything_closed(w) or penetrates(plan, w)):
+        if plan.plain:
+            if to_end:
+                put_on_surface(m, plan, w, now + tau)
+        else:
+            if not plan.constant:
+                if not refactor(m, w, now + tau):
+                    return NOT_FINITE
+                respond(m, w)
+            if not land(m, plan, w, x, record, now + tau, tau, count):
+                return LCP_FAILED
+            put_on_surface(m, plan, w, now + tau)
+            measure(m, plan, w, now + tau)
+    return FINISHED
+
+
+@inline
+def penetrates(plan: Any, w: Any) -> bool:
+    """Whether an open contact has been closed by what its quadratic neglects."""
+    lowest = 0.0
+    for c in range(len(w.u)):
+        if w.status[c] == OPEN:
+            lowest = min(lowest, w.g[c])
+    return not plan.plain and lowest < -ON_THE_SURFACE * plan.slack
+
+
+@inline
+def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
+    """The impact of contact c at x[SIGMA], and what it changes."""
+    now = t + x[SIGMA]
+    if w.u[c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
+        w.g[c], w.grounded[c] = 0.0, 1
+        if w.u[c] == 0.0:
+            stick(w, record, count, c, now)
+        return FINISHED
+    if not plan.constant:
+        if not refactor(m, w, now):
+            return NOT_FINITE
+        respond(m, w)
+    if not strike(m, plan, w, x, record, c, now, count):
+        return LCP_FAILED
+    if plan.plain:
+        lift(m, plan, w, w.q, c, -height(m, w, c))
+        lift(m, plan, w, w.v, c, w.u[c] - product(m.G, w.v, c))
+    if m.linear and not plan.steady:
+        external_force(m, within(plan, x, now), w.q, w.v, w.force)
+        count[FORCES] += 1
+    elif not m.linear:
+        if not free_acceleration(m, w, within(plan, x, now), w.q, w.v, w.free):
+            return NOT_FINITE
+        count[FORCES] += 1
+    if record.on_events or record.every == 1:
+        keep(w, record, count, now)
+    return FINISHED
+
+
+@inline
+def height(m: Any, w: Any, c: int) -> float:
+    """The gap c of a flat contact at rest, from the coordinates."""
+    return product(m.G, w.q, c) + m.offset[c]
+
+
+@inline
+def find_corners(plan: Any, t: float) -> tuple[float, float]:
+    """The smooth interval that begins at t or holds it."""
+    low, high = -math.inf, math.inf
+    if len(plan.corners) == 0:
+        return low, high
+    turn = 0.0 if plan.period == math.inf else math.floor(t / plan.period) * plan.period
+    for k in range(-1, 3):
+        if k == 0 or plan.period < math.inf:
+            for corner in plan.corners:
+                time = corner + (turn + k * plan.period if plan.period < math.inf else 0.0)
+                if time <= t + plan.margin:
+                    low = max(low, time)
+                else:
+                    high = min(high, time)
+    return low, high
+
+
+@inline
+def finite(w: Any) -> bool:
+    """Whether state and gaps are finite."""
+    total = 0.0
+    for i in range(len(w.q)):
+        total += (w.q[i] - w.q[i]) + (w.v[i] - w.v[i])
+    for c in range(len(w.u)):
+        total += (w.g[c] - w.g[c]) + (w.u[c] - w.u[c])
+    return total == 0.0
+
+
+# --- what is kept ---------------------------------------------------------------------------------------------
+
+
+@inline
+def keep_times(w: Any, record: Any, count: Any, now: float, before: float) -> None:
+    """Keep the states asked for before the given time, along the piece that begins now."""
+    while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < before:
+        t = record.times[count[NEXT_TIME]]
+        tau = max(0.0, t - now)
+        for i in range(len(w.q)):
+            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+            w.v_try[i] = w.v[i] + tau * w.a[i]
+        write_row(record.rows[count[ROW]], t, 0.0, w.q_try, w.v_try, w.impulse)
+        count[ROW] += 1
+        count[NEXT_TIME] += 1
+
+
+@inline
+def keep(w: Any, record: Any, count: Any, t: float) -> None:
+    """Keep the current state; states at one time share a row."""
+    if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:
+        count[ROW] -= 1
+        for c in range(len(w.impulse)):
+            w.impulse[c] += record.rows[count[ROW], LEAD + 2 * len(w.q) + c]
+    write_row(record.rows[count[ROW]], t, 0.0, w.q, w.v, w.impulse)
+    count[ROW] += 1

@@ -1,0 +1,29 @@
+"""When a gap that moves as g + u tau + half tau^2 falls to zero: the first time, found without cancellation.
+
+A gap that starts at zero has just been left (u >= 0) or is about to be struck (u < 0); one root is then known, and
+the other needs no difference of nearly equal numbers: so the smallest hops of a chattering contact keep all digits.
+Source: W. Press et al., Numerical Recipes, section 5.6.
+"""
+
+from __future__ import annotations
+
+import math
+
+from lcpstep.compiled import inline
+
+NEVER = math.inf
+
+
+@inline
+def first_zero(g: float, u: float, half: float) -> float:
+    """Smallest tau >= 0 at which the gap is zero and falling; NEVER if there is none."""
+    if g <= 0.0:
+        if u < 0.0:
+            return 0.0
+        return -u / half if half < 0.0 else NEVER
+    if u >= 0.0:
+        if half >= 0.0:
+            return NEVER
+        return 0.5 * (u + math.sqrt(u * u - 4.0 * half * g)) / -half
+    discriminant = u * u - 4.0 * half * g  # negative: the lowest point lies above zero
+    return 2.0 * g / (math.sqrt(discriminant) - u) if discriminant >= 0.0 else NEVER

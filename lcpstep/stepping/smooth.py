@@ -1,0 +1,251 @@
+"""The smooth motion of `Located` between two events, as kernels: q + v tau + a tau^2 / 2 with one force a piece.
+
+Linear systems take the mean acceleration of the trapezoidal rule over the rest of the step,
+
+    A a = (F(t) + F(t + rest)) / 2 - C v - K (q + v rest / 2),     A = M + rest/2 C + rest^2/4 K,
+
+others the acceleration at the base, M a = f(t, q, v), and at the end of the piece half the difference to the
+acceleration there (velocity Verlet). Both are of order two. Where the Jacobian changes, closed contacts are put back
+onto the surface, with the normal there (RATTLE). Sources: N. Newmark, A method of computation for structural
+dynamics (1959); H. Andersen, Rattle, J. Comput. Phys. 52 (1983).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import call, inline
+from lcpstep.dense import assign, factorise, positive_definite, solve, solve_definite
+from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
+from lcpstep.model import ABSENT
+from lcpstep.stepping.located_work import CLOSED, END, FORCES, HIGH, LOW, REST, SIGMA, WHOLE
+
+DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
+LANDINGS = 6  # Newton iterations onto the surface
+ON_THE_SURFACE = 1 / 16  # of what counts as closed: where these end
+
+
+@inline
+def within(plan: Any, x: Any, t: float) -> float:
+    """A time moved off the corners, where forces jump, into the smooth interval at hand."""
+    return min(max(t, x[LOW] + plan.margin), x[HIGH] - plan.margin)
+
+
+@inline
+def invert_rest(m: Any, plan: Any, w: Any, rest: float) -> None:
+    """A^-1 for the rest of a step, and what contacts need of it."""
+    n, n_c = len(w.q), len(w.u)
+    if n == 1:
+        A = m.M[0, 0] + 0.5 * rest * m.C[0, 0] + 0.25 * rest * rest * m.K[0, 0]
+        plan.A_inverse[REST, 0, 0] = 1.0 / A
+    else:
+        for i in range(n):
+            for j in range(n):
+                plan.A[i, j] = m.M[i, j] + 0.5 * rest * m.C[i, j] + 0.25 * rest * rest * m.K[i, j]
+        factorise(plan.A, plan.pivots)
+        for j in range(n):
+            for i in range(n):
+                plan.unit[i] = 1.0 if i == j else 0.0
+            solve(plan.A, plan.pivots, plan.unit)
+            for i in range(n):
+                plan.A_inverse[REST, i, j] = plan.unit[i]
+    if plan.constant:
+        for c in range(n_c):
+            for i in range(n):
+                w.AG[REST, c, i] = product(plan.A_inverse[REST], m.G[c], i)
+            for d in range(n_c):
+                w.WA[REST, d, c] = product(m.G, w.AG[REST, c], d)
+
+
+@inline
+def accelerate(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
+    """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
+    rest = x[END] - x[SIGMA]
+    place = WHOLE if rest == plan.h or not plan.stiff else REST
+    if not m.linear or plan.steady:
+        return place
+    if place == REST:
+        if plan.small:
+            invert_rest(m, plan, w, rest)
+        else:
+            place = WHOLE
+    n = len(w.q)
+    for i in range(n):
+        w.a_try[i] = 0.5 * (w.force[i] + w.next_force[i])
+    if plan.stiff:
+        for i in range(n):
+            for j in range(n):
+                w.a_try[i] -= m.C[i, j] * w.v[j] + m.K[i, j] * (w.q[j] + 0.5 * rest * w.v[j])
+    for i in range(n):
+        w.free[i] = product(plan.A_inverse[place], w.a_try, i)
+    return place
+
+
+@inline
+def free_acceleration(m: Any, w: Any, t: float, q: Any, v: Any, out: Any) -> bool:
+    """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M."""
+    if m.mass == ABSENT:
+        total_force(m, t, q, v, w.force)
+        for i in range(len(out)):
+            out[i] = product(m.M_inverse, w.force, i)
+        return True
+    total_force(m, t, q, v, out)
+    mass(m, t, q, v, w.M)
+    if not positive_definite(w.M):
+        return False
+    solve_definite(w.M, out)
+    return True
+
+
+@inline
+def mobility(m: Any, w: Any, c: int) -> None:
+    """M^-1 G_c^T at the Jacobian w.G, into w.MG[c]; for a changing mass matrix by the factors in w.M."""
+    if m.mass == ABSENT:
+        for i in range(len(w.q)):
+            w.MG[c, i] = product(m.M_inverse, w.G[c], i)
+    else:
+        assign(w.MG[c], w.G[c])
+        solve_definite(w.M, w.MG[c])
+
+
+@inline
+def respond(m: Any, w: Any) -> None:
+    """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
+    for c in range(len(w.u)):
+        mobility(m, w, c)
+        for d in range(len(w.u)):
+            w.W[d, c] = product(w.G, w.MG[c], d)
+
+
+@inline
+def refactor(m: Any, w: Any, t: float) -> bool:
+    """Factors of the mass matrix at the state w.q."""
+    if m.mass == ABSENT:
+        return True
+    mass(m, t, w.q, w.v, w.M)
+    return positive_definite(w.M)
+
+
+@inline
+def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
+    """(dG/dt) v + d(g_t)/dt along the motion, into w.bias; by differences where the scene does not give it."""
+    n_c = len(w.u)
+    if m.bias != ABSENT:
+        call(m.bias, t, q, v, m.p, w.bias)
+        return
+    size = 1.0
+    for i in range(len(q)):
+        size = max(size, abs(v[i]))
+    d = DIFFERENCE / size
+    for c in range(n_c):
+        w.bias[c] = 0.0
+    for k in range(4):
+        shift, weight = (
+            (d, 8.0)
+            if k == 0
+            else ((-d, -8.0) if k == 1 else ((2.0 * d, -1.0) if k == 2 else (-2.0 * d, 1.0)))
+        )
+        for i in range(len(q)):
+            w.q_try[i] = q[i] + shift * v[i]
+        gap_rates(m, t + shift, w.q_try, v, w.G_try, w.g_t_try)
+        for c in range(n_c):
+            w.bias[c] += weight * (product(w.G_try, v, c) + w.g_t_try[c]) / (12.0 * d)
+
+
+@inline
+def measure(m: Any, plan: Any, w: Any, t: float) -> None:
+    """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
+    gaps(m, t, w.q, w.v, w.g)
+    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+    for c in range(len(w.u)):
+        w.u[c] = product(w.G, w.v, c) + w.g_t[c]
+        if w.status[c] == CLOSED:
+            w.g[c] = w.u[c] = 0.0
+
+
+@inline
+def shift(w: Any, tau: float) -> None:
+    """The state at tau after the base becomes the base: along the quadratics."""
+    for i in range(len(w.q)):
+        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+        w.v[i] += tau * w.a[i]
+    for c in range(len(w.u)):
+        w.impulse[c] += tau * w.multiplier[c]
+        if w.status[c] == CLOSED:
+            w.g[c] = w.u[c] = 0.0
+        else:
+            w.g[c] += tau * (w.u[c] + tau * w.half[c])
+            w.u[c] += 2.0 * tau * w.half[c]
+
+
+@inline
+def anything_closed(w: Any) -> bool:
+    """Whether some contact is closed."""
+    some = False
+    for c in range(len(w.u)):
+        some = some or w.status[c] == CLOSED
+    return some
+
+
+@inline
+def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
+    """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
+    for _ in range(LANDINGS):
+        gaps(m, t, w.q, w.v, w.g_try)
+        worst = 0.0
+        for c in range(len(w.u)):
+            if w.status[c] != CLOSED:
+                w.g_try[c] = min(w.g_try[c], 0.0)
+            worst = max(worst, abs(w.g_try[c]))
+        if worst <= ON_THE_SURFACE * plan.slack:
+            return
+        if not plan.constant:
+            gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+        for c in range(len(w.u)):
+            if w.g_try[c] != 0.0:
+                lift(m, plan, w, w.q, c, -w.g_try[c])
+
+
+@inline
+def lift(m: Any, plan: Any, w: Any, x: Any, c: int, distance: float) -> None:
+    """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
+    if not plan.constant:
+        mobility(m, w, c)
+    W = product(w.G, w.MG[c], c)
+    if W > 0.0:
+        for i in range(len(w.q)):
+            x[i] += w.MG[c, i] * distance / W
+
+
+@inline
+def advance(m: Any, plan: Any, w: Any, t: float, tau: float, count: Any) -> bool:
+    """The state at tau after the base becomes the base; False where the mass matrix fails.
+
+    With a Jacobian that changes, the contact forces of the base act over half the piece; `land` gives the rest.
+    """
+    if plan.plain:
+        shift(w, tau)
+        return True
+    n, t_next = len(w.q), t + tau
+    for i in range(n):
+        w.v_try[i] = w.v[i] + tau * w.a[i]
+        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+    for c in range(len(w.u)):
+        w.impulse[c] += 0.5 * tau * w.multiplier[c]
+    closed = anything_closed(w)
+    if closed:
+        if not refactor(m, w, t_next):
+            return False
+        put_on_surface(m, plan, w, t_next)
+    if m.linear:
+        for i in range(n):
+            w.v[i] += 0.5 * tau * (w.free[i] + w.a[i])
+    else:
+        if not free_acceleration(m, w, t_next, w.q, w.v_try, w.a_try):
+            return False
+        count[FORCES] += 1
+        for i in range(n):
+            w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
+            w.free[i] = w.a_try[i]
+    measure(m, plan, w, t_next)
+    return True
