@@ -9,7 +9,7 @@ from typing import Any
 
 from lagrangian import Scene
 from lagrangian.scenes import CATALOGUE
-from lcpstep import EventDriven, Moreau
+from lcpstep import EventDriven, Located, Moreau
 from lcpstep.errors import UnknownName
 
 DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130  # exit status
@@ -66,6 +66,11 @@ def number(name: str, value: str, kind: type[float] = float) -> float:
 def moreau(options: argparse.Namespace) -> Moreau:
     """Time-stepping as the options say."""
     return Moreau(h=options.h, theta=options.theta, lcp=options.lcp)
+
+
+def located(options: argparse.Namespace) -> Located:
+    """Time-stepping with located impacts, as the options say."""
+    return Located(h=options.h)
 
 
 def event_driven(options: argparse.Namespace) -> EventDriven:

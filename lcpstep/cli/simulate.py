@@ -14,6 +14,7 @@ from lcpstep.cli.common import (
     DONE,
     FAILED,
     event_driven,
+    located,
     moreau,
     progress_bar,
     scene_arguments,
@@ -33,7 +34,9 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep simulate bouncing-ball --method event-driven --set restitution=0.5 --out ball.npz",
     )
     scene_arguments(p)
-    p.add_argument("--method", choices=["moreau", "event-driven"], default="moreau", help="(moreau)")
+    p.add_argument(
+        "--method", choices=["moreau", "located", "event-driven"], default="moreau", help="(moreau)"
+    )
     stepping_arguments(p)
     p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
@@ -46,7 +49,7 @@ def add(commands: Any) -> None:
 def run_simulate(options: argparse.Namespace) -> int:
     """`lcpstep simulate`."""
     scene = scene_of(options)
-    method = moreau(options) if options.method == "moreau" else event_driven(options)
+    method = {"moreau": moreau, "located": located, "event-driven": event_driven}[options.method](options)
     if options.out and options.out.exists():
         raise FileExistsError(f"--out: {options.out} exists already")
     try:

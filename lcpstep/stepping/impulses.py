@@ -75,8 +75,6 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
             w.chosen[n_k] = c
             w.z[n_k] = w.multiplier[c]
             w.b[n_k] = w.alpha[c]
-            if plan.plain:  # rounding of the velocity does not add up
-                w.b[n_k] += product(w.G, w.v, c) / plan.h
             n_k += 1
     if n_k == 0:
         return True
@@ -96,6 +94,8 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
     for i in range(n):
         if abs(w.a[i]) <= ROUNDING * w.a_try[i]:
             w.a[i] = 0.0
+            if plan.plain and abs(w.v[i]) <= ROUNDING * w.a_try[i] * plan.h:
+                w.v[i] = 0.0
     for k in range(n_k):
         c, force = w.chosen[k], w.z[k]
         if force == 0.0:
@@ -178,8 +178,8 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
 
 
 @inline
-def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> bool:
-    """The impact of contact `first`, and of those that fire with it."""
+def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
+    """The impact of contact `first`, and of those that fire with it; how many took part, 0 if none was solved."""
     n_s = choose_struck(plan, w, first)
     n_s = choose_connected(w, n_s)
     alone = n_s == 1
@@ -192,7 +192,7 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = (1.0 + r) * w.u[c]
     if not solve_chosen(w, w.W, n_s, count):
-        return False
+        return 0
     jump(w, n_s)
     still = 0.0
     for k in range(n_s):
@@ -200,7 +200,7 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
     for k in range(n_s):
         after_impact(m, w, x, record, w.chosen[k], w.z[k], t, still, count)
     x[EVENTS] += 1
-    return True
+    return n_s
 
 
 @inline

@@ -94,7 +94,7 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
         "g", "u", "half", "alpha", "bend", "bias", "g_try", "g_t", "g_t_try", "end_s", "last", "multiplier", "older",
         "older_time", "impulse", "p", "b", "z",
     )  # fmt: skip
-    integers = ("status", "grounded", "hits", "close_hits", "plastic", "chosen")
+    integers = ("status", "grounded", "hits", "close_hits", "plastic", "chosen", "pivots")
     lcp = workspace(max(n_c, 1))
     solver = solve_single if n_c <= 1 else solve_small
     return work.Work(

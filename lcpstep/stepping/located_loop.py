@@ -423,11 +423,14 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
         if not refactor(m, w, now):
             return NOT_FINITE
         respond(m, w)
-    if not strike(m, plan, w, x, record, c, now, count):
+    n_s = strike(m, plan, w, x, record, c, now, count)
+    if n_s == 0:
         return LCP_FAILED
-    if plan.plain:
-        lift(m, plan, w, w.q, c, -height(m, w, c))
-        lift(m, plan, w, w.v, c, w.u[c] - product(m.G, w.v, c))
+    if plan.plain:  # rounding of the state must not add up over many impacts
+        for k in range(n_s):
+            d = w.chosen[k]
+            lift(m, plan, w, w.q, d, -height(m, w, d))
+            lift(m, plan, w, w.v, d, w.u[d] - product(m.G, w.v, d))
     if m.linear and not plan.steady:
         external_force(m, within(plan, x, now), w.q, w.v, w.force)
         count[FORCES] += 1

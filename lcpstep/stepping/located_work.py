@@ -87,6 +87,7 @@ class Work(NamedTuple):
     WA: Any  # (2, n_c, n_c)  G A^-1 G^T
     M: Any  # (n_q, n_q)
     problem: Any  # (n_c * n_c,)
+    pivots: Any  # (n_c,)
     b: Any
     z: Any
     solver: Any

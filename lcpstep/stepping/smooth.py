@@ -201,9 +201,32 @@ def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
             return
         if not plan.constant:
             gap_rates(m, t, w.q, w.v, w.G, w.g_t)
-        for c in range(len(w.u)):
-            if w.g_try[c] != 0.0:
-                lift(m, plan, w, w.q, c, -w.g_try[c])
+            respond(m, w)
+        if not newton_step(w):
+            for c in range(len(w.u)):
+                if w.g_try[c] != 0.0:
+                    lift(m, plan, w, w.q, c, -w.g_try[c])
+
+
+def newton_step(w: Any) -> bool:
+    """Q + M^-1 G^T z with G M^-1 G^T z = -g for the gaps in w.g_try that are not zero; False if they depend."""
+    n_k = 0
+    for c in range(len(w.u)):
+        if w.g_try[c] != 0.0:
+            w.chosen[n_k] = c
+            w.z[n_k] = -w.g_try[c]
+            n_k += 1
+    W = w.problem[: n_k * n_k].reshape((n_k, n_k))
+    for i in range(n_k):
+        for j in range(n_k):
+            W[i, j] = w.W[w.chosen[i], w.chosen[j]]
+    if not factorise(W, w.pivots):
+        return False
+    solve(W, w.pivots, w.z[:n_k])
+    for k in range(n_k):
+        for i in range(len(w.q)):
+            w.q[i] += w.MG[w.chosen[k], i] * w.z[k]
+    return True
 
 
 @inline

@@ -1,0 +1,179 @@
+"""Located impacts with several contacts: gases, cradles, collapse, piles; sequences and simultaneous impacts."""
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lcpstep import Kind, Located, Moreau, simulate
+from tests.models import no_damping
+from tests.stepping.test_general_systems import CURVED, GIVEN, LINEAR
+from tests.stepping.test_general_systems import scene as two_masses_scene
+from tests.stepping.test_order import slope
+from tests.stepping.test_several_contacts import line
+
+
+def tonks(n, t_end, seed=1):
+    """Equal elastic beads between walls at 0 and 1, and where they are: free flights, then sorted."""
+    rng = np.random.default_rng(seed)
+    q0, v0 = np.sort(rng.uniform(0, 1, n)), rng.normal(size=n)
+    G = np.vstack([np.eye(n)[0], np.diff(np.eye(n), axis=0), -np.eye(n)[-1]])
+    offset = np.zeros(n + 1)
+    offset[-1] = 1.0
+    scene = Scene(
+        system=LinearSystem(M=np.eye(n)), contacts=LinearContacts(G=G, offset=offset, restitution=1.0),
+        q0=q0, v0=v0, t_span=(0.0, t_end),
+    )  # fmt: skip
+    return scene, lambda t: np.sort(np.abs((q0 + v0 * t + 1) % 2 - 1))
+
+
+@pytest.mark.parametrize("h", [1e-3, 0.03, 1.0])
+def test_the_tonks_gas_is_exact_at_any_step(h):
+    scene, exact = tonks(20, 20.0)
+    m = simulate(scene, Located(h), keep=10 if h < 0.01 else 1)
+    assert len(m.impacts) > 5000
+    np.testing.assert_allclose(m.q[-1], exact(20.0), rtol=0, atol=1e-11)
+    np.testing.assert_allclose(np.sum(m.v**2, axis=1), np.sum(m.v[0] ** 2), rtol=1e-12)
+    assert np.min(m.q @ scene.contacts.G.T + scene.contacts.offset) > -1e-12
+
+
+@pytest.mark.parametrize(("ratio", "impacts"), [(1.0, 3), (100.0, 31), (1e4, 314), (1e6, 3141)])
+def test_two_blocks_and_a_wall_count_the_digits_of_pi(ratio, impacts):
+    m = simulate(
+        line([1.0, 2.0], [0.0, -1.0], 1.0, masses=[1.0, ratio], walls=True, t_end=10.0), Located(0.01)
+    )
+    assert len(m.impacts) == impacts
+    energy = m.v**2 @ [1.0, ratio] / ratio
+    assert np.max(np.abs(energy - 1)) < 1e-8
+
+
+def test_touching_balls_are_struck_together_and_others_in_sequence():
+    together = simulate(line([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0, t_end=0.1), Located(1e-2))
+    np.testing.assert_allclose(together.v[-1], [-1 / 3, 2 / 3, 2 / 3], rtol=0, atol=1e-14)
+    one_by_one = simulate(line([0.0, 1e-9, 2e-9], [1.0, 0.0, 0.0], 1.0, t_end=0.1), Located(1e-2))
+    np.testing.assert_allclose(one_by_one.v[-1], [0.0, 0.0, 1.0], rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("r", [0.0, 0.02, 0.05, 0.07, 0.08])
+def test_inelastic_collapse_of_three_balls(r):
+    # infinitely many impacts up to r = 7 - 4 sqrt(3) = 0.0718
+    m = simulate(line([0.0, 1.0, 2.0], [1.0, 0.0, -1.3], r, t_end=10.0), Located(0.1))
+    assert m.status.name == "DONE"
+    assert len(m.impacts) <= 100
+    np.testing.assert_allclose(np.sum(m.v, axis=1), -0.3, rtol=0, atol=1e-15)
+    if r <= 0.07:
+        np.testing.assert_allclose(m.v[-1], -0.1, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("n", "r", "h"), [(4, 0.9, 1e-2), (20, 0.5, 1e-3), (20, 0.5, 0.3)])
+def test_a_falling_column_comes_to_rest(n, r, h):
+    scene = line(
+        0.05 * np.arange(1, n + 1), np.zeros(n), r, walls=True, force=-9.81, t_end=12.0 if r == 0.9 else 3.0
+    )
+    m = simulate(scene, Located(h))
+    G = scene.contacts.G
+    energy = 0.5 * np.sum(m.v**2, axis=1) + 9.81 * np.sum(m.q, axis=1)
+    assert np.all(m.v[-1] == 0.0)
+    assert np.max(np.abs(m.q[-1])) < 1e-13
+    assert np.min(m.q @ G.T) > -1e-14
+    assert np.max(np.diff(energy)) < 1e-13 * energy[0]
+    weight = 9.81 * np.arange(n, 0, -1)
+    np.testing.assert_allclose(m.impulse[-1] / (m.t[-1] - m.t[-2]), weight, rtol=1e-12)
+    # every impulse is accounted for: momentum balance
+    np.testing.assert_allclose(np.sum(m.impulse, axis=0)[0], 9.81 * n * m.t[-1], rtol=1e-12)
+
+
+def test_a_pile_at_rest_stays_at_rest():
+    n = 12
+    m = simulate(
+        line(np.zeros(n), np.zeros(n), 0.5, walls=True, force=-9.81, t_end=50.0), Located(1e-3), keep=1000
+    )
+    assert np.all(m.v == 0.0)
+    assert np.all(m.q == 0.0)
+    assert len(m.impacts) == 0
+
+
+def test_one_system_written_in_several_ways_moves_in_one_way():
+    def motion(system, contacts, h):
+        at = np.linspace(0.0, 2.0, 41)
+        return simulate(two_masses_scene(system, contacts), Located(h), keep=at)
+
+    fine = motion(LINEAR, two_masses_scene(LINEAR, CURVED).contacts, 1e-5)
+    for system in (LINEAR, GIVEN):
+        levels, errors = (100, 200, 400, 800, 1600), []
+        for n in levels:
+            scatter = [motion(system, CURVED, 2.0 / round(n * s)) for s in (1.0, 1.13, 1.29)]
+            errors.append(np.mean([np.max(np.abs(m.q - fine.q)) for m in scatter]))
+        assert slope(levels, errors) >= 1.8
+
+
+# --- curved and moving obstacles
+
+
+def rising_gap(t, q, v, p, out):
+    out[0] = q[1] - 0.1 * np.sin(5.0 * t) + q[0] ** 2
+    out[1] = 0.5 - q[0]
+
+
+def rising_jacobian(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[1, 0], out[1, 1] = 2.0 * q[0], 1.0, -1.0, 0.0
+
+
+def rising_gap_t(t, q, v, p, out):
+    out[0], out[1] = -0.5 * np.cos(5.0 * t), 0.0
+
+
+def falling(t, q, v, p, out):
+    out[0], out[1] = 0.3, -9.81
+
+
+def over_a_moving_hollow(restitution, t_end):
+    contacts = Contacts(2, rising_gap, rising_jacobian, gap_t=rising_gap_t, restitution=restitution)
+    system = System(n_q=2, mass=np.eye(2), force=falling, force_q=no_damping, force_v=no_damping)
+    return Scene(system=system, contacts=contacts, q0=[0.2, 0.5], v0=[0.3, 0.0], t_span=(0.0, t_end))
+
+
+def test_moving_curved_obstacles_are_struck_to_rounding_and_never_entered():
+    scene = over_a_moving_hollow(0.6, 3.0)
+    m = simulate(scene, Located(1e-2), keep="impacts")
+    gaps = np.array([scene.gap(t, q, v) for t, q, v in zip(m.t, m.q, m.v, strict=True)])
+    assert len(m.impacts) > 5
+    assert np.min(gaps[:, 0]) > -1e-13
+    impacts = m.impacts[m.impacts.kind == Kind.IMPACT]
+    np.testing.assert_allclose(impacts.after, -0.6 * impacts.before, rtol=1e-12)
+
+
+def test_sliding_in_a_moving_hollow_converges_with_order_two():
+    scene = over_a_moving_hollow(0.0, 1.0)
+    at = np.linspace(0.0, 1.0, 21)
+    fine = simulate(scene, Located(2e-6), keep=at)
+    levels, errors = (50, 100, 200, 400, 800, 1600), []
+    for n in levels:
+        runs = [simulate(scene, Located(1.0 / round(n * s)), keep=at) for s in (1.0, 1.13, 1.29)]
+        errors.append(np.mean([np.max(np.abs(m.q - fine.q)) for m in runs]))
+        for m in runs:
+            assert min(np.min(scene.gap(t, q, v)[0]) for t, q, v in zip(m.t, m.q, m.v, strict=True)) > -1e-5
+    assert slope(levels, errors) >= 1.8
+
+
+def test_the_bound_on_events_ends_a_step_without_penetration():
+    scene, _ = tonks(20, 0.5)
+    m = simulate(scene, Located(0.05, max_events=5))
+    assert m.status.name == "DONE"
+    assert np.min(m.q @ scene.contacts.G.T + scene.contacts.offset) > -1e-12
+    assert np.max(np.diff(np.sum(m.v**2, axis=1))) <= 1e-12
+
+
+def test_a_stiff_linear_chain_is_stable_at_any_step():
+    n = 12
+    K = 1e6 * (2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    K[-1, -1] = 1e6
+    scene = Scene(
+        system=LinearSystem(M=np.eye(n), K=K), contacts=LinearContacts(G=np.eye(n)[:1], restitution=0.0),
+        q0=np.full(n, 0.1), v0=np.full(n, -1.0), t_span=(0.0, 0.2),
+    )  # fmt: skip
+    free = Scene(system=scene.system, q0=scene.q0, v0=scene.v0, t_span=scene.t_span)
+    for s in (scene, free):
+        m = simulate(s, Located(1e-2))
+        energy = 0.5 * np.sum(m.v**2, axis=1) + 0.5 * np.einsum("ti,ij,tj->t", m.q, K, m.q)
+        assert np.max(energy) <= energy[0] * (1 + 1e-9)
+    assert simulate(scene, Moreau(1e-2)).status.name == "DONE"
