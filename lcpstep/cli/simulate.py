@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,14 @@ from lcpstep.cli.common import (
     stepping_arguments,
 )
 from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.simulate import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
+
+METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
+    "moreau": moreau,
+    "located": located,
+    "event-driven": event_driven,
+}
 
 
 def add(commands: Any) -> None:
@@ -34,9 +42,7 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep simulate bouncing-ball --method event-driven --set restitution=0.5 --out ball.npz",
     )
     scene_arguments(p)
-    p.add_argument(
-        "--method", choices=["moreau", "located", "event-driven"], default="moreau", help="(moreau)"
-    )
+    p.add_argument("--method", choices=list(METHODS), default="moreau", help="(moreau)")
     stepping_arguments(p)
     p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
@@ -49,7 +55,7 @@ def add(commands: Any) -> None:
 def run_simulate(options: argparse.Namespace) -> int:
     """`lcpstep simulate`."""
     scene = scene_of(options)
-    method = {"moreau": moreau, "located": located, "event-driven": event_driven}[options.method](options)
+    method = METHODS[options.method](options)
     if options.out and options.out.exists():
         raise FileExistsError(f"--out: {options.out} exists already")
     try:
