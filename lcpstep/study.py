@@ -28,17 +28,14 @@ from lcpstep.simulate import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
 
 SPREAD = (0.87, 0.93, 1.0, 1.07, 1.15)
-COARSEST, FINER, LEVELS = (
-    250,
-    4,
-    5,
-)  # default steps: this many in the span, and four times as many in each further level
+# Default: steps in the span, how many times more in each further level, levels
+COARSEST, FINER, LEVELS = 250, 4, 5
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)  # the same for methods with a tolerance
+LOOKS = 2001  # instants at which the size of a motion is measured
 CHAOTIC = 100.0  # growth from which on a lost motion was lost to chaos
 TRUSTED = 10.0  # an error this many times what the reference may be off is the method's own
-WEAK = (
-    1e-4  # of the strongest impulse: weaker impacts are not matched, since methods end chattering differently
-)
+OF_IMPACTS = ("impact_time", "impact_impulse", "unmatched")
+WEAK = 1e-4  # of the strongest impulse; weaker impacts are not matched: methods end chattering differently
 ROUNDING = 1e-15  # of the size of the motion
 PATIENCE = 2.0  # CPU seconds after which a level is timed no more often
 
@@ -126,6 +123,7 @@ def _fill(
     found = find_reference(scene, given, measures)
     result.reference, result.uncertainty = found.text, dict(found.uncertainty)
     result.notes += found.notes
+    _allow_for_rounding(scene, found, result)
     grown = _growth(scene, found, result)
     limit = _separation(scene, curves, found, grown)
     scene = _shortened(scene, grown, limit, horizon, result)
@@ -139,8 +137,9 @@ def _fill(
             if level is None:
                 level = _level(scene, name, method, found, measures, result, repeats, spread, size)
             result.levels.append(level)
-            if level.status != Status.DONE.name:
-                result.notes.append(f"{level.settings}: {level.message}")
+            note = f"{name}: {level.message}"
+            if level.status != Status.DONE.name and note not in result.notes:
+                result.notes.append(note)
             if save is not None:
                 result.save(save)
     _remarks(result)
@@ -191,11 +190,7 @@ def _errors(run: Trajectory, found: Reference, measures: Sequence[str], until: f
         return {"penetration": Difference(run, run).penetration} if "penetration" in measures else {}
     strongest = float(np.max(found.motion.impacts["impulse"], initial=0.0))
     apart = Difference(run, found.motion, t_end=until, least=WEAK * strongest)
-    known = [
-        m
-        for m in measures
-        if m in found.uncertainty or found.method is not None or not m.startswith("impact")
-    ]
+    known = [m for m in measures if found.knows_impacts or m not in OF_IMPACTS]
     return {m: float(getattr(apart, m)) for m in known}
 
 
@@ -293,6 +288,18 @@ def _earlier(save: str | Path | None, question: dict[str, Any]) -> dict[tuple[st
 # --- how far motions can be compared
 
 
+def _allow_for_rounding(scene: Scene, found: Reference, result: Study) -> None:
+    """No motion is known better than its numbers are rounded."""
+    if found.motion is None:
+        return
+    t = np.linspace(scene.t_span[0], min(scene.t_span[1], float(found.motion.t[-1])), LOOKS)
+    q, v = (float(np.max(np.abs(x))) for x in found.motion.at(t))
+    sizes = {"sup_position": q, "l1_velocity": v * float(np.ptp(scene.t_span)), "graph_distance": v}
+    for measure in set(sizes) & set(result.measures):
+        known = result.uncertainty.get(measure, 0.0)
+        result.uncertainty[measure] = max(known, ROUNDING * sizes[measure])
+
+
 def _growth(scene: Scene, found: Reference, result: Study) -> Growth | None:
     """Growth of a disturbance, and what rounding makes of the reference."""
     grown, motion = None, found.motion if isinstance(found.motion, Trajectory) else None
@@ -307,11 +314,11 @@ def _growth(scene: Scene, found: Reference, result: Study) -> Growth | None:
                 "how long the motion can be predicted is not known: its start cannot be disturbed"
             )
     result.growth = str(grown) if grown else "not known"
-    if grown and motion is not None and found.uncertainty:
+    if grown and motion is not None:
         share = ROUNDING * grown.size / grown.disturbance
         until = min(grown.horizon, scene.t_span[1])
         apart = Difference(motion, grown.disturbed, t_end=until)
-        for measure, value in found.uncertainty.items():
+        for measure, value in result.uncertainty.items():
             if measure != "unmatched":
                 rounding = share * float(getattr(apart, measure))
                 result.uncertainty[measure] = max(value, rounding)

@@ -95,6 +95,14 @@ def test_a_closed_form_is_a_reference_and_is_checked():
         scene, Moreau(), h=[0.1], reference=lambda t: (np.cos(1.9 * t), -1.9 * np.sin(1.9 * t)), **SHORT
     )
     assert any("one of them is wrong" in note for note in wrong.notes)
+    # nobody's impact log can be believed then
+    assert set(wrong.levels[0].errors) == {
+        "sup_position",
+        "l1_velocity",
+        "graph_distance",
+        "energy",
+        "penetration",
+    }
     with pytest.raises(ValueError, match="q0"):
         study(scene, Moreau(), h=[0.1], reference=lambda t: (np.sin(t), np.cos(t)))
     with pytest.raises(TypeError, match="reference"):
@@ -148,6 +156,13 @@ def test_what_cannot_be_used_is_noted_and_the_rest_is_finished_and_saved(tmp_pat
     found = study(scenes.bouncing_ball(t_end=1.0), [Refuses(), Moreau()], h=[1e-2], **SHORT)
     assert [x.status for x in found.levels] == ["REFUSED", "DONE"]
     assert any("one too many" in note for note in found.notes)
+
+
+def test_errors_of_the_size_of_rounding_make_no_order():
+    drifting = Scene(system=LinearSystem(M=1.0), q0=1.0, v0=0.3, t_span=(0.0, 1.0))
+    found = study(drifting, Moreau(), h=[0.1, 0.05, 0.02], **SHORT)
+    assert found.order("Moreau") is None
+    assert all("sup_position" in x.limited for x in found.levels)
 
 
 def test_a_scene_without_reference_still_gets_its_costs():

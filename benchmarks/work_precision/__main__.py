@@ -41,21 +41,25 @@ class Case:
 
 CASES = (
     Case(
-        "bouncing ball, 5 s", scenes.bouncing_ball(), (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), (0.1, 1e-2, 1e-3), 1e-5
+        "bouncing ball, 5 s",
+        scenes.bouncing_ball(),
+        (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5),
+        (0.1, 1e-2, 1e-3),
+        3e-5,
     ),
     Case(
         "impact oscillator, 100 s",
         scenes.impact_oscillator(),
-        (1e-1, 1e-2, 1e-3, 1e-4),
+        (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
         (0.2, 0.1, 3e-2, 1e-2, 3e-3, 1e-3),
         1e-3,
     ),
     Case(
         "cam-follower at 358 rpm, 1 s",
         scenes.cam_follower(t_end=1.0),
-        (1e-3, 1e-4, 1e-5, 1e-6),
+        (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6),
         (3e-3, 1e-3, 3e-4, 1e-4, 3e-5),
-        1e-5,
+        3e-6,
     ),
 )
 

@@ -85,7 +85,7 @@ class Reference:
     motion : the motion, or None where there is none
     text : what it is, in words
     uncertainty : how far it may be off, by measure; a measure that is missing is not known
-    method : the method it comes from, None for a closed form or a given trajectory
+    method : the method it comes from, or was checked by; None where there is neither
     notes : what the reader of the errors must know
     """
 
@@ -94,6 +94,11 @@ class Reference:
     uncertainty: dict[str, float] = field(default_factory=dict)
     method: Method | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def knows_impacts(self) -> bool:
+        """Whether it has an impact log."""
+        return not (isinstance(self.motion, KnownMotion) and self.method is None)
 
 
 def find_reference(scene: Scene, given: Any, measures: Sequence[str]) -> Reference:
@@ -167,15 +172,15 @@ def from_formula(scene: Scene, state: Callable[[Any], Any], measures: Sequence[s
     check = from_method(scene, TIGHTEST, ())
     if check.motion is None:
         note = "no event-driven run fits the scene: impacts of the closed form are not known, and it is not checked"
-        return Reference(known, "closed form", dict.fromkeys(measures, 0.0), notes=(note,))
+        return Reference(known, "closed form", notes=(note,))
     size = float(np.max(np.ptp(known.at(known.t)[0], axis=0)))
     apart = Difference(known, check.motion).sup_position
     if not apart <= AGREES * size:
         note = (
             f"the closed form and the event-driven run differ by {apart:.2g}: one of them is wrong; see both"
         )
-        return Reference(known, "closed form", {}, check.method, (note,))
+        return Reference(known, "closed form", notes=(note,))
     known = KnownMotion(scene, state, check.motion.impacts)
     text = f"closed form; the event-driven run agrees with it to {apart:.1e}"
-    uncertainty = {m: 0.0 for m in measures if not m.startswith("impact") and m != "unmatched"}
-    return Reference(known, text, uncertainty, check.method)
+    agreement = Difference(known, check.motion)
+    return Reference(known, text, {m: float(getattr(agreement, m)) for m in measures}, check.method)
