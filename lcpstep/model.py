@@ -87,6 +87,20 @@ def tangent_model(scene: Scene) -> tuple[Model, bool]:
     return _model(scene, _system(scene) | _tangents(scene))
 
 
+def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
+    """Models of the contacts, joints and tangents of a scene, any of them empty; whether all could be compiled."""
+    joints = None if scene.joints is None else scene.joints.as_contacts()
+    friction = scene.contacts is not None and scene.contacts.friction is not None
+    tangents = _tangents(scene) if friction else _contacts(scene, None)
+    fields = [
+        _system(scene) | x for x in (_contacts(scene, scene.contacts), _contacts(scene, joints), tangents)
+    ]
+    made = [_model(scene, each) for each in fields]
+    fast = all(compiled_too for _, compiled_too in made)
+    normal, joint, tangent = (m if fast else Model(**f) for (m, _), f in zip(made, fields, strict=True))
+    return (normal, joint, tangent), fast
+
+
 def _model(scene: Scene, fields: dict[str, Any]) -> tuple[Model, bool]:
     callbacks = {name: f for name, f in fields.items() if callable(f)}
     addresses = {} if compiled.jit_disabled() else _compile(scene, callbacks)

@@ -25,6 +25,8 @@ class Status(IntEnum):
     NEWTON_FAILED = 4  # the implicit step did not converge
     TOO_MANY_EVENTS = 5  # events faster than the bound allows
     STEP_TOO_SMALL = 6  # the tolerance cannot be met
+    JOINTS_FAILED = 7  # joints contradict each other
+    PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
 
 
 class Kind(IntEnum):

@@ -14,12 +14,15 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
-from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
-from lcpstep.model import Model, culprit, model, require
+from lcpstep.model import Model, culprit, model, models
 from lcpstep.recording import Kept, Recorder
+from lcpstep.stepping import constrained
 from lcpstep.stepping import theta as loop
+from lcpstep.stepping.constrained import Constraints
+from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -38,7 +41,8 @@ class Moreau:
     h : step [s]; the last step is shortened where h does not divide the span
     theta : 0 explicit, 1/2 trapezoidal (keeps the energy of linear systems), 1 implicit
     lcp : solver of the complementarity problems, "lemke" (compiled with the loop) or any name that
-        `lcpstep.solve_lcp` takes: "qp", "qp:daqp", ...
+        `lcpstep.solve_lcp` takes: "qp", "qp:daqp", ...; joints, friction and projection take "lemke" only
+    projected : put positions back onto joints and out of obstacles at the end of every step
 
     Raises
     ------
@@ -54,15 +58,24 @@ class Moreau:
     h: float = 1e-4
     theta: float = 0.5
     lcp: str = "lemke"
+    projected: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
         check_method(self.lcp)
 
+    def beyond_contacts(self, scene: Scene) -> bool:
+        """Whether the scene's steps have more in them than frictionless contacts."""
+        return scene.n_j > 0 or frictional(scene) or self.projected
+
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        require(scene, "Moreau", joints=False, friction=False)
+        if self.lcp != "lemke" and self.beyond_contacts(scene):
+            raise LcpStepError(
+                f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '
+                f"compiled with the loop; got {self.lcp!r} for {scene.name!r}"
+            )
         return _Run(self, scene, kept).finish(progress)
 
 
@@ -84,7 +97,7 @@ def plan(m: Model, h: float, theta: float, slack: float) -> loop.Plan:
     )
 
 
-def start(scene: Scene, fast: bool) -> loop.State:
+def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop.State:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
     vectors = {
@@ -106,20 +119,23 @@ def start(scene: Scene, fast: bool) -> loop.State:
         pivots=np.zeros(n_q, dtype=np.int64),
     )
     lcp = workspace(max(n_c, 1))
-    solver = loop.solve_single if n_c <= 1 else solve_small
-    return loop.State(
+    state = loop.State(
         q=np.array(scene.q0),
         v=np.array(scene.v0),
         closed=np.zeros(n_c, dtype=np.int64),
         G=np.zeros((n_c, n_q)),
         active=np.zeros(n_c, dtype=np.int64),
         W=np.zeros(n_c * n_c),
-        solver=solver_address(solver, lcp) if fast else solver,
+        solver=0,
         lcp=lcp,
         newton=newton,
         **vectors,
         **contacts,
     )
+    if features is not None:
+        state = enlarged(scene, state, features)
+    solver = loop.solve_single if len(state.b) <= 1 else solve_small
+    return state._replace(solver=solver_address(solver, state.lcp) if fast else solver)
 
 
 class _Run:
@@ -127,13 +143,20 @@ class _Run:
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model, fast = model(scene)
+        self.extra: tuple[Constraints, ...] = ()  # of the kernel: constraints, where there are any
+        if method.beyond_contacts(scene):
+            (self.model, joints, tangents), fast = models(scene)
+            self.extra = (constraints(scene, self.model, joints, tangents, method.projected),)
+        else:
+            self.model, fast = model(scene)
         fast = fast and not jit_disabled()
-        never = (loop.linearise,) if self.model.linear else ()
-        self.kernel = compiled(loop.run, never) if fast else loop.run
-        self.state = start(scene, fast)
+        never = (loop.linearise,) if self.model.linear and not self.extra else ()
+        steps: Callable[..., int] = constrained.run if self.extra else loop.run
+        self.kernel = compiled(steps, never) if fast else steps
+        self.begin = compiled(loop.begin) if fast else loop.begin
+        self.state = start(scene, fast, *self.extra)
         # A portion keeps at most its steps, the given times, and the first and last state.
-        self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2)
+        self.recorder = Recorder(scene.n_q, len(self.state.impulse), kept, PORTION + len(kept.times) + 2)
         self.count = np.zeros(loop.N_COUNTERS, dtype=np.int64)
         size = max(
             np.max(np.abs(x), initial=0.0) for x in (self.state.q, self.model.offset, method.h * self.state.v)
@@ -148,8 +171,7 @@ class _Run:
         whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
         status = Status.DONE
         try:
-            begin = loop.begin if self.kernel is loop.run else compiled(loop.begin)
-            begin(self.model, self.state, self.recorder.buffers, self.count, t_start)
+            self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start)
             if whole > 0:
                 exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
                 status = self.portions(
@@ -177,18 +199,11 @@ class _Run:
             code = loop.FINISHED
             while count[loop.STEP] < goal:
                 try:
-                    code = self.kernel(
-                        self.model,
-                        p,
-                        self.state,
-                        self.recorder.buffers,
-                        count,
-                        t0,
-                        first,
-                        goal,
-                        external,
-                        solved,
-                    )
+                    arguments = self.model, p, self.state, self.recorder.buffers, count, t0, first, goal
+                    if self.extra:
+                        code = self.kernel(*arguments, *self.extra)
+                    else:
+                        code = self.kernel(*arguments, external, solved)
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
                     message = f"a callback failed in the step from t = {self.now:.9g} s: {error}"
                     raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
@@ -238,13 +253,14 @@ class _Run:
         """Everything computed so far."""
         self.empty()
         kept = self.recorder.states()
-        t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
+        t, q, v, impulses = kept.t, kept.q, kept.v, kept.impulse
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
-            impulse = np.vstack([impulse, self.state.impulse])
+            impulses = np.vstack([impulses, self.state.impulse])
         if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
-        count = self.count
+        n_c, count = self.scene.n_c, self.count
+        impulse, friction, joint = np.split(impulses, [n_c, impulses.shape[1] - self.scene.n_j], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
             impacts=self.recorder.events(), status=status, message=self.message(status),
@@ -253,6 +269,7 @@ class _Run:
                 force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],
             ),
             dense=_interpolation(t, q, v, self.kept.all),
+            joint_impulse=joint, friction_impulse=friction,
         )  # fmt: skip
 
     def message(self, status: Status) -> str:
@@ -261,10 +278,16 @@ class _Run:
         if status == Status.DONE:
             return "reached the end of the span"
         where = f"at t = {self.now:.9g} s, q = {s.q.tolist()}, v = {s.v.tolist()}"
+        step = f"in step {self.count[loop.STEP]}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
             return f"{self.method.lcp} found no solution for the contacts {self.active} {where}"
+        if status == Status.JOINTS_FAILED:
+            joints = np.flatnonzero(self.extra[0].failed).tolist()
+            return f"joints {joints} contradict each other {step} {where}"
+        if status == Status.PROJECTION_FAILED:
+            return f"no position near satisfies all joints and contacts {step} {where}"
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
         return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"
@@ -274,6 +297,8 @@ STATUS = {
     loop.NOT_FINITE: Status.NOT_FINITE,
     loop.LCP_FAILED: Status.LCP_FAILED,
     loop.NEWTON_FAILED: Status.NEWTON_FAILED,
+    constrained.JOINTS_FAILED: Status.JOINTS_FAILED,
+    constrained.PROJECTION_FAILED: Status.PROJECTION_FAILED,
 }
 
 
