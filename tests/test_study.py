@@ -231,7 +231,7 @@ def test_a_run_that_ends_early_has_no_errors_but_a_reason():
 
 
 def test_the_command_writes_tables_and_a_picture(capsys, tmp_path):
-    arguments = ["study", "impact-oscillator", "--t-end", "10", "--h", "1e-2", "1e-3", "--repeats", "1", "--measures",
+    arguments = ["study", "impact-oscillator", "--methods", "moreau", "--t-end", "10", "--h", "1e-2", "1e-3", "--repeats", "1", "--measures",
                  "sup_position", "unmatched", "--out", str(tmp_path)]  # fmt: skip
     assert main(arguments) == DONE
     out = capsys.readouterr().out

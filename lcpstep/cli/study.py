@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lagrangian import Scene
-from lcpstep import EventDriven, Moreau, study
+from lcpstep import EventDriven, Located, Moreau, study
 from lcpstep.analysis.errors import MEASURES
 from lcpstep.analysis.reference import find_reference
 from lcpstep.analysis.solvers import LEVELS, compare_solvers
@@ -20,6 +20,7 @@ from lcpstep.simulate import Method
 
 METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
     "moreau": lambda options: Moreau(theta=options.theta, lcp=options.lcp),
+    "located": lambda options: Located(),
     "event-driven": lambda options: EventDriven(),
 }
 
@@ -35,7 +36,9 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep study impact-oscillator --h 1e-2 1e-3 1e-4 --out out",
     )
     scene_arguments(p)
-    p.add_argument("--methods", nargs="+", choices=list(METHODS), default=["moreau"], help="(moreau)")
+    p.add_argument(
+        "--methods", nargs="+", choices=list(METHODS), default=["moreau", "located"], help="(moreau located)"
+    )
     p.add_argument("--h", type=float, nargs="+", help="steps [s]; default: 1/250 of the span to 1/64000")
     p.add_argument("--tolerances", type=float, nargs="+", help="of methods that have one (1e-4 to 1e-10)")
     p.add_argument("--theta", type=float, default=0.5, help="0 explicit, 0.5 trapezoidal, 1 implicit (0.5)")
