@@ -55,7 +55,7 @@ CATALOGUE: dict[str, Entry] = {
     "jumping-table": Entry(
         jumping_table,
         hazard="the result depends on where in a step the velocity of the table jumps",
-        answer="pieces in closed form; the velocity of the obstacle at a corner is the new one",
+        answer="pieces in closed form; u- with the velocity before the jump, u+ with the new one",
     ),
     "impact-oscillator": Entry(
         impact_oscillator,

@@ -174,12 +174,10 @@ class Piecewise:
     # --- events
 
     def _strike(self, t: float, u: float) -> None:
-        """Impact with the gap velocity u; at a corner, with the velocity of the obstacle after it."""
-        if self._at_corner(t):
-            u += self._side(t, -1)[1] - self._side(t, +1)[1]
+        """Impact with the gap velocity u, which at a corner is that before it."""
         if u < 0.0:
             self.impacts.append((t, u))
-        self._leave(t, -self.restitution * u if u < 0.0 else u)
+        self._leave(t, -self.restitution * min(u, 0.0))
 
     def _leave(self, t: float, u: float, released: bool = False) -> None:
         """On the surface at t with gap velocity u >= 0: contact, or flight."""
@@ -202,15 +200,17 @@ class Piecewise:
         _, self._high = self._smooth_interval(t)
 
     def _turn_corner(self, t: float) -> None:
-        """Into the next smooth interval; a jump of the obstacle's velocity is one of the gap velocity."""
+        """Into the next smooth interval; an obstacle whose velocity jumps takes a closed contact along, or goes."""
         *_, closed = self._pieces[-1]
         if closed:
             jump = self._side(t, -1)[1] - self._side(t, +1)[1]
-            if jump < 0.0:
-                self._strike(t, 0.0)
-            elif jump > 0.0 or self._alpha_closed(t, +1) > 0.0:
+            if jump > 0.0 or self._alpha_closed(t, +1) > 0.0:
                 self.releases.append(t)
-                self._leave(t, jump, released=True)
+                self._leave(t, max(jump, 0.0), released=True)
+        else:
+            g, u, _ = self._gap(t, -1)
+            if u < 0.0 and g <= -2.0 * u * self._resolution(t):  # it strikes within rounding of the corner
+                self._strike(t, u)
         _, self._high = self._smooth_interval(t)
 
     # --- where they are

@@ -2,10 +2,11 @@
 
 Three tables: one that shakes the ball in a periodic orbit of one impact a period, one that lets it chatter, rest
 and fly off again, and one whose velocity jumps. At such a jump (a corner of degree one) the convention of this
-library is: the obstacle's velocity at a corner is the new one. So a ball at rest on a table that is suddenly pushed
-up with V is struck with u- = -V and leaves with r V; if the table drops, the ball is released; a ball that arrives
-at the very time of the corner meets the new velocity. What usually goes wrong: the velocity of the table is taken
-at the wrong time.
+library is: u- is taken with the velocity just before the jump, u+ with the new one, as in the limit of a velocity
+that changes quickly but smoothly. So a table that is suddenly pushed up takes a ball at rest along, without a
+rebound; if it drops, the ball is released; a ball that strikes at the very time of the jump leaves the new velocity
+with r times the speed at which it met the old one. What usually goes wrong: the velocity of the table is taken at
+the wrong time.
 """
 
 from __future__ import annotations

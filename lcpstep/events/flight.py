@@ -56,7 +56,7 @@ class Flight(NamedTuple):
 
 @inline
 def inside(x: Any, t: float) -> float:
-    """A time moved off the ends of its smooth interval, where accelerations jump."""
+    """A time moved off the ends of its smooth interval, where accelerations, and an obstacle's velocity, may jump."""
     margin = NUDGE * max(abs(t), x[SCALE])
     return min(max(t, x[LOW] + margin), x[HIGH] - margin)
 
@@ -85,20 +85,20 @@ def free(s: Any, tau: float) -> tuple[float, float, float]:
     if s.frame != ABSENT:
         call(s.frame, t, s.q, s.v, s.p, s.now)
         q -= s.now[0, 0]
-        v -= s.now[0, 1]
         side = inside(x, t)
         if side != t:
             call(s.frame, side, s.q, s.v, s.p, s.now)
+        v -= s.now[0, 1] + s.now[0, 2] * (t - side)
         a -= s.now[0, 2]
     s.q[0], s.v[0] = q, v
     g, u, alpha = x[OFFSET] + x[G] * q, x[G] * v, x[G] * a
     if s.motion != ABSENT:
         call(s.motion, t, s.q, s.v, s.p, s.now)
         g -= s.now[0, 0]
-        u -= s.now[0, 1]
         side = inside(x, t)
         if side != t:
             call(s.motion, side, s.q, s.v, s.p, s.now)
+        u -= s.now[0, 1] + s.now[0, 2] * (t - side)
         alpha -= s.now[0, 2]
     return g, u, alpha
 
@@ -115,17 +115,17 @@ def on_obstacle(s: Any, t: float, u: float) -> tuple[float, float, float]:
     if s.motion != ABSENT:
         call(s.motion, t, s.q, s.v, s.p, s.now)
         q += s.now[0, 0] / x[G]
-        v += s.now[0, 1] / x[G]
         if side != t:
             call(s.motion, side, s.q, s.v, s.p, s.now)
+        v += (s.now[0, 1] + s.now[0, 2] * (t - side)) / x[G]
         bias -= s.now[0, 2]
     s.q[0], s.v[0] = q, v
     if s.frame != ABSENT:
         call(s.frame, t, s.q, s.v, s.p, s.now)
         q += s.now[0, 0]
-        v += s.now[0, 1]
         if side != t:
             call(s.frame, side, s.q, s.v, s.p, s.now)
+        v += s.now[0, 1] + s.now[0, 2] * (t - side)
         bias -= x[G] * s.now[0, 2]
     a = x[F0] - 2.0 * x[DELTA] * v - x[W2] * q
     if x[OMEGA] != 0.0:

@@ -32,17 +32,20 @@ from lcpstep.events.flight import (
     MODE,
     NONE,
     NOW,
+    NUDGE,
     ON_SURFACE,
     PEAK,
     Q0,
     RESOLUTION,
     RESPONSE,
     RTOL,
+    SCALE,
     SCAN,
     SPEED0,
     T0,
     T_END,
     V0,
+    G,
     R,
     after,
     find_corners,
@@ -77,6 +80,7 @@ JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
 SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 MAX_STALLED = 1000  # events at one time
+JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
 STRIDE = 3.0  # scan intervals in one stride, where the obstacle is far
 # How large a gap acceleration may be within a stride: relative to both ends, and to the largest of the flight so far
 BULGE, LEAST_BULGE = 2.0, 0.5
@@ -106,7 +110,7 @@ def run(s: Any, record: Any, count: Any, goal: int) -> int:
         if count[EVENTS] > count[MAX_EVENTS] or count[STALLED] > MAX_STALLED:
             return TOO_MANY_EVENTS
         if x[NOW] >= x[HIGH]:
-            turn_corner(s)
+            turn_corner(s, record, count)
         if x[MODE] == CLOSED and x[EDGE_ALPHA] > 0.0:
             release(s, record, count, x[EDGE_ALPHA])
         count[STEP] += 1
@@ -469,15 +473,38 @@ def release(s: Any, record: Any, count: Any, alpha: float) -> None:
 
 
 @inline
-def turn_corner(s: Any) -> None:
-    """Enter the next smooth interval, with the accelerations of its side."""
+def turn_corner(s: Any, record: Any, count: Any) -> None:
+    """Enter the next smooth interval, with the accelerations of its side.
+
+    Where the obstacle's velocity jumps, u- is taken before the jump and u+ after it: the obstacle takes a closed
+    contact along or, dropping, leaves it.
+    """
     x = s.x
-    find_corners(s, x[NOW])
+    t = x[NOW]
     if x[MODE] == CLOSED:
-        x[EDGE_ALPHA] = alpha_at(s, x[NOW])
-    else:
-        _, _, x[EDGE_ALPHA] = free(s, x[NOW] - x[T0])
-        x[PEAK] = max(x[PEAK], abs(x[EDGE_ALPHA]))
+        _, w, _ = on_obstacle(s, t, 0.0)
+        find_corners(s, t)
+        y, w_new, x[EDGE_ALPHA] = on_obstacle(s, t, 0.0)
+        u = x[G] * (w - w_new)
+        if abs(u) <= JUMP * (abs(w) + abs(w_new) + abs(x[EDGE_ALPHA]) * x[SCALE] + abs(y) / x[SCALE]):
+            return
+        if u > 0.0:
+            log(s, record, count, t, RELEASE, 0.0, u, 0.0)
+            settle(s, record, count, u)
+        else:
+            log(s, record, count, t, IMPACT, 0.0, 0.0, -u / x[RESPONSE])
+            x[IMPULSE] -= u / x[RESPONSE]
+            x[Q0], x[V0] = s.q[0], s.v[0]
+        keep_event(s, record, count)
+        return
+    _, u, _ = free(s, t - x[T0])
+    strikes = x[CONTACT] == 1.0 and u < -ON_THE_SURFACE * max(1.0, abs(s.v[0]))
+    if strikes and x[EDGE_G] <= -2.0 * u * NUDGE * max(abs(t), x[SCALE]):  # within rounding of the corner
+        impact(s, record, count, u)
+        return
+    find_corners(s, t)
+    _, x[EDGE_U], x[EDGE_ALPHA] = free(s, t - x[T0])
+    x[PEAK] = max(x[PEAK], abs(x[EDGE_ALPHA]))
 
 
 # --- what is kept ---------------------------------------------------------------------------------------------

@@ -8,8 +8,8 @@ from lagrangian import scenes
 from lagrangian.scenes.beads import weights_above
 from lcpstep.hard.check import Found, Solver, check
 
-STEPS_AT_REST = 100_000
-LAST = 2.0**-4  # time over which the forces are taken [s]
+STEPS_AT_REST = 2**17
+LAST = 2.0**-8  # time over which the forces are taken [s]
 
 
 def _feet(solve: Solver, n: int, steps: int) -> Found:
@@ -40,12 +40,12 @@ def ten_feet(solve: Solver) -> Found:
 
 @check("block-on-feet", "at rest on 100 feet, 1e3 steps", event_driven=1e-13, moreau=1e-13)
 def many_feet(solve: Solver) -> Found:
-    return _feet(solve, 100, 1000)
+    return _feet(solve, 100, 2**10)
 
 
 @check("stack", "at rest, 10 blocks on 20 feet, 1e4 steps", event_driven=1e-13, moreau=1e-13)
 def stack(solve: Solver) -> Found:
-    run = solve(scenes.stack(), keep=np.array([1.0 - LAST, 1.0]), h=1e-4)
+    run = solve(scenes.stack(), keep=np.array([1.0 - LAST, 1.0]), h=2.0**-13)
     forces = run.impulse[-1].reshape(-1, 2) / LAST
     weights = weights_above(np.ones(10), 9.81)
     parts = {
@@ -57,7 +57,7 @@ def stack(solve: Solver) -> Found:
 
 
 def _heavy(solve: Solver, ratio: float) -> Found:
-    run = solve(scenes.heavy_on_light(ratio=ratio), keep=np.array([1.0 - LAST, 1.0]), h=1e-3)
+    run = solve(scenes.heavy_on_light(ratio=ratio), keep=np.array([1.0 - LAST, 1.0]), h=2.0**-10)
     error = run.impulse[-1] / LAST / weights_above([1.0, ratio], 9.81) - 1.0
     # What the floor carries beyond the heavy block is the weight of the light one
     return Found(float(np.max(np.abs(error))), f"speed {float(np.max(np.abs(run.v))):.0e}")

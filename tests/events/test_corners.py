@@ -127,3 +127,21 @@ def test_no_row_of_a_run_lies_below_the_cam_and_none_between_rows():
     m = simulate(scenes.cam_follower(rpm=200.0, q0=0.0, v0=0.0, t_end=2.0), EventDriven())
     times = np.linspace(0.0, 2.0, 20001)
     assert np.min(m.at(times)[0]) > -1e-13
+
+
+@pytest.mark.parametrize("at", [0.25, 0.3, 1.0 / 3.0])
+@pytest.mark.parametrize("falling", [0, 1])
+@pytest.mark.parametrize("after", [-0.5, 0.5])
+def test_where_the_obstacles_velocity_jumps_u_minus_is_taken_before_it_and_u_plus_after(at, falling, after):
+    scene = scenes.jumping_table(at=at, after=after, falling=falling)
+    m = simulate(scene, EventDriven())
+    times = (np.arange(499) + 0.123) / 499.0
+    q, v = m.at(times)
+    exact = scene.exact(times)
+    np.testing.assert_allclose(q, exact[0], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(v, exact[1], rtol=0, atol=1e-7)  # of a hop just before the accumulation
+    _, v_jump = m.at(at)
+    if falling:  # struck with g t, it leaves the new velocity with half of that
+        assert v_jump[0] == pytest.approx(after + 0.5 * 9.81 * at, rel=1e-12)
+    else:  # taken along, or left where it was
+        assert v_jump[0] == pytest.approx(max(after, 0.0), abs=1e-12)
