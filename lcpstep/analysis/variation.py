@@ -58,12 +58,12 @@ def saltation(local: Local, t: float, q: Array, before: Array, after: Array) -> 
     G, u = local.rates(t, q, before)
     F_before = np.concatenate([before, local.acceleration(t, q, before)])
     F_after = np.concatenate([after, local.acceleration(t, q, after)])
-    R_x, R_t = _impact_law(local, t, q, before)
+    R_x, R_t = impact_law(local, t, q, before)
     H_x = np.concatenate([G, np.zeros(n)])
     return R_x + np.outer(F_after - R_x @ F_before - R_t, H_x) / u
 
 
-def _impact_law(local: Local, t: float, q: Array, v: Array) -> tuple[Array, Array]:
+def impact_law(local: Local, t: float, q: Array, v: Array) -> tuple[Array, Array]:
     """R_x (2 n_q, 2 n_q) and R_t (2 n_q,) of the state after an impact, (q, v+)."""
     n, r = len(q), local.restitution
     MG, W = local.response(t, q, v)

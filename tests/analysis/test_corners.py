@@ -1,0 +1,191 @@
+"""Corner impacts: the orbit, its discontinuity map, and the piecewise-linear map around it."""
+
+import numpy as np
+import pytest
+
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven
+from lcpstep.analysis.border_collision import classify
+from lcpstep.analysis.chattering import corner_crossings, sequences
+from lcpstep.analysis.corners import (
+    NotDifferentiable,
+    agreement,
+    corner_impact,
+    discontinuity_map,
+    estimate,
+    local_map,
+)
+from lcpstep.maps import StroboscopicMap, iterate
+
+
+def cam(rpm):
+    return scenes.cam_follower(rpm=rpm)
+
+
+def table(t, q, v, p, out):
+    """Table that is pushed up in parabolas: position and velocity are continuous, the acceleration jumps."""
+    s = t % 1.0
+    if s < 0.5:
+        out[0, 0], out[0, 1], out[0, 2] = p[0] * s * (0.5 - s), p[0] * (0.5 - 2.0 * s), -2.0 * p[0]
+    else:
+        out[0, 0], out[0, 1], out[0, 2] = -p[0] * (s - 0.5) * (1.0 - s), -p[0] * (1.5 - 2.0 * s), 2.0 * p[0]
+
+
+def hammered(a):
+    """Ball above that table, with a soft spring and damping."""
+    return Scene(
+        system=LinearSystem(M=1.0, C=0.1, K=2.0, force=-5.0),
+        contacts=LinearContacts(G=1.0, restitution=0.5, motion=table),
+        q0=0.4, v0=0.0, t_span=(0.0, 1.0), p=[a], corners=[0.0, 0.5], period=1.0, name="hammered",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    x = iterate(StroboscopicMap(cam(700.0), EventDriven()), [0.4, 0.4], 300)[-1]
+    return corner_impact(cam, 674.0, x)
+
+
+@pytest.fixture(scope="module")
+def chain(orbit):
+    return local_map(orbit)
+
+
+def test_the_orbit_of_the_cam_follower_meets_the_corner_at_the_published_speed(orbit):
+    assert orbit.p == pytest.approx(673.234445, abs=5e-7)
+    assert orbit.corner == 1  # where the flank meets the nose
+    assert orbit.residual < 1e-11
+    assert orbit.after == pytest.approx(-0.8 * orbit.before)
+
+
+def test_the_map_is_continuous_and_keeps_the_determinant_of_the_impact(chain):
+    # without damping the flow keeps areas, and an impact shrinks them by r^2
+    assert chain.gap()[0] < 1e-9
+    for A in (chain.A_minus, chain.A_plus):
+        assert np.linalg.det(A) == pytest.approx(0.64, rel=1e-8)
+
+
+def test_least_squares_on_simulated_perturbations_find_the_same_matrices(orbit, chain):
+    found = estimate(orbit, chain)
+    assert agreement(found.map, chain) < 1e-6
+    assert max(found.rms) < 1e-7
+
+
+def test_one_sided_differences_of_the_stroboscopic_map_find_the_same_matrices(orbit, chain):
+    """Along directions that stay on one side; extrapolated from three step sizes."""
+    border = np.append(chain.C, chain.D)
+    for z in np.vstack([np.eye(3), [[1e-3, 0.1, 1.0]]]):
+        for side, A, B in ((-1.0, chain.A_minus, chain.B_minus), (1.0, chain.A_plus, chain.B_plus)):
+            z = z * np.sign(border @ z) * side
+
+            def slope(s, z=z):
+                P = StroboscopicMap(cam(orbit.p + s * z[2]), EventDriven())
+                return (P(orbit.x + s * z[:2]) - orbit.x) / s
+
+            h = 2e-5
+            extrapolated = (slope(4 * h) - 6.0 * slope(2 * h) + 8.0 * slope(h)) / 3.0
+            expected = A @ z[:2] + B * z[2]
+            np.testing.assert_allclose(extrapolated, expected, atol=3e-6 * np.max(np.abs(expected)))
+
+
+def test_the_border_is_where_the_impact_changes_sides(orbit, chain):
+    rng = np.random.default_rng(1)
+    for _ in range(10):
+        z = rng.normal(size=3) * [1e-4, 1e-2, 1e-2]
+        scene = cam(orbit.p + z[2])
+        run = StroboscopicMap(scene, EventDriven()).follow(orbit.x + z[:2], 1)
+        early = run.time[0, 0, 0] < scene.corners[orbit.corner]
+        assert early == (chain.C @ z[:2] + chain.D * z[2] < 0.0)
+
+
+def test_the_corner_correction_has_rank_one_and_vanishes_on_the_border(orbit):
+    Z = discontinuity_map(orbit)
+    by_state, by_parameter = Z.correction
+    E = by_state @ Z.H_y / (Z.H_y @ Z.H_y)
+    np.testing.assert_allclose(by_state, np.outer(E, Z.H_y), atol=1e-9 * np.max(np.abs(by_state)))
+    np.testing.assert_allclose(by_parameter, E * Z.H_p, atol=1e-9 * np.max(np.abs(by_state)))
+
+
+def test_the_verdict_is_that_of_the_full_system(orbit, chain):
+    """Two orbits O(1, 1) above the speed of the corner, one on each side of it, and none below."""
+    assert classify(chain).verdict == "nonsmooth fold"
+    assert classify(chain).fixed.minus_exists == classify(chain).fixed.plus_exists == (False, True)
+
+
+def test_an_obstacle_of_ones_own_is_treated_alike():
+    x = iterate(StroboscopicMap(hammered(4.0), EventDriven(), 0.4), [0.3, 0.0], 400)[-1]
+    found = corner_impact(hammered, 4.0, x, corner=0, phase=0.4)
+    chain = local_map(found)
+    assert found.time == pytest.approx(1.0)
+    assert chain.gap()[0] < 1e-8
+    assert agreement(estimate(found, chain).map, chain) < 1e-6
+
+
+def jumping(t, q, v, p, out):
+    """Table whose velocity jumps."""
+    s = t % 1.0
+    out[0, 0], out[0, 1], out[0, 2] = p[0] * min(s, 1.0 - s), p[0] if s < 0.5 else -p[0], 0.0
+
+
+def test_a_corner_of_degree_one_is_named():
+    def make(a):
+        return Scene(
+            system=LinearSystem(M=1.0, force=-9.81),
+            contacts=LinearContacts(G=1.0, restitution=0.8, motion=jumping),
+            q0=0.9, v0=0.0, t_span=(0.0, 1.0), p=[a], corners=[0.0, 0.5], period=1.0,
+        )  # fmt: skip
+
+    with pytest.raises(NotDifferentiable, match="degree one"):
+        corner_impact(make, 0.2, [0.9, 0.0], corner=1)
+
+
+def test_an_orbit_that_sticks_is_named():
+    with pytest.raises(NotDifferentiable, match="closes for good"):
+        corner_impact(cam, 130.0, [0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((lambda p: scenes.bouncing_ball(), 1.0, [1.0, 0.0]), "one contact, a period and corners"),
+        ((cam, 700.0, [1.3, -66.0, 0.0]), "x: expected shape"),
+    ],
+)
+def test_wrong_questions_are_named(arguments, said):
+    with pytest.raises(ValueError, match=said):
+        corner_impact(*arguments)
+    with pytest.raises(ValueError, match="corner: expected an index"):
+        corner_impact(cam, 700.0, [1.33, -66.2], corner=9)
+
+
+def resting(rpm):
+    return scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0)
+
+
+def test_the_follower_chatters_twice_in_a_turn_above_first_detachment():
+    assert sequences(resting(114.9)) == []
+    first, second = sequences(resting(120.0))
+    corners = np.asarray(resting(120.0).corners) / resting(120.0).period
+    assert first.release == pytest.approx(corners[1])  # it leaves where the flank meets the nose
+    assert first.release < first.impacts[0] < first.accumulation < second.release < second.accumulation
+    assert np.all(np.diff(first.impacts) > 0.0)
+    # impacts of a sequence shrink by r each, the more exactly the later they come
+    assert first.speeds[21] / first.speeds[20] == pytest.approx(0.8, rel=1e-2)
+
+
+def test_the_detachment_point_reaches_the_end_of_the_nose_at_its_published_speed():
+    (crossing,) = [
+        c for c in corner_crossings(resting, (134.5, 135.2), points=3, impacts=3) if c.event == "release"
+    ]
+    assert crossing.corner == 3
+    assert crossing.p == pytest.approx(134.873, abs=5e-4)
+
+
+def test_an_impact_on_a_corner_is_located():
+    crossings = corner_crossings(resting, (124.5, 125.5), points=3, impacts=1)
+    (impact,) = [c for c in crossings if c.event == "impact"]
+    corners = np.asarray(resting(impact.p).corners) / resting(impact.p).period
+    phase = sequences(resting(impact.p))[impact.sequence].impacts[0]
+    assert phase == pytest.approx(corners[impact.corner], abs=1e-10)
+    with pytest.raises(ValueError, match="p_range"):
+        corner_crossings(resting, (2.0, 1.0))
