@@ -1,9 +1,10 @@
 """Basins of attraction on a grid of initial states, by cell mapping with exact trajectories.
 
-1. Every cell's centre is carried through a few periods; its images are exact states, not cells.
+1. Every cell's centre is carried through two periods; its images are exact states, not cells.
 2. A cell is settled once an image lies near an attractor, or in a cell that is settled on the same attractor as
    all its eight neighbours. Repeated until nothing changes, the labels spread outwards from the attractors.
-3. Cells left over, those between basins, are followed further, until they come near an attractor themselves.
+3. Cells left over, those between basins, are carried on from their last image, two periods a round, and the few of
+   the last round until they come near an attractor themselves.
 
 So only the labels of homogeneous neighbourhoods are shared, and a label depends neither on the order of the cells
 nor on how the work is divided. The share of an attractor is that of its cells; its uncertainty is that of a grid
@@ -36,7 +37,8 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 UNKNOWN, OBSTACLE = -1, -2  # labels: no attractor was reached; the cell's centre lies inside of the obstacle
 PART = 8192  # cells of a part
-IMAGES = 4  # exact images of every cell before labels are shared
+IMAGES = 2  # exact images of a cell in a round
+ROUNDS, FEW = 24, 0.002  # of images and sharing; the share of cells left at which they end
 STARTS = 200  # random states from which attractors are looked for
 RADII = np.geomspace(
     1e-1, 1e-6, 26
@@ -55,7 +57,7 @@ def basins(
     known: Attractors | None = None,
     phase: float = 0.0,
     longest: int = 1000,
-    sample: int = 500,
+    sample: int = 2000,
     seed: int = 0,
     executor: Executor | None = None,
     jobs: int | None = None,
@@ -101,10 +103,11 @@ def basins(
     targets = neighbourhoods(scene, method, known.found, phase, longest, seed)
     study = _Study(scene, method, grid, targets, phase, longest)
     inputs = study.inputs(known)
-    cells = np.arange(n_q * n_v)
-    parts = [[cells[i : i + PART]] for i in range(0, len(cells), PART)]
+    label, x = np.full(n_q * n_v, UNKNOWN), grid.centres(np.arange(n_q * n_v))
+    rest, landed = np.arange(n_q * n_v), np.zeros((n_q * n_v, 0), dtype=np.int64)
 
-    def stage(name: str, chains: list[list[Any]], work: Callable[..., Any]) -> list[Arrays]:
+    def stage(name: str, work: Callable[..., Any], size: int) -> Arrays:
+        chains = [[x[rest[i : i + size]]] for i in range(0, len(rest), size)]
         folder = None if out is None else Path(out) / name
         done = sweep(
             work,
@@ -115,16 +118,20 @@ def basins(
             jobs=jobs,
             progress=progress,
         )
-        return [chain[0] for chain in done]
+        return {key: np.concatenate([chain[0][key] for chain in done]) for key in done[0][0]}
 
-    first = stage("images", parts, study.images)
-    images = np.concatenate([part["images"] for part in first])
-    label = np.concatenate([part["label"] for part in first])
-    spread(grid, images, label)
-    rest = np.flatnonzero(label == UNKNOWN)
-    chains = [[rest[i : i + PART // 8]] for i in range(0, len(rest), PART // 8)]
-    for part in stage("rest", chains, study.to_the_end):
-        label[part["cells"]] = part["label"]
+    for k in range(ROUNDS):
+        found = stage(f"round-{k:02d}", study.images if k else study.first_images, PART)
+        label[rest], x[rest] = found["label"], found["x"]
+        images = grid.cell(found["images"].reshape(-1, 2)).reshape(len(rest), -1)
+        landed = np.concatenate([landed, images], axis=1)
+        spread(grid, rest, landed, label)
+        left = label[rest] == UNKNOWN
+        rest, landed = rest[left], landed[left]
+        if len(rest) <= FEW * len(label):
+            break
+    if len(rest):
+        label[rest] = stage("rest", study.to_the_end, PART // 8)["label"]
     wrong = _wrong(study, label, sample, seed)
     return study.dataset(known, label, wrong, seed, sample)
 
@@ -188,22 +195,22 @@ def neighbourhoods(
     return Targets(centre, radius, scale), owner
 
 
-def spread(grid: Grid, images: Array, label: Ints) -> None:
-    """Label cells by images that fall into homogeneous neighbourhoods, until nothing changes; label in place."""
-    cells = grid.cell(images.reshape(-1, 2)).reshape(images.shape[:2])
-    while True:
-        inner = homogeneous(label.reshape(grid.n_v, grid.n_q)).ravel()
-        open_cells = np.flatnonzero(label == UNKNOWN)
-        changed = False
-        for k in range(images.shape[1]):
-            image = cells[open_cells, k]
-            fate = np.where(image >= 0, inner[image], UNKNOWN)
-            settled = fate >= 0
-            label[open_cells[settled]] = fate[settled]
-            changed |= bool(np.any(settled))
-            open_cells = open_cells[~settled]
-        if not changed:
+def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:
+    """Label cells by images that fall into homogeneous neighbourhoods, until nothing changes; label in place.
+
+    landed : (m, k)   numbers of the cells that k images of each of the cells (m,) lie in, -1 outside of the grid
+    """
+    unlabelled = label[cells] == UNKNOWN
+    cells, landed = cells[unlabelled], landed[unlabelled]
+    while len(cells):
+        inner = np.append(homogeneous(label.reshape(grid.n_v, grid.n_q)).ravel(), UNKNOWN)
+        fates = inner[landed]
+        fate = np.max(fates, axis=1)  # where several images are settled, they are on one attractor
+        settled = fate >= 0
+        if not np.any(settled):
             return
+        label[cells[settled]] = fate[settled]
+        cells, landed = cells[~settled], landed[~settled]
 
 
 def homogeneous(label: Ints) -> Ints:
@@ -229,19 +236,24 @@ class _Study:
     phase: float
     longest: int
 
-    def images(self, cells: Ints, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
-        """Exact images of the cells' centres, and the labels of those that came near an attractor."""
-        found = self.follow(cells, IMAGES, 0)
-        return {"images": found.states, "label": self.label(found)}, None
+    def first_images(self, x: Array, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+        """The same of cells' centres, which may lie inside of the obstacle."""
+        return self.images(x, handed, strict=True)
 
-    def to_the_end(self, cells: Ints, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
-        """Labels of cells that are followed until they are near an attractor."""
-        return {"cells": cells, "label": self.label(self.follow(cells, self.longest, self.longest))}, None
+    def images(self, x: Array, handed: Arrays | None, strict: bool = False) -> tuple[Arrays, Arrays | None]:
+        """Exact images of states, and the labels of those that came near an attractor."""
+        found = self.follow(x, IMAGES, 0, strict)
+        return {"images": found.states, "x": found.final, "label": self.label(found)}, None
 
-    def follow(self, cells: Ints, n: int, drop: int) -> Any:
+    def to_the_end(self, x: Array, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+        """Labels of states that are followed until they are near an attractor."""
+        return {"label": self.label(self.follow(x, self.longest, self.longest, True))}, None
+
+    def follow(self, x: Array, n: int, drop: int, strict: bool) -> Any:
+        """Runs that end near an attractor."""
         return periods(
-            self.scene, self.method, self.grid.centres(cells), n, drop=drop, phase=self.phase, most=0,
-            targets=self.targets[0],
+            self.scene, self.method, x, n, drop=drop, phase=self.phase, most=0, targets=self.targets[0],
+            strict=strict,
         )  # fmt: skip
 
     def label(self, found: Any) -> Ints:
@@ -301,6 +313,6 @@ def _wrong(study: _Study, label: Ints, sample: int, seed: int) -> float:
     if sample == 0:
         return math.nan
     cells = np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
-    truth, _ = study.to_the_end(cells, None)
+    truth, _ = study.to_the_end(study.grid.centres(cells), None)
     errors = int(np.sum(truth["label"] != label[cells]))
     return float(binomtest(errors, sample).proportion_ci(CONFIDENCE).high)
