@@ -1,0 +1,122 @@
+"""`lcpstep attractor`: which attractors a scene has, and what each is."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from lcpstep.analysis.attractors import Attractors, attractors, random_starts
+from lcpstep.analysis.basins import outside
+from lcpstep.analysis.likeness import Likeness, likeness, sample
+from lcpstep.cli.common import DONE, event_driven, moreau
+from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, study_arguments, study_scene
+from lcpstep.dataset import labelled, provenance
+from lcpstep.plot import diagrams
+
+
+def add(commands: Any) -> None:
+    """Arguments of the command."""
+    p = commands.add_parser(
+        "attractor",
+        help="find the attractors of a scene and classify them",
+        description="Follows motions from random states, and says what they settle to: O(n, m) repeats after n "
+        "periods of the forcing with m impacts; chaotic ones come with their largest Lyapunov exponent.",
+        epilog="Example: lcpstep attractor cam-follower --rpm 358.5 --starts 200 --out out",
+    )
+    study_arguments(p)
+    p.add_argument("--starts", type=int, default=100, help="number of random starts (100)")
+    p.add_argument(
+        "--box", type=float, nargs=4, metavar=("QMIN", "QMAX", "VMIN", "VMAX"), help="to draw from"
+    )
+    p.add_argument("--transient", type=int, default=500, help="periods dropped (500)")
+    p.add_argument("--window", type=int, default=240, help="periods looked at (240)")
+    p.add_argument(
+        "--compare", type=int, default=0, metavar="PERIODS",
+        help="compare time-stepping with event-driven on the first attractor, over so many periods each",
+    )  # fmt: skip
+    p.add_argument("--json", action="store_true", help="print JSON")
+    p.set_defaults(run=stopped(run_attractor))
+
+
+def run_attractor(options: argparse.Namespace) -> int:
+    """`lcpstep attractor`."""
+    scene, method = study_scene(options), method_of(options)
+    names = files(options, "attractors")
+    starts = outside(scene, random_starts(box(options), options.starts, options.seed), options.phase)
+    found = attractors(
+        scene, method, starts, transient=options.transient, window=options.window,
+        longest=min(60, options.window // 2), phase=options.phase,
+    )  # fmt: skip
+    compared: dict[str, Likeness] = {}
+    if options.compare and found.found:
+        x = found.found[0].points[-1]
+        stepped = sample(scene, moreau(options), x, options.compare)
+        exact = sample(scene, event_driven(options), x, options.compare)
+        compared = likeness(stepped, exact, seed=options.seed)
+    figure = diagrams.attractors(found.found, f"{scene.name}, {method}")
+    finish(options, _dataset(scene, method, found, options.seed), figure, names)
+    rows = [_row(a) for a in found.found]
+    if options.json:
+        print(
+            json.dumps({"attractors": rows, "likeness": {k: vars(x) for k, x in compared.items()}}, indent=2)
+        )
+        return DONE
+    for r in rows:
+        print(
+            f"{r['name']:20} share {r['share']:6.1%}   impacts per period {r['impacts_per_period']:8.4g}   "
+            f"Lyapunov exponent per period {r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
+        )
+    for name, x in compared.items():
+        print(
+            f"time-stepping against event-driven, {name}: distance {x.distance:.4g} "
+            f"[{x.low:.4g}, {x.high:.4g}], p = {x.p_value:.3g}"
+        )
+    return DONE
+
+
+def box(options: argparse.Namespace) -> list[list[float]]:
+    """Lowest and highest states of the random starts."""
+    if options.box:
+        q_min, q_max, v_min, v_max = options.box
+        return [[q_min, v_min], [q_max, v_max]]
+    if options.scene != "cam-follower":
+        raise ValueError("--box: expected QMIN QMAX VMIN VMAX, the states to start from")
+    return [list(x) for x in CAM_BOX]
+
+
+def _row(a: Any) -> dict[str, Any]:
+    per_period = a.impacts / a.periods if a.periods else a.impacts
+    return {
+        "name": a.name, "share": a.share, "impacts_per_period": per_period,
+        "lyapunov": a.lyapunov.largest, "lyapunov_error": a.lyapunov.error,
+    }  # fmt: skip
+
+
+def _dataset(scene: Any, method: Any, found: Attractors, seed: int) -> Any:
+    """All attractors, padded to one length."""
+    points = max((len(a.points) for a in found.found), default=1)
+    impacts = max((len(a.impact_phase) for a in found.found), default=1)
+
+    def padded(rows: list[Any], length: int) -> Any:
+        out = np.full((len(rows), length, *np.shape(rows[0])[1:]) if rows else (0, length), math.nan)
+        for k, row in enumerate(rows):
+            out[k, : len(row)] = row
+        return out
+
+    at = ("attractor", "impact")
+    variables = {
+        "name": (("attractor",), np.array([a.name for a in found.found])),
+        "share": (("attractor",), np.array([a.share for a in found.found])),
+        "lyapunov": (("attractor",), np.array([a.lyapunov.largest for a in found.found])),
+        "states": (("attractor", "point", "state"), padded([a.points for a in found.found], points)),
+        "impact_phase": (at, padded([a.impact_phase for a in found.found], impacts)),
+        "impact_before": (at, padded([a.impact_before for a in found.found], impacts)),
+        "impact_after": (at, padded([a.impact_after for a in found.found], impacts)),
+        "start": (("run", "state"), found.starts),
+        "label": (("run",), found.label),
+    }
+    return labelled(variables, {}, provenance(scene, method) | found.settings | {"seed": seed})

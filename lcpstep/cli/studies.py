@@ -1,0 +1,96 @@
+"""What the commands for attractors, diagrams, basins and orbits share: arguments, files, progress."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from lagrangian import Scene
+from lcpstep import dataset
+from lcpstep.cli.common import FAILED, event_driven, moreau, scene_arguments, scene_of, stepping_arguments
+from lcpstep.dataset import Progress
+from lcpstep.errors import SweepStopped
+from lcpstep.simulate import Method
+
+CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
+PARTS = "parts"  # folder of an unfinished sweep
+
+
+def study_arguments(p: argparse.ArgumentParser) -> None:
+    """Scene, method, section, files, threads."""
+    scene_arguments(p)
+    p.add_argument("--rpm", type=float, help="cam speed [rpm]")
+    p.add_argument(
+        "--method", choices=["event-driven", "moreau"], default="event-driven", help="(event-driven)"
+    )
+    stepping_arguments(p)
+    p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
+    p.add_argument("--phase", type=float, default=0.0, help="of the section, a share of the period (0)")
+    p.add_argument("--seed", type=int, default=0, help="of all random numbers; stored with the result (0)")
+    p.add_argument("--jobs", type=int, metavar="N", help="threads; default: all cores")
+    p.add_argument("--out", type=Path, default=Path("out"), metavar="DIR", help="where the files go (out)")
+    p.add_argument("--overwrite", action="store_true", help="write over files of an earlier run")
+
+
+def method_of(options: argparse.Namespace) -> Method:
+    """The method that the options name."""
+    return moreau(options) if options.method == "moreau" else event_driven(options)
+
+
+def study_scene(options: argparse.Namespace, **more: Any) -> Scene:
+    """The scene that the options name, at the speed --rpm if it is given."""
+    if options.rpm is not None:
+        if options.scene != "cam-follower":
+            raise ValueError("--rpm: only the cam-follower turns")
+        more["rpm"] = options.rpm
+    return scene_of(options, **more)
+
+
+def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:
+    """Data file and picture of a study; FileExistsError where they exist and may not be written over."""
+    data, picture = options.out / f"{name}.nc", options.out / f"{name}.png"
+    for file in (data, picture):
+        if file.exists() and not options.overwrite:
+            raise FileExistsError(f"--out: {file} exists already; --overwrite replaces it")
+    return data, picture
+
+
+def finish(options: argparse.Namespace, data: Any, figure: Any, names: tuple[Path, Path]) -> None:
+    """Save data and picture, and drop the parts of the sweep, which are no longer needed."""
+    dataset.save(data, names[0], overwrite=options.overwrite)
+    figure.savefig(names[1], dpi=150)
+    shutil.rmtree(options.out / PARTS, ignore_errors=True)
+    for name in names:
+        print(f"wrote {name}")
+
+
+def stopped(run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:
+    """A command for which a sweep that stopped is a failure of the run and not a wrong argument."""
+
+    def guarded(options: argparse.Namespace) -> int:
+        try:
+            return run(options)
+        except SweepStopped as error:
+            print(f"lcpstep: {error}", file=sys.stderr)
+            return FAILED
+
+    return guarded
+
+
+@contextmanager
+def parts_bar(title: str) -> Iterator[Progress]:
+    """A bar over the parts of a sweep, on a terminal only."""
+    from tqdm import tqdm
+
+    with tqdm(desc=title, unit="part", disable=None, leave=False) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total, bar.n = total, done
+            bar.refresh()
+
+        yield progress
