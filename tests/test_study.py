@@ -231,8 +231,8 @@ def test_a_run_that_ends_early_has_no_errors_but_a_reason():
 
 
 def test_the_command_writes_tables_and_a_picture(capsys, tmp_path):
-    arguments = "study impact-oscillator --methods moreau --t-end 10 --h 1e-2 1e-3 --repeats 1 --measures sup_position"
-    assert main([*arguments.split(), "unmatched", "--out", str(tmp_path)]) == DONE
+    arguments = "study impact-oscillator --methods moreau --t-end 10 --h 1e-2 1e-3 --repeats 1"
+    assert main([*arguments.split(), "--measures", "sup_position", "--out", str(tmp_path)]) == DONE
     out = capsys.readouterr().out
     assert "order of Moreau in sup_position" in out
     assert sorted(p.name for p in tmp_path.iterdir()) == ["study.csv", "study.json", "study.png"]
