@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
+MANY = 50  # numbers in a message
 
 
 def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -115,7 +116,7 @@ def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shap
     """Value of a callback in plain Python; an error if it does not fill `out` of the given shape."""
     out = np.full(shape, np.nan)
     t, q, v, p = at
-    where = f"at t = {t:g}, q = {q.tolist()}, v = {v.tolist()}"
+    where = f"at t = {t:g}, q = {shown(q)}, v = {shown(v)}"
     try:
         returned = f(t, q.copy(), v.copy(), p.copy(), out)
     except Exception as error:  # the user's code may raise anything; the message says whose it is
@@ -126,5 +127,12 @@ def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shap
     if returned is not None:
         raise ValueError(f"{name}: expected f(t, q, v, p, out) to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
-        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {out.tolist()}")
+        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {shown(out)}")
     return out
+
+
+def shown(x: NDArray[Any]) -> str:
+    """The numbers of an array for a message: all of them, or the first few and how many."""
+    if x.size <= MANY:
+        return str(x.tolist())
+    return f"[{', '.join(map(str, x.flat[:3].tolist()))}, ... {x.size} numbers]"

@@ -9,11 +9,12 @@ Impact (Newton): u+ = -r u-.  Source: G. Osorio, Complex Behavior in Impacting S
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lagrangian import checks
+from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
 from lagrangian.friction import Coulomb
 
@@ -24,7 +25,7 @@ class LinearContacts:
 
     Parameters
     ----------
-    G : (n_c, n_q)   gap Jacobian, constant [-]
+    G : (n_c, n_q)   gap Jacobian, constant [-]; dense, or a scipy.sparse matrix
     offset : (n_c,)   gap at q = 0, s = 0 [m]
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
     motion : callback filling out (n_c, 3), or None
@@ -43,24 +44,29 @@ class LinearContacts:
     friction: Coulomb | None = None
 
     def __post_init__(self) -> None:
-        G = checks.matrix("G", self.G)
-        object.__setattr__(self, "G", G)
-        object.__setattr__(self, "offset", checks.per_contact("offset", self.offset, len(G)))
-        object.__setattr__(self, "restitution", checks.restitution(self.restitution, len(G)))
+        read = sparse.matrix if self.sparse else checks.matrix
+        object.__setattr__(self, "G", read("G", self.G))
+        object.__setattr__(self, "offset", checks.per_contact("offset", self.offset, self.n_c))
+        object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
         if self.friction is not None:
-            object.__setattr__(self, "friction", self.friction.fitted(len(G)))
+            object.__setattr__(self, "friction", self.friction.fitted(self.n_c))
+
+    @property
+    def sparse(self) -> bool:
+        """Whether G is kept as a scipy.sparse matrix."""
+        return sparse.is_sparse(self.G)
 
     @property
     def n_c(self) -> int:
         """Number of contacts."""
-        return len(np.atleast_2d(self.G))
+        return int(np.shape(self.G)[0])
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
         """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""
         s = np.zeros((self.n_c, 3))
         if self.motion is not None:
             s = checks.evaluate("contacts.motion", self.motion, (t, q, v, p), (self.n_c, 3))
-        G = np.asarray(self.G)
+        G: Any = self.G
         if G.shape[1] != len(q):
             raise ValueError(
                 f"contacts.G: expected {len(q)} columns, one per coordinate, got shape {G.shape}"

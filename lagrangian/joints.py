@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from lagrangian import checks
@@ -43,7 +42,7 @@ class LinearJoints:
     @property
     def n_j(self) -> int:
         """Number of joints."""
-        return len(np.atleast_2d(self.G))
+        return self.as_contacts().n_c
 
     def as_contacts(self) -> LinearContacts:
         """The same gaps, with which everything that evaluates contacts evaluates joints."""

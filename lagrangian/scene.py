@@ -122,7 +122,7 @@ class Scene:
         if len(inside):
             raise ValueError(
                 f"q0: the initial state lies inside the obstacle: the gap of contact {inside[0]} is "
-                f"{g[inside[0]]:.6g} m at t = {t:g}, q = {q.tolist()}"
+                f"{g[inside[0]]:.6g} m at t = {t:g}, q = {checks.shown(q)}"
             )
 
     def _starts_exact(self) -> bool:

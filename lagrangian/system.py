@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lagrangian import checks
+from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
 
 
@@ -54,6 +54,7 @@ class LinearSystem:
     ----------
     M : (n_q, n_q)   symmetric positive definite mass matrix [kg]
     C, K : (n_q, n_q)   damping [N s/m] and stiffness [N/m]; None for zero
+        If one of M, C, K is a scipy.sparse matrix, all are kept as such, and `Moreau` makes none of them dense.
     force : Harmonic, (n_q,) constant force, callback filling out (n_q,), or None   F(t) [N]
     frame : callback filling out (n_q, 3), or None
         Moving frame: q is measured relative to c(t), and out[i] = (c_i, c_i', c_i''). The equation above then
@@ -71,22 +72,38 @@ class LinearSystem:
     frame: Callback | None = None
 
     def __post_init__(self) -> None:
-        M = checks.matrix("M", self.M)
-        square = (len(M), len(M))
-        zero = np.zeros(square)
-        object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
-        object.__setattr__(self, "C", checks.array("C", zero if self.C is None else self.C, square))
-        object.__setattr__(self, "K", checks.array("K", zero if self.K is None else self.K, square))
+        if any(map(sparse.is_sparse, (self.M, self.C, self.K))):
+            self._keep_sparse()
+        else:
+            M = checks.matrix("M", self.M)
+            square = (len(M), len(M))
+            zero = np.zeros(square)
+            object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
+            object.__setattr__(self, "C", checks.array("C", zero if self.C is None else self.C, square))
+            object.__setattr__(self, "K", checks.array("K", zero if self.K is None else self.K, square))
         if not callable(self.force):
             force = self.force if self.force is not None else 0.0
             force = force if isinstance(force, Harmonic) else Harmonic(constant=force)
             force.terms(self.n_q)
             object.__setattr__(self, "force", force)
 
+    def _keep_sparse(self) -> None:
+        M = sparse.matrix("M", self.M)
+        square = (M.shape[0], M.shape[0])
+        object.__setattr__(self, "M", sparse.mass_matrix("M", sparse.matrix("M", M, square)))
+        for name, value in (("C", self.C), ("K", self.K)):
+            kept = sparse.zero(len(M.indptr) - 1) if value is None else sparse.matrix(name, value, square)
+            object.__setattr__(self, name, kept)
+
+    @property
+    def sparse(self) -> bool:
+        """Whether the matrices are kept as scipy.sparse ones."""
+        return sparse.is_sparse(self.M)
+
     @property
     def n_q(self) -> int:
         """Number of coordinates."""
-        return len(np.atleast_2d(self.M))
+        return int(np.shape(self.M)[0])
 
     def trial(self, t: float, q: Array, v: Array, p: Array) -> None:
         """Evaluate every callback once in plain Python; raises ValueError where one does not fit."""

@@ -20,6 +20,7 @@ from lcpstep import compiled
 from lcpstep.errors import LcpStepError
 
 Array = NDArray[np.float64]
+LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
 ABSENT = 0  # in place of a callback that the scene does not have
 
 
@@ -33,6 +34,18 @@ def require(scene: Scene, method: str, *, joints: bool, friction: bool) -> None:
         raise LcpStepError(f"scene: {method} does not treat joints, and {scene.name!r} has {scene.n_j}")
     if scene.contacts is not None and scene.contacts.friction is not None and not friction:
         raise LcpStepError(f"scene: {method} does not treat friction, and {scene.name!r} has it")
+
+
+def dense(name: str, matrix: Any) -> Array:
+    """An array of its own from a dense or a sparse matrix; LcpStepError for one that is too large for that."""
+    if not hasattr(matrix, "toarray"):
+        return np.array(matrix)
+    if max(matrix.shape) > LARGEST_DENSE:
+        raise LcpStepError(
+            f"{name}: this method works with dense matrices, and one of shape {matrix.shape} would need "
+            f"{8e-9 * matrix.shape[0] * matrix.shape[1]:.1f} GB; Moreau takes sparse linear systems as they are"
+        )
+    return np.ascontiguousarray(matrix.toarray())
 
 
 class Model(NamedTuple):
@@ -102,10 +115,16 @@ def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
 
 
 def _model(scene: Scene, fields: dict[str, Any]) -> tuple[Model, bool]:
+    fields, fast = with_addresses(scene, fields)
+    return Model(**fields), fast
+
+
+def with_addresses(scene: Scene, fields: dict[str, Any]) -> tuple[dict[str, Any], bool]:
+    """The fields with compiled callbacks in the place of plain ones; all are plain where one cannot be compiled."""
     callbacks = {name: f for name, f in fields.items() if callable(f)}
     addresses = {} if compiled.jit_disabled() else _compile(scene, callbacks)
     fast = len(addresses) == len(callbacks)
-    return Model(**(fields | addresses if fast else fields)), fast
+    return (fields | addresses if fast else fields), fast
 
 
 def _compile(scene: Scene, callbacks: dict[str, Callback]) -> dict[str, int]:
@@ -119,7 +138,7 @@ def _compile(scene: Scene, callbacks: dict[str, Callback]) -> dict[str, int]:
             warnings.warn(
                 f"{name} of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
                 UncompiledCallback,
-                stacklevel=4,
+                stacklevel=5,
             )
     return addresses
 
@@ -142,8 +161,8 @@ def _system(scene: Scene) -> dict[str, Any]:
     fields |= {"constant": zero, "cosine": zero, "sine": zero, "omega": 0.0, "C": square, "K": square}
     fields |= {"p": np.array(scene.p), "frame_now": np.zeros((n_q, 3))}
     if isinstance(system, LinearSystem):
-        M = np.array(system.M)
-        fields |= {"C": np.array(system.C), "K": np.array(system.K), "frame": system.frame or ABSENT}
+        M = dense("M", system.M)
+        fields |= {"C": dense("C", system.C), "K": dense("K", system.K), "frame": system.frame or ABSENT}
         if isinstance(system.force, Harmonic):
             terms = dict(zip(("constant", "cosine", "sine"), system.force.terms(n_q), strict=True))
             fields |= {name: np.array(term) for name, term in terms.items()}
@@ -183,7 +202,7 @@ def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[
     fields["restitution"] = np.array(contacts.restitution)
     if isinstance(contacts, LinearContacts):
         return fields | {
-            "G": np.array(contacts.G),
+            "G": dense("G", contacts.G),
             "offset": np.array(contacts.offset),
             "motion": contacts.motion or ABSENT,
         }

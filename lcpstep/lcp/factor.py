@@ -38,13 +38,13 @@ def factoriser(W: Any) -> Factoriser:
     if not is_sparse(W):
         return Dense(W)
     k = half_bandwidth(W)
-    if k <= 1 and (W.diagonal(1) == W.diagonal(-1)).all():
+    if k <= 1 < W.shape[0] and (W.diagonal(1) == W.diagonal(-1)).all():
         return Tridiagonal(W)
     if k <= NARROW:
         return Banded(W, None)
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
-    order = reverse_cuthill_mckee(W, symmetric_mode=False)
+    order = reverse_cuthill_mckee(abs(W), symmetric_mode=False)  # it adds the transpose: nothing may cancel
     permuted = W[order][:, order]
     return Banded(permuted, order) if half_bandwidth(permuted) <= NARROW else General(W)
 

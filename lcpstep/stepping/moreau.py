@@ -19,7 +19,7 @@ from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import Model, culprit, model, models
 from lcpstep.recording import Kept, Recorder
-from lcpstep.stepping import constrained
+from lcpstep.stepping import constrained, sparse
 from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
@@ -76,6 +76,8 @@ class Moreau:
                 f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '
                 f"compiled with the loop; got {self.lcp!r} for {scene.name!r}"
             )
+        if sparse.is_sparse(scene) and not self.beyond_contacts(scene):
+            return sparse.Run(self, scene, kept).finish(progress)
         return _Run(self, scene, kept).finish(progress)
 
 
