@@ -67,9 +67,8 @@ class ClosedForm(Run):
         self.model = m
         self.start = numbers(scene, m, o, method)
         self.flight = flight_of(scene, m, self.start.copy())
-        self.run, self.evaluate = single.run, single.evaluate
-        if fast:
-            self.run, self.evaluate = compiled(single.run), compiled(single.evaluate)
+        self.fast = fast
+        self.run = compiled(single.run) if fast else single.run
 
     @property
     def now(self) -> float:
@@ -99,8 +98,9 @@ class ClosedForm(Run):
         """States at any time, from the kept ones and the flights that start there."""
 
         def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
+            kernel = compiled(single.evaluate) if self.fast else single.evaluate
             out = single.Wanted(times, row, np.zeros((len(times), 1)), np.zeros((len(times), 1)))
-            self.evaluate(flight_of(self.scene, self.model, self.start.copy()), s, out)
+            kernel(flight_of(self.scene, self.model, self.start.copy()), s, out)
             return out.q, out.v
 
         result: Callable[[Array], tuple[Array, Array]] = between(

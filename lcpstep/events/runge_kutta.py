@@ -54,9 +54,8 @@ class RungeKutta(Run):
         super().__init__(method, scene, kept, dense=kept.all)
         self.model, self.flow, self.piece = m, flow(scene, method), piece(scene, m)
         self.work, self.tableau = dop853.work(2 * scene.n_q), dop853.tableau()
-        self.run, self.evaluate = loop.run, loop.evaluate
-        if fast:
-            self.run, self.evaluate = compiled(loop.run), compiled(loop.evaluate)
+        self.fast = fast
+        self.run = compiled(loop.run) if fast else loop.run
         self.x = np.zeros(loop.N_NUMBERS)
         self.x[loop.NOW] = scene.t_span[0]
         self.x[loop.HOLD] = self.x[loop.LAST_EVENT] = -math.inf
@@ -93,7 +92,8 @@ class RungeKutta(Run):
         def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
             out = loop.Wanted(times, row, np.zeros((len(times), n_q)), np.zeros((len(times), n_q)))
             work = dop853.work(2 * n_q)
-            self.evaluate(self.model, self.flow, piece(self.scene, self.model), work, s, dense, out)
+            kernel = compiled(loop.evaluate) if self.fast else loop.evaluate
+            kernel(self.model, self.flow, piece(self.scene, self.model), work, s, dense, out)
             return out.q, out.v
 
         result: Callable[[Array], tuple[Array, Array]] = between(self.kept.all, s, evaluate)

@@ -189,3 +189,19 @@ def test_an_impact_on_a_corner_is_located():
     assert phase == pytest.approx(corners[impact.corner], abs=1e-10)
     with pytest.raises(ValueError, match="p_range"):
         corner_crossings(resting, (2.0, 1.0))
+
+
+def test_the_command_finds_the_corner_impact_and_keeps_what_is_there(capsys, tmp_path):
+    import json
+
+    from lcpstep.cli import main
+
+    call = ["corner", "cam-follower", "--points", "5", "--json", "--no-picture", "--out", str(tmp_path)]
+    assert main(call) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["value"] == pytest.approx(673.234445, abs=5e-7)
+    assert printed["verdict"] == "nonsmooth fold"
+    saved = json.loads((tmp_path / "corner.json").read_text())
+    assert len(saved["diagrams"]["full"]) == 5
+    assert main(call) == 2
+    assert "exists already" in capsys.readouterr().err

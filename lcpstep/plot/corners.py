@@ -1,0 +1,44 @@
+"""Bifurcation diagrams of a corner impact: of the local map and of the full system, side by side.
+
+The layout is that of G. Osorio, Complex Behavior in Impacting Systems, chapter 5.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def diagrams(
+    values: Array, local: Sequence[Array], full: Sequence[Array], p: float, names: tuple[str, str], title: str
+) -> Any:
+    """Points of both maps over the parameter.
+
+    Parameters
+    ----------
+    values : (k,) parameters;  local, full : for each of them points (n, d) of the two maps, in absolute coordinates
+    p : parameter of the corner impact, drawn as a line
+    names : of the parameter and of the first coordinate, with their units
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 4.5), layout="constrained")
+    figure.suptitle(title)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    for ax, points, name in zip(axes, (local, full), ("local map", "full system"), strict=True):
+        x = np.concatenate([np.full(len(y), v) for v, y in zip(values, points, strict=True)])
+        y = np.concatenate([y[:, 0] for y in points])
+        ax.plot(x, y, "k.", ms=2.0)
+        ax.axvline(p, color="C3", lw=0.8)
+        ax.set(title=name, xlabel=names[0])
+        ax.grid(alpha=0.3)
+    axes[0].set_ylabel(names[1])
+    shown = np.concatenate([y[:, 0] for y in full] + [local[int(np.argmin(np.abs(values - p)))][:, 0]])
+    margin = 0.1 * max(float(np.ptp(shown)), 1e-300)
+    axes[0].set_ylim(np.min(shown) - margin, np.max(shown) + margin)  # the local map knows no far obstacle
+    return figure
