@@ -17,13 +17,25 @@ FALL = 0.9  # a flight of the bouncing ball, up and down [s]
 
 
 @check(
-    "bouncing-ball", "states through the accumulation", period=FALL, event_driven=1e-13, moreau=FIRST_ORDER
+    "bouncing-ball",
+    "states through the accumulation",
+    period=FALL,
+    event_driven=1e-13,
+    located=1e-12,
+    moreau=FIRST_ORDER,
 )
 def ball(solve: Solver) -> float:
     return state_error(solve, scenes.bouncing_ball())
 
 
-@check("bouncing-ball", "exactly at rest in the end", period=FALL, event_driven=0.0, moreau=0.0)
+@check(
+    "bouncing-ball",
+    "exactly at rest in the end",
+    period=FALL,
+    event_driven=0.0,
+    located=0.0,
+    moreau=0.0,
+)
 def ball_at_rest(solve: Solver) -> float:
     return float(abs(solve(scenes.bouncing_ball()).v[-1, 0]))
 
@@ -43,7 +55,19 @@ def steps_of_any_size(solve: Solver) -> Found:
     return Found(worst, "errors " + " ".join(note))
 
 
-@check("dyadic-ball", "times of the impacts", period=1.0, event_driven=1e-15, moreau=0.01)
+@check("bouncing-ball", "steps from 1e-5 s to 1 s: states", period=FALL, located=1e-12)
+def any_size_exact(solve: Solver) -> Found:
+    worst, note = 0.0, []
+    for h in 10.0 ** np.arange(-5.0, 0.5):
+        one = Solver(solve.method, FALL)
+        one.h = float(h)
+        worst = max(worst, error := state_error(one, scenes.bouncing_ball()))
+        solve.seconds += one.seconds
+        note.append(f"{error:.0e}")
+    return Found(worst, "errors " + " ".join(note))
+
+
+@check("dyadic-ball", "times of the impacts", period=1.0, event_driven=1e-15, located=1e-15, moreau=0.01)
 def dyadic_times(solve: Solver) -> float:
     log = solve(scenes.dyadic_ball()).impacts
     n = 20 if solve.method != "moreau" else 5
@@ -55,7 +79,13 @@ def dyadic_times(solve: Solver) -> float:
     )
 
 
-@check("dyadic-ball", "the same answer for h and h (1 + eps)", period=1.0, moreau=FIRST_ORDER)
+@check(
+    "dyadic-ball",
+    "the same answer for h and h (1 + eps)",
+    period=1.0,
+    located=1e-12,
+    moreau=FIRST_ORDER,
+)
 def dyadic_step(solve: Solver) -> float:
     h, scene = 2.0**-10, scenes.dyadic_ball(t_end=2.25)
     ends = [solve(scene, h=x).q[-1, 0] for x in (h * (1.0 - 2.0**-52), h, h * (1.0 + 2.0**-52))]
@@ -84,14 +114,14 @@ def a_million_bounces(solve: Solver) -> float:
     return _bounces(solve, 1_000_000)
 
 
-@check("elastic-ball", "energy and phase after 100 bounces", period=FALL, moreau=0.1)
+@check("elastic-ball", "energy and phase after 100 bounces", period=FALL, located=1e-9, moreau=0.1)
 def some_bounces(solve: Solver) -> float:
     return _bounces(solve, 100)
 
 
 @check(
     "grazing", "speed of the touch at depths from 1e-2 to 1e-12 m, h = 0.1 s", period=10.0,
-    event_driven=1.6e-8, moreau=1.6e-8,
+    event_driven=1.6e-8, located=1.6e-8, moreau=1.6e-8,
 )  # fmt: skip
 def grazing_depths(solve: Solver) -> Found:
     worst, missed = 0.0, []

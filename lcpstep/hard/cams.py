@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from lagrangian import scenes
 from lagrangian.scenes.cam_follower import HALF_TURN, NOSE_END, NOSE_START, detachment_rpm
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
 from lcpstep.trajectory import Kind
 
 SHARE = 1e-3  # of a turn before and after the corner, through which the follower starts at rest on the cam
@@ -41,7 +41,10 @@ def first_detachment(solve: Solver) -> Found:
 
 
 @check(
-    "cam-follower", "detachment at the end of the nose, 134.873 rpm, relative", period=0.09, event_driven=1e-8
+    "cam-follower",
+    "detachment at the end of the nose, 134.873 rpm, relative",
+    period=0.09,
+    event_driven=1e-8,
 )
 def end_of_nose(solve: Solver) -> Found:
     # On the way down, where the follower comes off the top dwell: below this speed it leaves further down the nose
@@ -53,17 +56,38 @@ def _motion(solve: Solver, rpm: float, t_end: float, coordinates: str = "relativ
     return state_error(solve, scenes.cam_follower(rpm=rpm, t_end=t_end, coordinates=coordinates))
 
 
-@check("cam-follower", "states at 100 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "cam-follower",
+    "states at 100 rpm, 2 s",
+    period=0.18,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def slow(solve: Solver) -> float:
     return _motion(solve, 100.0, 2.0)
 
 
-@check("cam-follower", "states at 120 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "cam-follower",
+    "states at 120 rpm, 2 s",
+    period=0.18,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def leaving(solve: Solver) -> float:
     return _motion(solve, 120.0, 2.0)
 
 
-@check("cam-follower", "states at 358 rpm, 2 s", period=0.18, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "cam-follower",
+    "states at 358 rpm, 2 s",
+    period=0.18,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def fast(solve: Solver) -> float:
     return _motion(solve, 358.0, 2.0)
 
@@ -73,17 +97,32 @@ def fast(solve: Solver) -> float:
     "states at 358 rpm, 2 s, absolute coordinates",
     period=0.18,
     event_driven=1e-10,
+    located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
 def fast_absolute(solve: Solver) -> float:
     return _motion(solve, 358.0, 2.0, "absolute")
 
 
-@check("cam-follower", "states at 660 rpm, 2 s: chaotic", period=0.09, event_driven=1e-9, moreau=FIRST_ORDER)
+@check(
+    "cam-follower",
+    "states at 660 rpm, 2 s: chaotic",
+    period=0.09,
+    event_driven=1e-9,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def chaotic(solve: Solver) -> float:
     return _motion(solve, 660.0, 2.0)
 
 
-@check("cam-follower", "states at 700 rpm, 2 s", period=0.09, event_driven=1e-9, moreau=FIRST_ORDER)
+@check(
+    "cam-follower",
+    "states at 700 rpm, 2 s",
+    period=0.09,
+    event_driven=1e-9,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def faster(solve: Solver) -> float:
     return _motion(solve, 700.0, 2.0)

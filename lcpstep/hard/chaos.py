@@ -80,13 +80,25 @@ OSCILLATOR, CAM = 2.0 * math.pi / 2.2, 60.0 / 660.0  # periods of the forcing [s
 
 
 @check(
-    "chaotic-oscillator", "statistics, in standard errors", period=OSCILLATOR, event_driven=3.0, moreau=3.0
+    "chaotic-oscillator",
+    "statistics, in standard errors",
+    period=OSCILLATOR,
+    event_driven=3.0,
+    located=3.0,
+    moreau=3.0,
 )
 def oscillator(solve: Solver) -> Found:
     return _statistics(solve, scenes.chaotic_oscillator())
 
 
-@check("cam-follower", "statistics at 660 rpm, in standard errors", period=CAM, event_driven=3.0, moreau=3.0)
+@check(
+    "cam-follower",
+    "statistics at 660 rpm, in standard errors",
+    period=CAM,
+    event_driven=3.0,
+    located=3.0,
+    moreau=3.0,
+)
 def cam(solve: Solver) -> Found:
     return _statistics(solve, replace(scenes.cam_follower(rpm=660.0), exact=None))
 

@@ -9,7 +9,12 @@ A check is a function that gets a `Solver` and returns how far off the method is
 The bounds are those of excellent code with default settings, never fitted to what a method gives. `FIRST_ORDER`
 stands for what plain Moreau time-stepping promises: an impact moved by a step displaces the motion by no more than
 
-    h (sum of |u+ - u-| over all impacts + largest speed),  and no more than 5 % of the size of the motion.
+    h (sum of |u+ - u-| over all impacts + largest speed),  and no more than 5 % of the size of the motion;
+
+and `SECOND_ORDER` for what a step of order two promises, the phase that the trapezoidal rule loses in T/period
+periods:
+
+    size (2 pi h/period)^2 T/period,  and no more than 5 % of the size of the motion.
 """
 
 from __future__ import annotations
@@ -34,7 +39,7 @@ SAMPLES = 997  # times at which a motion is compared; a prime, to meet no grid o
 STEPS = 100  # per typical period
 MOREAU_STEPS = 1000  # the same for plain Moreau, which is of order one
 WORTHLESS = 0.05  # a motion that is off by this part of its size is another motion
-FIRST_ORDER = -1.0  # in the place of a bound
+FIRST_ORDER, SECOND_ORDER = -1.0, -2.0  # in the place of a bound
 
 
 class Stopped(Exception):
@@ -93,8 +98,8 @@ class Solver:
 
     def __init__(self, method: str, period: float) -> None:
         self.method = method
-        self.h = period / (MOREAU_STEPS if method == MOREAU else STEPS)
-        self.seconds = self.jumps = self.speed = self.size = 0.0
+        self.h, self.period = period / (MOREAU_STEPS if method == MOREAU else STEPS), period
+        self.seconds = self.jumps = self.speed = self.size = self.length = 0.0
 
     def __call__(self, scene: Scene, keep: Keep = 1, h: float | None = None) -> Trajectory:
         """The motion of a scene; `Stopped` where the run ends early."""
@@ -110,12 +115,18 @@ class Solver:
         log = run.impacts[run.impacts.kind == Kind.IMPACT]
         self.jumps = max(self.jumps, float(np.sum(np.abs(log.after - log.before))))
         self.speed = max(self.speed, float(np.max(np.abs(run.v), initial=0.0)))
+        self.length = max(self.length, t_end - t_start)
         self.size = max(self.size, float(np.max(np.ptp(run.q, axis=0), initial=0.0)))
         return run
 
     def first_order(self) -> float:
         """What order one allows: see the head of this file."""
         return min(self.h * (self.jumps + self.speed), WORTHLESS * self.size)
+
+    def second_order(self) -> float:
+        """What order two allows: see the head of this file."""
+        lost = (2.0 * np.pi * self.h / self.period) ** 2 * self.length / self.period
+        return min(lost, WORTHLESS) * self.size
 
 
 @dataclass(frozen=True)
@@ -149,7 +160,7 @@ def check(
 def run_check(c: Check, method: str) -> Row:
     """Put one method to a check."""
     solve, bound = Solver(method, c.period), c.bounds[method]
-    shown = None if bound == FIRST_ORDER else bound
+    shown = None if bound < 0.0 else bound
     try:
         found = c.measure(solve)
     except Stopped as stopped:
@@ -162,8 +173,8 @@ def run_check(c: Check, method: str) -> Row:
         note = f"{type(error).__name__}: {error}"
         return Row(c.scene, c.what, method, "failed", None, shown, solve.seconds, note)
     found = found if isinstance(found, Found) else Found(float(found))
-    if bound == FIRST_ORDER:
-        bound = solve.first_order()
+    if bound < 0.0:
+        bound = solve.first_order() if bound == FIRST_ORDER else solve.second_order()
     outcome = "passed" if found.error <= bound else "failed"
     return Row(c.scene, c.what, method, outcome, found.error, bound, solve.seconds, found.note)
 

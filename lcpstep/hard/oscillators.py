@@ -8,16 +8,23 @@ import numpy as np
 
 from lagrangian import scenes
 from lagrangian.scenes.chain import ChainMotion
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
 from lcpstep.trajectory import Kind
 
 
-@check("impact-oscillator", "states, T = 100 s", period=math.pi, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "impact-oscillator",
+    "states, T = 100 s",
+    period=math.pi,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def impacts(solve: Solver) -> float:
     return state_error(solve, scenes.impact_oscillator())
 
 
-@check("impact-oscillator", "number of impacts", period=math.pi, event_driven=0.0, moreau=0.0)
+@check("impact-oscillator", "number of impacts", period=math.pi, event_driven=0.0, located=0.0, moreau=0.0)
 def number_of_impacts(solve: Solver) -> float:
     log = solve(scenes.impact_oscillator()).impacts
     return abs(int(np.sum(log.kind == Kind.IMPACT)) - 32)
@@ -42,20 +49,28 @@ def steps_of_any_size(solve: Solver) -> Found:
     "states through chattering and sticking",
     period=6.28,
     event_driven=1e-9,
+    located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
 def sticking(solve: Solver) -> float:
     return state_error(solve, scenes.sticking_oscillator())
 
 
-@check("sticking-oscillator", "phase of the releases [rad]", period=6.28, event_driven=1e-9)
+@check("sticking-oscillator", "phase of the releases [rad]", period=6.28, event_driven=1e-9, located=4e-3)
 def release(solve: Solver) -> float:
     log = solve(scenes.sticking_oscillator()).impacts
     phases = 0.25 * log.time[log.kind == Kind.RELEASE] % (2.0 * math.pi)
     return float(np.max(np.abs(phases - math.acos(0.25)))) if len(phases) == 3 else math.inf
 
 
-@check("elastic-chain", "states, 10 springs", period=0.5, event_driven=1e-9, moreau=FIRST_ORDER)
+@check(
+    "elastic-chain",
+    "states, 10 springs",
+    period=0.5,
+    event_driven=1e-9,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def chain(solve: Solver) -> float:
     return state_error(solve, scenes.elastic_chain(n=10))
 
@@ -69,16 +84,23 @@ def _release_time(solve: Solver, n: int) -> float:
     return float(abs(found[0] - scene.exact.releases[0])) if len(found) else math.inf
 
 
-@check("elastic-chain", "time of release, 2 springs", period=0.5, event_driven=1e-9)
+@check("elastic-chain", "time of release, 2 springs", period=0.5, event_driven=1e-9, located=2e-3)
 def release_2(solve: Solver) -> float:
     return _release_time(solve, 2)
 
 
-@check("elastic-chain", "time of release, 100 springs", period=0.05, event_driven=1e-9)
+@check("elastic-chain", "time of release, 100 springs", period=0.05, event_driven=1e-9, located=2e-3)
 def release_100(solve: Solver) -> float:
     return _release_time(solve, 100)
 
 
-@check("elastic-chain", "time of release, 1000 springs", period=0.005, heavy=True, event_driven=1e-9)
+@check(
+    "elastic-chain",
+    "time of release, 1000 springs",
+    period=0.005,
+    heavy=True,
+    event_driven=1e-9,
+    located=2e-3,
+)
 def release_1000(solve: Solver) -> float:
     return _release_time(solve, 1000)

@@ -11,31 +11,57 @@ from lagrangian.scenes.double_pendulum import REFERENCE_IMPACTS, REFERENCE_STATE
 from lagrangian.scenes.pendulum import tension
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, sample_times, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, sample_times, state_error
 from lcpstep.trajectory import Kind
 
 SWING = 2.0  # period of pendulums of a metre [s]
 QUADRATURE = 8  # nodes for the impulse of a force
 
 
-@check("pendulum-stop", "states, as an angle", period=SWING, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "pendulum-stop",
+    "states, as an angle",
+    period=SWING,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def angle(solve: Solver) -> float:
     return state_error(solve, scenes.pendulum_stop())
 
 
-@check("pendulum-stop", "states, as a point on a rod", period=SWING, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "pendulum-stop",
+    "states, as a point on a rod",
+    period=SWING,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def rod(solve: Solver) -> float:
     return state_error(solve, scenes.pendulum_stop(form="rod"))
 
 
-@check("pendulum-stop", "length of the rod", period=SWING, event_driven=1e-12, moreau=FIRST_ORDER)
+@check(
+    "pendulum-stop",
+    "length of the rod",
+    period=SWING,
+    event_driven=1e-12,
+    located=1e-12,
+    moreau=FIRST_ORDER,
+)
 def length(solve: Solver) -> float:
     run = solve(scenes.pendulum_stop(form="rod"))
     return float(np.max(np.abs(np.hypot(run.q[:, 0], run.q[:, 1]) - 1.0)))
 
 
 @check(
-    "pendulum-stop", "tension of the rod, mean over 0.05 s [N]", period=SWING, event_driven=1e-8, moreau=0.05
+    "pendulum-stop",
+    "tension of the rod, mean over 0.05 s [N]",
+    period=SWING,
+    event_driven=1e-8,
+    located=1e-2,
+    moreau=0.05,
 )
 def rod_tension(solve: Solver) -> float:
     scene = scenes.pendulum_stop(form="rod")
@@ -55,13 +81,22 @@ def rod_tension(solve: Solver) -> float:
     return worst
 
 
-@check("double-pendulum", "states", period=SWING, event_driven=1e-10, moreau=FIRST_ORDER)
+@check(
+    "double-pendulum", "states", period=SWING, event_driven=1e-10, located=SECOND_ORDER, moreau=FIRST_ORDER
+)
 def double_states(solve: Solver) -> float:
     run = solve(scenes.double_pendulum(), keep=REFERENCE_TIMES)
     return float(np.max(np.abs(np.hstack([run.q, run.v]) - REFERENCE_STATES)))
 
 
-@check("double-pendulum", "times of the impacts", period=SWING, event_driven=1e-10, moreau=SWING / 200)
+@check(
+    "double-pendulum",
+    "times of the impacts",
+    period=SWING,
+    event_driven=1e-10,
+    located=8e-3,
+    moreau=SWING / 200,
+)
 def double_impacts(solve: Solver) -> float:
     log = solve(scenes.double_pendulum()).impacts
     times = log.time[log.kind == Kind.IMPACT]
@@ -70,12 +105,12 @@ def double_impacts(solve: Solver) -> float:
     return float(np.max(np.abs(times - REFERENCE_IMPACTS)))
 
 
-@check("bowl", "states", period=SWING, event_driven=1e-9, moreau=FIRST_ORDER)
+@check("bowl", "states", period=SWING, event_driven=1e-9, located=SECOND_ORDER, moreau=FIRST_ORDER)
 def bowl(solve: Solver) -> float:
     return state_error(solve, scenes.bowl())
 
 
-@check("bowl", "gap while it slides", period=SWING, event_driven=1e-12, moreau=FIRST_ORDER)
+@check("bowl", "gap while it slides", period=SWING, event_driven=1e-12, located=1e-12, moreau=FIRST_ORDER)
 def bowl_gap(solve: Solver) -> float:
     scene = scenes.bowl()
     run = solve(scene, keep=sample_times(scene))
@@ -83,7 +118,14 @@ def bowl_gap(solve: Solver) -> float:
     return float(np.max(np.abs(1.0 - np.hypot(run.q[sliding, 0], run.q[sliding, 1]))))
 
 
-@check("rocking-block", "states, angle alone", period=0.6, event_driven=1e-9, moreau=FIRST_ORDER)
+@check(
+    "rocking-block",
+    "states, angle alone",
+    period=0.6,
+    event_driven=1e-9,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
 def rocking(solve: Solver) -> float:
     return state_error(solve, scenes.rocking_block())
 
@@ -93,6 +135,7 @@ def rocking(solve: Solver) -> float:
     "times of 20 impacts and rates after them",
     period=0.6,
     event_driven=1e-9,
+    located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
 def rocking_impacts(solve: Solver) -> float:
@@ -116,7 +159,11 @@ TURN = 2.0 * math.pi / 150.0  # of the crank [s]
 
 
 @check(
-    "slider-crank", "states, no friction, against half the step or tolerance", period=TURN, moreau=FIRST_ORDER
+    "slider-crank",
+    "states, no friction, against half the step or tolerance",
+    period=TURN,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
 )
 def crank_converges(solve: Solver) -> Found:
     scene = scenes.slider_crank(mu=0.0)
@@ -128,7 +175,14 @@ def crank_converges(solve: Solver) -> Found:
     return Found(float(np.max(np.abs(coarse.q - fine.q))), f"{hits[0]} and {hits[1]} impacts")
 
 
-@check("slider-crank", "energy gained, no friction, relative", period=TURN, event_driven=1e-11, moreau=1e-3)
+@check(
+    "slider-crank",
+    "energy gained, no friction, relative",
+    period=TURN,
+    event_driven=1e-11,
+    located=1e-4,
+    moreau=1e-3,
+)
 def crank_energy(solve: Solver) -> float:
     return _energy_gained(solve, 0.0)
 

@@ -28,22 +28,22 @@ def _feet(solve: Solver, n: int, steps: int) -> Found:
     return Found(max(parts.values()), ", ".join(f"{name} {x:.0e}" for name, x in parts.items()))
 
 
-@check("block-on-feet", "at rest on 2 feet, 1e5 steps", event_driven=1e-13, moreau=1e-13)
+@check("block-on-feet", "at rest on 2 feet, 1e5 steps", event_driven=1e-13, located=1e-13, moreau=1e-13)
 def two_feet(solve: Solver) -> Found:
     return _feet(solve, 2, STEPS_AT_REST)
 
 
-@check("block-on-feet", "at rest on 10 feet, 1e5 steps", event_driven=1e-13, moreau=1e-13)
+@check("block-on-feet", "at rest on 10 feet, 1e5 steps", event_driven=1e-13, located=1e-13, moreau=1e-13)
 def ten_feet(solve: Solver) -> Found:
     return _feet(solve, 10, STEPS_AT_REST)
 
 
-@check("block-on-feet", "at rest on 100 feet, 1e3 steps", event_driven=1e-13, moreau=1e-13)
+@check("block-on-feet", "at rest on 100 feet, 1e3 steps", event_driven=1e-13, located=1e-13, moreau=1e-13)
 def many_feet(solve: Solver) -> Found:
     return _feet(solve, 100, 2**10)
 
 
-@check("stack", "at rest, 10 blocks on 20 feet, 1e4 steps", event_driven=1e-13, moreau=1e-13)
+@check("stack", "at rest, 10 blocks on 20 feet, 1e4 steps", event_driven=1e-13, located=1e-13, moreau=1e-13)
 def stack(solve: Solver) -> Found:
     run = solve(scenes.stack(), keep=np.array([1.0 - LAST, 1.0]), h=2.0**-13)
     forces = run.impulse[-1].reshape(-1, 2) / LAST
@@ -63,16 +63,34 @@ def _heavy(solve: Solver, ratio: float) -> Found:
     return Found(float(np.max(np.abs(error))), f"speed {float(np.max(np.abs(run.v))):.0e}")
 
 
-@check("heavy-on-light", "contact forces, mass ratio 1e3, relative", event_driven=1e-14, moreau=1e-13)
+@check(
+    "heavy-on-light",
+    "contact forces, mass ratio 1e3, relative",
+    event_driven=1e-14,
+    located=1e-14,
+    moreau=1e-13,
+)
 def heavy_3(solve: Solver) -> Found:
     return _heavy(solve, 1e3)
 
 
-@check("heavy-on-light", "contact forces, mass ratio 1e9, relative", event_driven=1e-14, moreau=1e-13)
+@check(
+    "heavy-on-light",
+    "contact forces, mass ratio 1e9, relative",
+    event_driven=1e-14,
+    located=1e-14,
+    moreau=1e-13,
+)
 def heavy_9(solve: Solver) -> Found:
     return _heavy(solve, 1e9)
 
 
-@check("heavy-on-light", "contact forces, mass ratio 1e12, relative", event_driven=1e-14, moreau=1e-13)
+@check(
+    "heavy-on-light",
+    "contact forces, mass ratio 1e12, relative",
+    event_driven=1e-14,
+    located=1e-14,
+    moreau=1e-13,
+)
 def heavy_12(solve: Solver) -> Found:
     return _heavy(solve, 1e12)

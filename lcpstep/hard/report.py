@@ -44,7 +44,9 @@ def markdown(rows: Iterable[Row]) -> str:
         "event-driven runs have their default tolerances. `error` is the largest error of the positions or the mean",
         "error of the velocities where the check does not say otherwise (of plain Moreau the positions alone).",
         "`bound` is what excellent code reaches; for plain Moreau what its order one allows:",
-        f"h (sum of the velocity jumps + largest speed), at most {100 * WORTHLESS:g} % of the size of the motion.",
+        "h (sum of the velocity jumps + largest speed), and for located steps where the motion is no parabola what",
+        "order two allows: size (2 pi h/period)^2 (T/period); both at most "
+        f"{100 * WORTHLESS:g} % of the size of the motion.",
         "A failure is a failure of the method at these settings, and is listed as one.",
         "",
         *(f"- {text}" for text in summary(rows).splitlines()),
