@@ -67,20 +67,25 @@ def sweep(
         jobs = (os.cpu_count() or 1) if jobs is None else checks.count("jobs", jobs)
         own = executor = ThreadPoolExecutor(max_workers=jobs)
     running: dict[Future[Any], tuple[int, int]] = {}
+
+    def take(future: Future[Any]) -> int:
+        i, k = running.pop(future)
+        arrays, handed = future.result()
+        results[i][k] = (arrays, handed)
+        store.save(i, k, arrays, handed)
+        return i
+
     try:
         for i in range(len(chains)):
             _submit(executor, work, chains, results, i, running)
         while running:
             report(progress, results, total)
             done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                i, k = running.pop(future)
-                arrays, handed = future.result()
-                results[i][k] = (arrays, handed)
-                store.save(i, k, arrays, handed)
-                _submit(executor, work, chains, results, i, running)
+            for future in sorted(done, key=lambda f: running[f]):
+                _submit(executor, work, chains, results, take(future), running)
         report(progress, results, total)
     except Exception as error:
+        _keep_finished(running, take)
         if _of_the_work(error):
             raise
         finished = sum(part is not None for chain in results for part in chain)
@@ -93,7 +98,15 @@ def sweep(
             future.cancel()
         if own is not None:
             own.shutdown(wait=True, cancel_futures=True)
+        _keep_finished(running, take)
     return [[part[0] for part in chain if part is not None] for chain in results]
+
+
+def _keep_finished(running: dict[Future[Any], tuple[int, int]], take: Callable[[Future[Any]], int]) -> None:
+    """Take over what was finished beside a failure."""
+    for future in list(running):
+        if future.done() and not future.cancelled() and future.exception() is None:
+            take(future)
 
 
 def report(progress: Callable[[int, int], None] | None, results: list[list[Any]], total: int) -> None:

@@ -42,7 +42,8 @@ class Attractor:
     ----------
     periods : n of an O(n, m), 0 where the motion is aperiodic
     impacts : m, impacts in n periods; their mean per period where the motion is aperiodic
-    sticks : whether the contact closes for good on the way: complete chattering, or an impact without rebound
+    landings : how often in n periods the contact closes for good, after complete chattering or an impact without
+        rebound; in one period, on the average, where the motion is aperiodic
     points : (k, 2 n_q)   states (q, v) on the section: n of them, or many where the motion is aperiodic
     impact_phase, impact_before, impact_after : (m,)   impacts: phase in [0, 1), gap velocities [m/s]
     lyapunov : largest Lyapunov exponent, per period of the forcing
@@ -51,7 +52,7 @@ class Attractor:
 
     periods: int
     impacts: float
-    sticks: bool
+    landings: float
     points: Array
     impact_phase: Array
     impact_before: Array
@@ -63,7 +64,7 @@ class Attractor:
     def name(self) -> str:
         """O(n, m), O(n, chattering), chaotic, or aperiodic where chaos is not certain."""
         if self.periods:
-            return f"O({self.periods}, {'chattering' if self.sticks else round(self.impacts)})"
+            return f"O({self.periods}, {'chattering' if self.landings else round(self.impacts)})"
         return "chaotic" if self.lyapunov.chaotic else "aperiodic"
 
 
@@ -174,7 +175,7 @@ def _described(P: PeriodMap, runs: Periods, i: int, n: int) -> Attractor:
     return Attractor(
         periods=n,
         impacts=float(np.sum(runs.impacts[i, -kept:])) / (1 if n else kept),
-        sticks=bool(np.any(runs.ends[i, -kept:])),
+        landings=float(np.sum(runs.ends[i, -kept:])) / (1 if n else kept),
         points=states[-kept:],
         impact_phase=runs.time[i, -kept:][shown] / P.scene.period % 1.0,
         impact_before=runs.before[i, -kept:][shown],

@@ -1,0 +1,191 @@
+"""Attractors, diagrams and basins: known maps first, then the findings of the thesis from the library's own eyes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian.scenes import cam_follower
+from lcpstep import EventDriven, Moreau
+from lcpstep.analysis.attractors import attractors, random_starts, return_time
+from lcpstep.analysis.basins import OBSTACLE, Grid, basins, homogeneous, spread
+from lcpstep.analysis.bifurcation import bifurcation
+from lcpstep.analysis.likeness import Sample, likeness, sample
+from lcpstep.analysis.lyapunov import lyapunov
+from lcpstep.maps import periods
+from tests.analysis.test_maps import table
+
+BOX = [[0.0, -60.0], [1.5, 60.0]]
+FIRST_DETACHMENT = 114.979  # rpm
+
+
+def names(rpm, n=12, **settings):
+    starts = np.vstack([[0.0, 0.0], random_starts(BOX, n, 1)])
+    found = attractors(cam_follower(rpm=rpm), EventDriven(), starts, **({"window": 120} | settings))
+    return {a.name: a for a in found.found}
+
+
+def test_exponents_of_known_maps():
+    assert lyapunov(lambda x: 4.0 * x * (1.0 - x), [0.3], 20_000).largest == pytest.approx(
+        math.log(2), abs=2e-3
+    )
+    A = np.array([[2.0, 1.0], [1.0, 1.0]])
+    cat = lyapunov(lambda x: A @ x % 1.0, [0.1, 0.2], 3000)  # differenced across no jump of the map
+    assert cat.largest == pytest.approx(math.log((3.0 + math.sqrt(5.0)) / 2.0), abs=1e-2)
+    assert cat.chaotic
+    stable = lyapunov(lambda x: 3.3 * x * (1.0 - x), [0.3], 4000, drop=500)
+    assert stable.largest == pytest.approx(0.5 * math.log(abs(4.0 + 2.0 * 3.3 - 3.3**2)), abs=1e-3)
+    assert not stable.chaotic
+
+
+def test_return_times_of_the_logistic_map():
+    for a, n in ((2.8, 1), (3.3, 2), (3.5, 4), (3.84, 3), (3.9, 0)):
+        x = [0.3]
+        for _ in range(3000):
+            x.append(a * x[-1] * (1.0 - x[-1]))
+        assert return_time(np.array(x[-200:])[:, None], 60, 1e-9) == n
+
+
+def test_the_ball_on_a_table_goes_to_its_orbit_of_period_one():
+    found = attractors(table(A=0.01125, e=0.3), EventDriven(), [[0.05, 0.0], [0.06, 0.3]], transient=400)
+    assert "O(1, 1)" in [a.name for a in found.found]
+
+
+def test_findings_of_the_thesis_at_single_speeds():
+    assert set(names(FIRST_DETACHMENT - 0.01)) == {"O(1, 0)"}  # never leaves the cam
+    assert set(names(FIRST_DETACHMENT + 0.01)) == {"O(1, chattering)"}
+    assert set(names(700.0)) == {"O(1, 1)"}
+    coexisting = names(358.5, 40)
+    assert set(coexisting) == {"O(3, 8)", "O(1, 2)"}
+    # O(1, 2) in 8 log 0.8 / 4 per period: the determinant of the monodromy matrix is 0.8^4
+    assert coexisting["O(1, 2)"].lyapunov.largest == pytest.approx(2.0 * math.log(0.8), abs=1e-6)
+    assert coexisting["O(3, 8)"].lyapunov.largest == pytest.approx(8.0 / 3.0 * math.log(0.8), abs=1e-6)
+
+
+def test_chaos_at_660_rpm():
+    (found,) = names(660.0, 3).values()
+    assert found.name == "chaotic"
+    assert found.lyapunov.largest > 5.0 * found.lyapunov.error
+
+
+def test_detachment_and_the_number_of_chattering_sequences_after_it():
+    # How often the follower comes to rest on the cam within a period, by complete chattering
+    def landings(rpm):
+        return int(periods(cam_follower(rpm=rpm), EventDriven(), [0.0, 0.0], 12, drop=10).ends[0, -1])
+
+    low, high = 114.0, 116.0
+    while high - low > 1e-7:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if landings(middle) == 0 else (low, middle)
+    assert high == pytest.approx(FIRST_DETACHMENT, abs=1e-3)
+    assert landings(high + 1e-3) == landings(125.0) == 2
+    assert landings(150.0) == 1
+
+
+def test_rounding_does_not_pass_for_an_attractor():
+    # From rest on the cam the motion sticks now and then; in between it amplifies rounding errors to its own size,
+    # so a cycle of sticking phases that closes in rounded arithmetic is none.
+    assert set(names(358.5, 1, transient=600)) <= {"O(3, 8)", "O(1, 2)"}
+
+
+def test_time_stepping_finds_the_same_attractor_from_finer_steps():
+    scene = cam_follower(rpm=700.0)
+    h = scene.period / 2000
+    found = attractors(scene, Moreau(h=h), random_starts(BOX, 10, 3), transient=300, window=120)
+    assert found.found[0].name == "O(1, 1)"
+    assert found.found[0].share >= 0.8
+
+
+def test_a_diagram_of_time_stepping_approaches_the_event_driven_one():
+    speeds = np.linspace(690.0, 735.0, 10)  # O(1, 1), stable throughout
+    settings = {"drop": 200, "keep": 20}
+    exact = bifurcation(cam_follower, "rpm", speeds, **settings)
+    assert np.all(exact["impacts"] == 1)
+    errors = []
+    for steps in (500, 2000, 8000):
+        stepped = bifurcation(
+            cam_follower, "rpm", speeds, method=Moreau(h=60.0 / 735.0 / steps), x0=[1.33, -66.0], **settings
+        )
+        phase = stepped["impact_phase"].isel(impact=0).mean("period")
+        errors.append(float(np.abs(phase - exact["impact_phase"].isel(impact=0).mean("period")).mean()))
+    assert errors[2] < errors[1] < errors[0]
+    assert errors[2] < 0.02
+
+
+def test_forward_and_backward_diagrams_show_hysteresis():
+    # The unstable branch of O(1, 1) beyond its nonsmooth fold at 673.23 rpm separates it from chaos
+    speeds = np.linspace(665.0, 700.0, 8)
+    down = bifurcation(cam_follower, "rpm", speeds, start="backward", x0=[1.33, -66.2], drop=150, keep=20)
+    assert np.all(down["impacts"].sel(rpm=[680.0, 700.0]) == 1)
+    assert np.ptp(down["v"].sel(rpm=665.0).values) > 1.0
+
+
+def known_basins(f, size=256):
+    """Cells of a map f on the square (-1, 1)^2 whose attractors are (1/2, 0) and (-1/2, 0)."""
+    grid = Grid(np.array([-1.0, -1.0]), np.array([1.0, 1.0]), size, size)
+    x = grid.centres(np.arange(size * size))
+    label = np.full(len(x), -1)
+    label[np.hypot(x[:, 0] - 0.5, x[:, 1]) < 0.2] = 0
+    label[np.hypot(x[:, 0] + 0.5, x[:, 1]) < 0.2] = 1
+    cells, image = np.arange(len(x)), f(x)
+    spread(grid, cells, grid.cell(image)[:, None], label)
+    return x, label
+
+
+def test_cells_share_labels_only_where_they_are_right():
+    # x -> x - (x^3 - x/4), y -> y/2: the sign of x decides
+    x, label = known_basins(lambda x: np.stack([x[:, 0] * (1.25 - x[:, 0] ** 2), 0.5 * x[:, 1]], axis=1))
+    labelled = label >= 0
+    assert np.mean(labelled) > 0.9
+    assert np.array_equal(label[labelled], (x[labelled, 0] < 0.0).astype(int))
+
+
+def test_a_neighbourhood_is_homogeneous_only_if_all_of_it_is():
+    label = np.zeros((5, 5), dtype=int)
+    label[0, 0] = 1
+    inner = homogeneous(label)
+    assert inner[1, 1] == -1
+    assert inner[2, 2] == inner[3, 3] == 0
+    assert np.all(inner[0] == -1)
+
+
+def test_basins_agree_with_runs_followed_one_by_one_and_divide_into_any_parts(monkeypatch):
+    from lcpstep.analysis import basins as module
+
+    scene, corners = cam_follower(rpm=358.5, coordinates="absolute"), ([0.05, -60.0], [1.6, 60.0])
+    data = basins(scene, *corners, (60, 60), sample=600)
+    assert data.attrs["unlabelled"] == 0.0
+    shares = dict(zip(data["name"].values, data["share"].values, strict=True))
+    assert shares["O(3, 8)"] == pytest.approx(0.7615, abs=0.02)  # of a grid of 1000 x 1000 cells
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert np.all(data["label"].sel(q=slice(None, 0.0999)) == OBSTACLE)
+    assert data.attrs["wrong_labels_upper_bound"] < 0.01
+    monkeypatch.setattr(module, "PART", 700)
+    again = basins(scene, *corners, (60, 60), sample=600, jobs=1)
+    assert np.array_equal(again["label"], data["label"])
+
+
+def blocks(random, n, shift=0.0):
+    phase = [random.normal(0.5 + shift, 0.1, 50) % 1.0 for _ in range(n)]
+    return Sample(phase, [-random.exponential(1.0, 50) for _ in range(n)], 50, np.zeros((1, 2)))
+
+
+def test_samples_of_one_distribution_are_alike_and_of_two_are_not(monkeypatch):
+    monkeypatch.setattr("lcpstep.analysis.likeness.RESAMPLES", 300)
+    random = np.random.default_rng(0)
+    same = [likeness(blocks(random, 40), blocks(random, 40)) for _ in range(12)]
+    for name in ("phase", "velocity"):  # probabilities are uniform: a mean of twelve has a deviation of 0.08
+        assert 0.2 < np.mean([x[name].p_value for x in same]) < 0.8
+    other = likeness(blocks(random, 40), blocks(random, 40, shift=0.05))
+    assert other["phase"].p_value < 0.01
+    # Kuiper's distance of two normal distributions apart by half a standard deviation
+    exact = 2.0 * 0.5 * (1.0 + math.erf(0.25 / math.sqrt(2.0))) - 1.0
+    assert other["phase"].distance == pytest.approx(exact, abs=0.03)
+    assert other["phase"].low <= other["phase"].distance <= other["phase"].high + 0.01
+
+
+def test_two_chaotic_runs_of_one_method_are_one_attractor():
+    scene = cam_follower(rpm=660.0)
+    a, b = (sample(scene, EventDriven(), x, 4000, drop=200) for x in ([0.4, 0.4], [0.9, -3.0]))
+    found = likeness(a, b)
+    assert min(x.p_value for x in found.values()) > 0.01

@@ -1,0 +1,113 @@
+"""The commands attractor, bifurcation, basin and orbit: files, numbers, and what wrong arguments get."""
+
+import json
+
+import pytest
+
+from lcpstep.cli import main
+from lcpstep.cli.common import DONE, FAILED, USAGE
+
+xarray = pytest.importorskip("xarray")
+
+
+def run(capsys, *arguments):
+    status = main([str(x) for x in arguments])
+    return status, *capsys.readouterr()
+
+
+def test_attractor_classifies_saves_and_compares(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 30, "--compare", 400, "--h", 2e-5,
+        "--out", tmp_path, "--json",
+    )  # fmt: skip
+    assert status == DONE
+    found = json.loads(out[out.index("{") :])
+    assert {a["name"] for a in found["attractors"]} == {"O(3, 8)", "O(1, 2)"}
+    assert 0.0 <= found["likeness"]["phase"]["p_value"] <= 1.0
+    with xarray.open_dataset(tmp_path / "attractors.nc") as data:
+        assert data["start"].shape == (30, 2)
+        assert data.attrs["seed"] == 0
+    assert (tmp_path / "attractors.png").stat().st_size > 1000
+
+
+def test_bifurcation_draws_a_window_and_leaves_no_parts(capsys, tmp_path):
+    arguments = (
+        "bifurcation", "cam-follower", "--window", "660-760", "--points", 10, "--drop", 50, "--keep", 5,
+        "--start", "backward", "--jobs", 2, "--out", tmp_path,
+    )  # fmt: skip
+    assert run(capsys, *arguments)[0] == DONE
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["bifurcation.nc", "bifurcation.png"]
+    with xarray.open_dataset(tmp_path / "bifurcation.nc") as data:
+        assert (float(data["rpm"][0]), float(data["rpm"][-1])) == (660.0, 760.0)
+        assert data.sizes["period"] == 5
+    status, _, err = run(capsys, *arguments)
+    assert status == USAGE
+    assert "exists already; --overwrite" in err
+    assert run(capsys, *arguments, "--overwrite")[0] == DONE
+
+
+def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "basin", "cam-follower", "--rpm", 358.5, "--grid", 40, 30, "--sample", 100, "--out", tmp_path
+    )
+    assert status == DONE
+    assert "O(3, 8)" in out
+    assert "+-" in out
+    with xarray.open_dataset(tmp_path / "basins.nc") as data:
+        assert data["label"].shape == (30, 40)
+
+
+def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "orbit", "cam-follower", "--rpm", 720, "--transient", 200, "--range", 715, 745,
+        "--points", 15, "--out", tmp_path,
+    )  # fmt: skip
+    assert status == DONE
+    assert "O(1, 1), stable" in out
+    assert "flip" in out
+    assert "739.31978" in out
+    with xarray.open_dataset(tmp_path / "branch.nc") as data:
+        assert "flip" in data["special_kind"].values
+
+
+def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "manifest.json").write_text("{}")
+    arguments = ("bifurcation", "cam-follower", "--window", "660-760", "--points", 3, "--out", tmp_path)
+    status, _, err = run(capsys, *arguments)
+    assert status == FAILED
+    assert "another sweep" in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["bifurcation", "cam-follower", "--window", "660-761"], "did you mean '660-760'"),
+        (["bifurcation", "cam-follower", "--range", "700", "600"], "--range: expected LOW < HIGH"),
+        (["bifurcation", "cam-follower", "--points", "0"], "--points: expected a positive number"),
+        (
+            ["bifurcation", "cam-follower", "--keep", "0", "--points", "2"],
+            "keep: expected a positive integer",
+        ),
+        (["bifurcation", "impact-oscillator"], "--range: expected LOW HIGH"),
+        (
+            ["bifurcation", "impact-oscillator", "--range", "1", "2"],
+            "unknown parameter of impact-oscillator 'rpm'",
+        ),
+        (["basin", "cam-follower", "--position", "1", "0"], "--position: expected LOW < HIGH"),
+        (["basin", "cam-follower", "--grid", "0", "5"], "shape: expected a positive integer"),
+        (["basin", "bouncing-ball"], "--position, --velocity"),
+        (["attractor", "impact-oscillator"], "--box"),
+        (["attractor", "cam-follower", "--rpm", "-1"], "rpm"),
+        (["attractor", "cam-follower", "--starts", "0"], "n: expected a positive integer"),
+        (["attractor", "cam-follower", "--window", "0"], "window: expected a positive integer"),
+        (["orbit", "cam-follower", "--periods", "0"], "n: expected a positive integer"),
+        (["orbit", "cam-follower", "--guess", "1"], "x: expected shape (2,)"),
+        (["orbit", "impact-oscillator", "--rpm", "3"], "--rpm"),
+    ],
+)
+def test_wrong_arguments_are_named(capsys, tmp_path, arguments, said):
+    status, _, err = run(capsys, *arguments, "--out", tmp_path / "new")
+    assert status == USAGE
+    assert said in err
+    assert not (tmp_path / "new").exists()
