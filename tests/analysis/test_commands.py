@@ -60,7 +60,7 @@ def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
 def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
     status, out, _ = run(
         capsys, "orbit", "cam-follower", "--rpm", 720, "--transient", 200, "--range", 715, 745,
-        "--points", 15, "--out", tmp_path,
+        "--points", 60, "--out", tmp_path,
     )  # fmt: skip
     assert status == DONE
     assert "O(1, 1), stable" in out
