@@ -102,7 +102,10 @@ def _dataset(ways: list[OrbitBranch], parameter: str, scene: Any, method: Any) -
         "name": (("point",), np.array([way.orbits[k].name for way, k in order])),
         "special_kind": (("special",), np.array([s.kind for s in special], dtype=str)),
         "special_p": (("special",), np.array([s.p for s in special])),
-        "special_x": (("special", "state"), np.array([s.x for s in special]).reshape(len(special), multipliers.shape[1])),
+        "special_x": (
+            ("special", "state"),
+            np.array([s.x for s in special]).reshape(len(special), multipliers.shape[1]),
+        ),
     }
     values = np.array([way.points.p[k] for way, k in order])
     attributes = provenance(scene, method) | {"parameter": parameter, "phase": up.phase}

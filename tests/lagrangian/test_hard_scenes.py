@@ -23,6 +23,10 @@ from tests.lagrangian.reference_double_pendulum import reference
 
 OPEN = 1e-4  # a gap beyond it is not about to close [m]
 ETA = 1e-5  # of the differences [s]
+ALWAYS_CLOSED = (  # or touching: each has a test of its own
+    "block-on-feet", "stack", "heavy-on-light", "rocking-block", "coulomb-oscillator", "slipping-wheel",
+    "sliding-block", "newtons-cradle", "jumping-table",
+)  # fmt: skip
 
 EXACT = [
     scenes.bouncing_ball(), scenes.bouncing_ball(h0=0.5, v0=2.0, restitution=0.9), scenes.dyadic_ball(),
@@ -86,7 +90,7 @@ def test_exact_motions_stay_outside_and_obey_their_equation(scene):
         checked += 1
     # velocities are the derivative of the positions but near impacts
     assert np.median(moved) < 1e-6 * (1.0 + np.max(np.abs(v)))
-    assert checked > 0 or scene.n_j > 0 or np.all(np.abs(v) < 10.0)
+    assert checked > 0 or scene.n_j > 0 or scene.name in ALWAYS_CLOSED
 
 
 def test_the_point_on_the_rod_stays_on_it_and_shares_the_angle_of_the_pendulum():
@@ -227,9 +231,7 @@ def test_times_of_the_rocking_block_are_integrals_of_its_energy():
             assert times[j] == pytest.approx(float(t), rel=1e-14)
             assert rates[j] == pytest.approx(float(w), rel=1e-14)
             w *= mpf(r)
-            top = mp.findroot(
-                lambda x, w=w: w * w / 2 - p2 * (mp.cos(a - x) - mp.cos(a)), (0, top), solver="anderson"
-            )
+            top = mp.findroot(lambda x, w=w: w * w / 2 - energy(x), (0, top), solver="anderson")
 
 
 def test_the_ratio_of_the_rocking_block_conserves_the_moment_about_the_new_corner():
@@ -368,7 +370,7 @@ def test_friction_scenes_obey_the_balance_of_work():
     assert energy[0] - energy[-1] == pytest.approx(0.1 * way, rel=1e-9)
     assert dry_friction.half_cycles(1.05, 0.1) == 5
     assert q[-1, 0] == pytest.approx(-0.05, abs=1e-14)
-    q, v = scenes.sliding_block().exact(np.array([1.0]))
+    q, _ = scenes.sliding_block().exact(np.array([1.0]))
     assert q[0, 0] == pytest.approx(1.0 / (2 * 0.3 * 9.81), rel=1e-14)
     end = dry_friction.slip_time(1.0, 0.2, 0.5, 9.81)
     _, v = scenes.slipping_wheel().exact(np.array([end]))
