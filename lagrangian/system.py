@@ -125,6 +125,8 @@ class System:
     force : callback filling out (n_q,)   f = F_ext - N - F_int [N]
     force_q, force_v : callbacks filling out (n_q, n_q), or None
         Jacobians df/dq and df/dv; differenced where not given.
+    potential : callback filling out (1,), or None
+        Potential energy V(t, q) [J] of the part of the force that has one, for the energy balance only.
 
     Raises
     ------
@@ -136,6 +138,7 @@ class System:
     force: Callback
     force_q: Callback | None = None
     force_v: Callback | None = None
+    potential: Callback | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_q", checks.count("n_q", self.n_q))
@@ -151,6 +154,8 @@ class System:
         checks.evaluate("system.force", self.force, at, (self.n_q,))
         if callable(self.mass):
             checks.mass_matrix("system.mass", checks.evaluate("system.mass", self.mass, at, square))
+        if self.potential is not None:
+            checks.evaluate("system.potential", self.potential, at, (1,))
         for name, f in {"force_q": self.force_q, "force_v": self.force_v}.items():
             if f is not None:
                 checks.evaluate(f"system.{name}", f, at, square)

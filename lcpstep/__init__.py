@@ -4,6 +4,7 @@ Time-stepping by complementarity problems (`Moreau`) and event by event (`EventD
 package `lagrangian`; and `solve_lcp`, the solver underneath. Importing this loads numpy only.
 """
 
+from lcpstep.diagnostics import Energy, energy
 from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, SimulationInterrupted, UnknownName
 from lcpstep.events import EventDriven
 from lcpstep.lcp import solve_lcp
@@ -15,6 +16,7 @@ from lcpstep.trajectory import Kind, Status, Trajectory
 
 __version__ = "0.1.0"
 __all__ = [
+    "Energy",
     "EventDriven",
     "Kind",
     "LcpStepError",
@@ -26,6 +28,7 @@ __all__ = [
     "Status",
     "Trajectory",
     "UnknownName",
+    "energy",
     "simulate",
     "solve_lcp",
     "study",

@@ -118,6 +118,22 @@ class Trajectory:
         q, v = self.dense(times)
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
+    @property
+    def penetration(self) -> Array:
+        """(n_c,) how deep each contact lay inside its obstacle at worst, over the kept states [m]."""
+        from lcpstep.gaps import lowest_and_highest
+
+        lowest, _ = lowest_and_highest(self.scene, self.t, self.q, self.v)
+        return np.maximum(0.0, 0.0 - lowest)
+
+    @property
+    def joint_drift(self) -> Array:
+        """(n_j,) how far each joint was open at worst, over the kept states [m]."""
+        from lcpstep.gaps import lowest_and_highest
+
+        lowest, highest = lowest_and_highest(self.scene, self.t, self.q, self.v, joints=True)
+        return np.maximum(-lowest, highest)
+
     def __repr__(self) -> str:
         return (
             f"Trajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "

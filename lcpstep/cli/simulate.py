@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep import simulate
+from lcpstep import energy, simulate
 from lcpstep.cli.common import (
     DONE,
     FAILED,
@@ -48,6 +48,7 @@ def add(commands: Any) -> None:
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
     p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
+    p.add_argument("--energy", action="store_true", help="balance the energy along the kept states")
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=run_simulate)
 
@@ -69,7 +70,8 @@ def run_simulate(options: argparse.Namespace) -> int:
         from lcpstep.plot.motion import overview
 
         overview(run).savefig(options.picture, dpi=150)
-    print(json.dumps(_summary(run), indent=2) if options.json else _sentence(run))
+    balance = {"energy": _balance(run)} if options.energy else {}
+    print(json.dumps(_summary(run) | balance, indent=2) if options.json else _sentence(run, balance))
     return DONE if run.status == Status.DONE else FAILED
 
 
@@ -88,16 +90,44 @@ def _summary(run: Trajectory) -> dict[str, Any]:
         "lcp_calls": run.counts.lcp_calls,
         "force_evaluations": run.counts.force_evaluations,
         "events": kinds,
+        "penetration": float(np.max(run.penetration, initial=0.0)),
+        "joint_drift": float(np.max(run.joint_drift, initial=0.0)),
     }
 
 
-def _sentence(run: Trajectory) -> str:
+def _balance(run: Trajectory) -> dict[str, Any]:
+    """The energy balance at the end of the run [J]."""
+    e = energy(run)
+    ends = {"start": e.total[0], "end": e.total[-1], "kinetic": e.kinetic[-1], "potential": e.potential[-1]}
+    names = ("work", "obstacles", "damping", "impacts", "friction")
+    ends |= {name: getattr(e, name)[-1] for name in names} | {"residual": e.residual[-1]}
+    return {name: float(x) for name, x in ends.items()} | {
+        "created_at_contacts": float(np.sum(e.created.energy)),
+        "steps_that_created": len(e.created),
+    }
+
+
+def _sentence(run: Trajectory, balance: dict[str, Any]) -> str:
     s = _summary(run)
     events = ", ".join(f"{n} {kind}" for kind, n in s["events"].items())
     return (
         f"{s['scene']} by {s['method']}: {s['status']}, {s['message']}\n"
         f"t = {s['t_end']:g} s, q = {s['q_end']}, v = {s['v_end']}\n"
-        f"{s['steps']} steps, {s['lcp_calls']} complementarity problems; events: {events}"
+        f"{s['steps']} steps, {s['lcp_calls']} complementarity problems; events: {events}\n"
+        f"largest penetration {s['penetration']:.3g} m"
+        + (f", joint drift {s['joint_drift']:.3g} m" if run.scene.n_j else "")
+        + "".join(f"\nenergy: {_words(e)}" for e in balance.values())
+    )
+
+
+def _words(e: dict[str, Any]) -> str:
+    parts = ", ".join(
+        f"{name} {e[name]:.6g}" for name in ("work", "obstacles", "damping", "impacts", "friction") if e[name]
+    )
+    created = f"; {e['steps_that_created']} steps created {e['created_at_contacts']:.3g} J at their contacts"
+    return (
+        f"{e['start']:.6g} J -> {e['end']:.6g} J ({parts or 'no exchange'}), residual {e['residual']:.2g} J"
+        + (created if e["steps_that_created"] else "")
     )
 
 
