@@ -172,7 +172,7 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, t: float, t_next
                 row = c.H[i] if i < c.first_joint else c.D[i - c.first_joint]
                 compliance(model.linear, plan, state.newton, row, c.X[i])
             mobilities(c.H, c.X, c.ids, n_k, c.W)
-        rates(c.H, c.H_t, state.v_free, c.ids, n_k, c.b)
+        rates(c.H, c.H_t, state.v_free, c.ids, n_k, n_a + n_f if n_f > 0 else 0, c.b)
         if not usable(c.b, c.W, c.ids, n_k):
             return NOT_FINITE
         restitute(

@@ -11,6 +11,7 @@ from typing import Any
 from lcpstep.dynamics import product
 
 ROUNDING = 1e-13  # of the terms that a velocity is the sum of: what is left of it is no motion
+NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 
 
@@ -49,10 +50,18 @@ def mobilities(H: Any, X: Any, ids: Any, n_k: int, W: Any) -> None:
             W[ids[k], ids[m]] = product(H, X[ids[m]], ids[k])
 
 
-def rates(H: Any, H_t: Any, v: Any, ids: Any, n_k: int, b: Any) -> None:
-    """H v + g_t on the rows that take part."""
+def rates(H: Any, H_t: Any, v: Any, ids: Any, n_k: int, rough: int, b: Any) -> None:
+    """H v + g_t on the rows that take part; zero on the first `rough` ones where it is nothing but rounding.
+
+    For a frictional contact that stays closed has no approach: whether it jams must not hang on a rounding's sign.
+    """
     for k in range(n_k):
-        b[ids[k]] = product(H, v, ids[k]) + H_t[ids[k]]
+        i = ids[k]
+        total, terms = H_t[i], abs(H_t[i])
+        for j in range(len(v)):
+            total += H[i, j] * v[j]
+            terms += abs(H[i, j] * v[j])
+        b[i] = total if k >= rough or abs(total) > NO_APPROACH * terms else 0.0
 
 
 def usable(b: Any, W: Any, ids: Any, n_k: int) -> bool:
