@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from lcpstep.compiled import inline
 from lcpstep.dense import assign, solve
-from lcpstep.dynamics import gap_rates, product
+from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.stepping.friction import solve_contacts
 from lcpstep.stepping.joints import distribute, eliminate
 from lcpstep.stepping.newton import linearise
@@ -120,7 +120,13 @@ def run(
         if count[EVENT] + 2 * n_c > len(record.events):
             return LOG_FULL
         t, t_next = t0 + plan.h * (count[STEP] - first), t0 + plan.h * (count[STEP] + 1 - first)
-        code = step(model, plan, state, c, count, t, t_next)
+        n_a, before = predict_active(plan, state), -1
+        code = FINISHED
+        while n_a > before and code == FINISHED:
+            before = n_a
+            code = step(model, plan, state, c, count, n_a, t, t_next)
+            if c.projected and n_c > 0:
+                n_a = closes_again(model, plan, state, c, n_a, t_next)
         if code != FINISHED:
             return code
         events = log_events(model, plan, state, record, count, t_next)
@@ -141,10 +147,9 @@ def run(
 
 
 @inline
-def step(model: Any, plan: Any, state: Any, c: Any, count: Any, t: float, t_next: float) -> int:
-    """One step into next_q, next_v, and the impulses."""
+def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: float, t_next: float) -> int:
+    """One step with n_a active contacts into next_q, next_v, and the impulses."""
     n_j = len(c.J_t)
-    n_a = predict_active(plan, state)
     n_f = take_part(state.active, c.mu, c.ids, c.carrier, n_a, len(c.T_t), n_j)
     n_k = n_a + n_f + n_j
     if n_a > 0:
@@ -206,6 +211,24 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, t: float, t_next
     turning = 0.0 if c.joints.flat else 1.0
     hold = joints_hold(c.J, c.J_t, c.J_start, state.v, state.v_free, state.next_v, turning, c.failed)
     return FINISHED if hold else JOINTS_FAILED
+
+
+@inline
+def closes_again(model: Any, plan: Any, state: Any, c: Any, n_a: int, t_next: float) -> int:
+    """Make those contacts active that were left out, were closed before, and are entered; how many are active.
+
+    A projected gap is zero, not below, so that the prediction g + (h/2) u alone would open what rests.
+    """
+    gaps(model, t_next, state.next_q, state.next_v, c.gaps)
+    more = n_a
+    for i in range(len(state.u)):
+        entered = state.closed[i] > 0 and c.gaps[i] < -plan.slack
+        for k in range(n_a):
+            entered = entered and state.active[k] != i
+        if entered:
+            state.active[more] = i
+            more += 1
+    return more
 
 
 @inline

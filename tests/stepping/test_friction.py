@@ -194,7 +194,9 @@ def test_a_block_on_many_rough_feet_rests(n):
     assert np.max(np.abs(m.v)) == 0.0
     np.testing.assert_allclose(m.impulse[1:].sum(axis=1), G0 * h, rtol=1e-12)
     np.testing.assert_allclose(m.friction_impulse[1:].sum(axis=1), -2.0 * h, rtol=1e-12)
-    np.testing.assert_allclose(m.impulse[1:] @ a + 0.2 * m.friction_impulse[1:].sum(axis=1), 0.0, atol=1e-12 * h)
+    np.testing.assert_allclose(
+        m.impulse[1:] @ a + 0.2 * m.friction_impulse[1:].sum(axis=1), 0.0, atol=1e-12 * h
+    )
 
 
 # --- a rod that slides on its tip: where Coulomb's law alone has no solution (Painleve)
@@ -220,7 +222,7 @@ def rod_force(t, q, v, p, out):
 
 @pytest.mark.parametrize("angle", [0.3, 0.6, 1.0, 1.3])
 def test_a_rod_that_jams_stops_by_an_impact_without_collision(angle):
-    # with mu = 2 and this slender rod, sliding backwards may be inconsistent: pressing the tip down accelerates it down
+    # with mu = 2 and this slender rod, sliding backwards is inconsistent when upright: pressed, the tip goes down
     mu, v = 2.0, -3.0
     s, c = 0.5 * math.sin(angle), 0.5 * math.cos(angle)
     paradox = 1.0 + c * (c - mu * s) / INERTIA < 0.0
