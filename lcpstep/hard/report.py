@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from lagrangian.scenes import CATALOGUE
 from lcpstep.hard.check import MOREAU_STEPS, STEPS, WORTHLESS, Row
 from lcpstep.hard.methods import METHODS
+from lcpstep.hard.reasons import reason
 
 OUTCOMES = ("passed", "failed", "refused")
 SHOWN = 110  # characters of a remark in a line
@@ -14,7 +15,8 @@ SHOWN = 110  # characters of a remark in a line
 
 def line(row: Row) -> str:
     """One line of the table on a terminal."""
-    note = row.note if len(row.note) <= SHOWN else row.note[: SHOWN - 3] + "..."
+    note = _remark(row)
+    note = note if len(note) <= SHOWN else note[: SHOWN - 3] + "..."
     return (
         f"{row.outcome:8}{row.scene:20}{row.what:58}{row.method:14}{_number(row.error):>9}{_number(row.bound):>9}"
         f"{row.seconds:9.3f} s  {note}"
@@ -50,6 +52,10 @@ def markdown(rows: Iterable[Row]) -> str:
         "A failure is a failure of the method at these settings, and is listed as one.",
         "",
         *(f"- {text}" for text in summary(rows).splitlines()),
+        "",
+        "| fails | by | checks |",
+        "|---|---|---|",
+        *_failures(rows),
     ]
     for name, entry in CATALOGUE.items():
         mine = [row for row in rows if row.scene == name]
@@ -69,10 +75,24 @@ def markdown(rows: Iterable[Row]) -> str:
         ]
         page += [
             f"| {_cell(row.what)} | {row.method} | {_emphasis(row.outcome)} | {_number(row.error)} "
-            f"| {_number(row.bound)} | {row.seconds:.3g} | {_cell(row.note)} |"
+            f"| {_number(row.bound)} | {row.seconds:.3g} | {_cell(_remark(row))} |"
             for row in mine
         ]
     return "\n".join(page)
+
+
+def _failures(rows: list[Row]) -> list[str]:
+    """Scenes with failures, one line for each scene and method."""
+    lines: dict[tuple[str, str], list[str]] = {}
+    for row in rows:
+        if row.outcome == "failed":
+            lines.setdefault((row.scene, row.method), []).append(row.what)
+    return [f"| {scene} | {by} | {_cell('; '.join(whats))} |" for (scene, by), whats in lines.items()]
+
+
+def _remark(row: Row) -> str:
+    why = reason(row.method, row.scene, row.what) if row.outcome == "failed" else ""
+    return "; ".join(text for text in (why, row.note) if text)
 
 
 def _number(x: float | None) -> str:
