@@ -104,6 +104,7 @@ def continue_point(
     n: int = 1,
     steps: Steps | None = None,
     monitor: Monitor | None = None,
+    character: Callable[[float, Array], object] | None = None,
     forward: bool = True,
 ) -> Branch:
     """Follow the periodic point near x at the parameter p as p changes.
@@ -116,6 +117,7 @@ def continue_point(
     n : period of the point
     steps : step control
     monitor : (p, x) -> named numbers whose sign changes are located and reported under their names
+    character : (p, x) -> what points of one branch have in common; a step to a point that differs is refused
     forward : the direction of p in which the branch is followed first
 
     Raises
@@ -128,7 +130,7 @@ def continue_point(
         raise ValueError(f"p_range: expected low < high, got {p_range!r}")
     p = checks.number("p", p, least=low, most=high)
     start = periodic_point(family(p), x, n)
-    follower = _Follower(family, n, low, high, steps or Steps(), monitor)
+    follower = _Follower(family, n, low, high, steps or Steps(), monitor, character)
     return follower.branch(np.append(start.points[0], p), 1.0 if forward else -1.0)
 
 
@@ -145,10 +147,11 @@ class _Follower:
     """Predictor, corrector, and the search for special points between two points."""
 
     def __init__(
-        self, family: Family, n: int, low: float, high: float, steps: Steps, monitor: Monitor | None
-    ) -> None:
+        self, family: Family, n: int, low: float, high: float, steps: Steps, monitor: Monitor | None,
+        character: Callable[[float, Array], object] | None,
+    ) -> None:  # fmt: skip
         self.family, self.n, self.low, self.high = family, n, low, high
-        self.steps, self.monitor = steps, monitor
+        self.steps, self.monitor, self.character = steps, monitor, character
 
     def branch(self, z: Array, direction: float) -> Branch:
         self.scale = np.append(
@@ -186,11 +189,18 @@ class _Follower:
             if z is None:
                 return None
             moved = float(np.linalg.norm((z - state.z) / self.scale))
-            if moved > 3.0 * ds:  # caught by another branch
+            if moved > 3.0 * ds or self.differ(state.z, z):  # caught by another branch
                 return None
             return self.known(z, tangent), effort
         except (ValueError, LcpStepError, np.linalg.LinAlgError):
             return None
+
+    def differ(self, z: Array, other: Array) -> bool:
+        """Whether two points are of different character, and so not of one branch."""
+        if self.character is None:
+            return False
+        one, two = (self.character(float(y[-1]), y[:-1]) for y in (z, other))
+        return one != two
 
     def correct(self, predicted: Array, tangent: Array) -> tuple[Array | None, int]:
         """Newton's method on F = 0 within the hyperplane through the predicted point."""

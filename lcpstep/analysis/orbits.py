@@ -232,8 +232,20 @@ def continue_orbit(
             for k, d in enumerate(row)
         }
 
+    def character(value: float, x: Array) -> int:
+        run = family(value).follow(x, n)
+        return -1 if np.any(run.ends) else int(np.sum(run.impacts))
+
     branch = continue_point(
-        family, start.x[0], p, p_range, n=n, steps=steps, monitor=monitor, forward=forward
+        family,
+        start.x[0],
+        p,
+        p_range,
+        n=n,
+        steps=steps,
+        monitor=monitor,
+        character=character,
+        forward=forward,
     )
     orbits = tuple(
         _described(family(float(value)), family(float(value)).follow(x, n).states[0][np.arange(n) - 1])
@@ -243,16 +255,37 @@ def continue_orbit(
         s._replace(kind=s.kind.split(" ")[0] if s.kind.startswith("corner") else s.kind)
         for s in branch.special
     ]
-    last = orbits[-1]
-    if branch.ended.startswith("no point") and _grazes(last):
-        special.append(Special("grazing", float(branch.p[-1]), branch.x[-1], branch.multipliers[-1]))
+    if branch.ended.startswith("no point") and _grazes(orbits[-1]):
+        p_end = _grazing_parameter(orbits[-2:], branch.p[-2:])
+        special.append(Special("grazing", p_end, branch.x[-1], branch.multipliers[-1]))
     return OrbitBranch(branch, phase, orbits, tuple(special))
+
+
+def _grazing_parameter(orbits: tuple[PeriodicOrbit, ...], p: Array) -> float:
+    """Where the contact becomes as soft as can be: the clearance, or the square of the lowest speed, is zero.
+
+    Either is linear in the parameter there; continued from the last two orbits of the branch, of which the very
+    last is within a smallest step.
+    """
+    if len(orbits) < 2 or len(orbits[0].time) != len(orbits[1].time):
+        return float(p[-1])
+    speeds = [float(np.min(np.abs(orbit.before), initial=np.inf)) ** 2 for orbit in orbits]
+    first, second = speeds if _soft(orbits[1]) else [orbit.clearance() for orbit in orbits]
+    if not (np.isfinite(first) and second < first):
+        return float(p[-1])
+    return float(p[1] + second * (p[1] - p[0]) / (first - second))
+
+
+def _soft(orbit: PeriodicOrbit) -> bool:
+    """Whether one impact is much softer than the others."""
+    speeds = np.abs(orbit.before)
+    hardest = float(np.max(speeds, initial=0.0))
+    if len(speeds) == 1:  # against the speed of the motion itself
+        hardest = float(np.max(np.abs(orbit.x[:, orbit.scene.n_q :])))
+    return len(speeds) > 0 and float(np.min(speeds)) < GRAZING * hardest
 
 
 def _grazes(orbit: PeriodicOrbit) -> bool:
     """Whether one contact of the orbit is much softer than the others, or is about to appear."""
-    speeds = np.abs(orbit.before)
-    hardest = float(np.max(speeds, initial=0.0))
-    soft = len(speeds) > 1 and float(np.min(speeds)) < GRAZING * hardest
     height = float(np.ptp(orbit.x[:, 0])) + abs(float(orbit.x[0, 0]))
-    return soft or orbit.clearance() < GRAZING**2 * max(height, 1e-300)
+    return _soft(orbit) or orbit.clearance() < GRAZING**2 * max(height, 1e-300)

@@ -93,6 +93,7 @@ def _dataset(ways: list[OrbitBranch], parameter: str, scene: Any, method: Any) -
     special = [*down.special, *up.special]
     order = [(down, k) for k in range(len(down.orbits) - 1, 0, -1)] + [(up, k) for k in range(len(up.orbits))]
     multipliers = np.array([way.points.multipliers[k] for way, k in order])
+    places = np.array([s.x for s in special]).reshape(len(special), multipliers.shape[1])
     variables = {
         "x": (("point", "state"), np.array([way.points.x[k] for way, k in order])),
         "stable": (("point",), np.array([way.orbits[k].stable for way, k in order], dtype=np.int8)),
@@ -102,10 +103,7 @@ def _dataset(ways: list[OrbitBranch], parameter: str, scene: Any, method: Any) -
         "name": (("point",), np.array([way.orbits[k].name for way, k in order])),
         "special_kind": (("special",), np.array([s.kind for s in special], dtype=str)),
         "special_p": (("special",), np.array([s.p for s in special])),
-        "special_x": (
-            ("special", "state"),
-            np.array([s.x for s in special]).reshape(len(special), multipliers.shape[1]),
-        ),
+        "special_x": (("special", "state"), places),
     }
     values = np.array([way.points.p[k] for way, k in order])
     attributes = provenance(scene, method) | {"parameter": parameter, "phase": up.phase}

@@ -21,11 +21,11 @@ def bifurcation(data: Any, title: str = "") -> Any:
     figure.suptitle(title or f"{data.attrs['scene']}: {data.attrs['start']} starts")
     above, below = figure.subplots(2, 1, sharex=True)
     v = data["v"].isel(coordinate=0).values  # (run, value, period)
-    above.plot(np.broadcast_to(values[None, :, None], v.shape).ravel(), v.ravel(), "k,", alpha=0.6)
+    above.plot(np.broadcast_to(values[None, :, None], v.shape).ravel(), v.ravel(), "k.", ms=1.0, alpha=0.6)
     above.set(ylabel="velocity on the section [m/s]")
     phase = data["impact_phase"].values
     at = np.broadcast_to(values[None, :, None, None], phase.shape)
-    below.plot(at.ravel(), phase.ravel(), "k,", alpha=0.6)
+    below.plot(at.ravel(), phase.ravel(), "k.", ms=1.0, alpha=0.6)
     below.set(ylabel="phase of impacts [periods]", xlabel=parameter)
     return figure
 

@@ -1,0 +1,1 @@
+"""Studies of the cam-follower: seconds, and agreement of the two integrators in them."""
