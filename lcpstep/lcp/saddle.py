@@ -140,9 +140,8 @@ class Saddle:
             defect_x = problem.r + self.G_T @ z - self.A @ x
             defect_w = np.where(chosen, -(self.G @ x + problem.c), 0.0)
             size_x, size_w = self.sizes(problem, x, z)
-            scale = (
-                scale or float(np.max(size_w, initial=0.0)) or 1.0
-            )  # x may be nothing but rounding in the end
+            # of the first answer: x may be nothing but rounding in the end
+            scale = scale or float(np.max(size_w, initial=0.0)) or 1.0
             error = max(largest(defect_x, size_x), float(np.max(np.abs(defect_w), initial=0.0)) / scale)
             if not REFINED < error < 0.5 * before:
                 break

@@ -214,9 +214,9 @@ class Run:
         r = step.free(e, self.q, self.v, self.F, F_next)
         active = self.g + 0.5 * step.h * self.u <= self.slack
         _, s_t = e.obstacle(t_next, self.q, self.v)
-        point = self.contact(step, r, active, s_t)
         if not (np.all(np.isfinite(r)) and np.all(np.isfinite(s_t))):
             return Status.NOT_FINITE
+        point = self.contact(step, r, active, s_t)
         if not point.solved:
             self.refused = np.flatnonzero(active)
             return Status.LCP_FAILED

@@ -1,0 +1,1 @@
+"""Cost of a step, memory and error of a column of N bodies, beside Siconos."""
