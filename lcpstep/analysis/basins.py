@@ -168,31 +168,47 @@ def outside(scene: Scene, x: Array, phase: float) -> Array:
 def neighbourhoods(
     scene: Scene, method: Method, found: tuple[Attractor, ...], phase: float, longest: int, seed: int
 ) -> tuple[Targets, Ints]:
-    """Balls around the points of periodic attractors that go there, judged by probes on them; and whose they are."""
-    points = [a.points for a in found if a.periods]
-    owner = np.repeat([k for k, a in enumerate(found) if a.periods], [len(p) for p in points]).astype(
-        np.int64
-    )
-    if not points:
-        return Targets(np.zeros((0, 2)), np.zeros(0), np.ones(2)), owner
-    centre = np.concatenate(points)
+    """Balls around the points of attractors that go there, judged by probes on them; and whose they are."""
+    if not found:
+        return Targets(np.zeros((0, 2)), np.zeros(0), np.ones(2)), np.zeros(0, dtype=np.int64)
+    centre = np.concatenate([a.points for a in found])
+    owner = np.repeat(np.arange(len(found)), [len(a.points) for a in found])
+    periodic = np.array([a.periods > 0 for a in found])[owner]
     scale = np.maximum(np.max(np.abs(centre), axis=0), 1e-9 * (1.0 + np.max(np.abs(centre))))
-    smallest = Targets(centre, np.full(len(centre), RADII[-1]), scale)
+    few = int(np.sum(periodic))
+    smallest = Targets(centre[periodic], np.full(few, RADII[-1]), scale)
     direction = np.random.default_rng([seed, 1]).uniform(-1.0, 1.0, (PROBES, 2))
     direction /= np.max(np.abs(direction), axis=1, keepdims=True)
+
+    def fate(probes: Array) -> Ints:
+        probes = outside(scene, probes, phase)
+        if len(probes) == 0:
+            return np.zeros(0, dtype=np.int64)
+        went = periods(scene, method, probes, longest, drop=longest, phase=phase, targets=smallest).reached
+        return np.append(owner[periodic], UNKNOWN)[went]
+
     radius = np.full(len(centre), RADII[-1])
-    for k, x in enumerate(centre):
+    for k in np.flatnonzero(periodic):
         for r in RADII[:-1]:
-            probes = outside(scene, x + r * scale * direction, phase)
-            if len(probes) == 0:
-                continue
-            went = periods(
-                scene, method, probes, longest, drop=longest, phase=phase, targets=smallest
-            ).reached
-            if np.all(went >= 0) and np.all(owner[went] == owner[k]):
+            went = fate(centre[k] + r * scale * direction)
+            if len(went) and np.all(went == owner[k]):
                 radius[k] = 0.5 * r
                 break
+    for a in set(owner[~periodic].tolist()):
+        cloud = centre[owner == a]
+        some = cloud[np.linspace(0, len(cloud) - 1, PROBES).astype(int)]
+        r = spacing(cloud / scale)
+        while r > RADII[-1] and np.any(fate(some + 2.0 * r * scale * direction) >= 0):
+            r *= 0.5
+        radius[owner == a] = r
     return Targets(centre, radius, scale), owner
+
+
+def spacing(points: Array) -> float:
+    """Median distance of the points of a cloud (k, 2) to their nearest neighbours."""
+    from scipy.spatial import cKDTree
+
+    return float(np.median(np.asarray(cKDTree(points).query(points, k=2)[0])[:, 1]))
 
 
 def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:

@@ -165,6 +165,12 @@ def test_basins_agree_with_runs_followed_one_by_one_and_divide_into_any_parts(mo
     assert np.array_equal(again["label"], data["label"])
 
 
+def test_all_cells_go_to_the_chaotic_attractor_where_there_is_no_other():
+    data = basins(cam_follower(rpm=660.0), [0.01, -20.0], [1.0, 20.0], (24, 24), longest=400, sample=0)
+    assert list(data["name"].values) == ["chaotic"]
+    assert np.mean(data["label"].values == 0) > 0.99
+
+
 def blocks(random, n, shift=0.0):
     phase = [random.normal(0.5 + shift, 0.1, 50) % 1.0 for _ in range(n)]
     return Sample(phase, [-random.exponential(1.0, 50) for _ in range(n)], 50, np.zeros((1, 2)))
