@@ -19,15 +19,21 @@ from lcpstep.analysis.derivative import derivative
 from lcpstep.maps.iteration import Map
 
 Array = NDArray[np.float64]
+RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
 
 
 @dataclass(frozen=True)
 class Lyapunov:
-    """Largest exponent and the standard error of it, per iteration; -inf where deviations vanish."""
+    """Largest exponent and the standard error of it, per iteration; -inf where deviations vanish.
+
+    A landing on an obstacle (the contact closes for good) wipes out all deviations of one degree of freedom. Where
+    this is rare, `largest` is the growth between landings, of which there were `landings`.
+    """
 
     largest: float
     error: float
+    landings: int = 0
 
     @property
     def chaotic(self) -> bool:
@@ -57,9 +63,14 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
         if k >= 0:
             Q, R = np.linalg.qr(derivative(P, x) @ Q)
             if R[0, 0] == 0.0:
-                return Lyapunov(-math.inf, 0.0)
-            growth[k] = math.log(abs(R[0, 0]))
+                Q, growth[k] = np.eye(len(x)), math.nan
+            else:
+                growth[k] = math.log(abs(R[0, 0]))
         x = np.atleast_1d(np.asarray(P(x), dtype=float))
-    blocks = [np.mean(block) for block in np.array_split(growth, min(BLOCKS, n))]
+    landings = int(np.sum(np.isnan(growth)))
+    if landings > RARE * n:
+        return Lyapunov(-math.inf, 0.0, landings)
+    growth = growth[np.isfinite(growth)]
+    blocks = [np.mean(block) for block in np.array_split(growth, min(BLOCKS, len(growth)))]
     error = float(np.std(blocks, ddof=1) / math.sqrt(len(blocks))) if len(blocks) > 1 else math.inf
-    return Lyapunov(float(np.mean(growth)), error)
+    return Lyapunov(float(np.mean(growth)), error, landings)

@@ -53,7 +53,7 @@ def add(commands: Any) -> None:
         "starting at rest on the obstacle",
     )  # fmt: skip
     p.add_argument("--out", type=Path, metavar="DIR", help="where the files go; default: nothing is saved")
-    p.add_argument("--force", action="store_true", help="write over files that exist")
+    p.add_argument("--overwrite", action="store_true", help="write over files that exist")
     p.add_argument("--no-picture", action="store_true", help="leave the picture out")
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=run_corner)
@@ -106,11 +106,11 @@ def _settled(P: StroboscopicMap, x: Array, phase: float) -> Array:
 
 
 def _check_out(options: argparse.Namespace) -> None:
-    if options.out is None or options.force:
+    if options.out is None or options.overwrite:
         return
     for name in ("corner.json", "corner.png", "chattering.json"):
         if (options.out / name).exists():
-            raise FileExistsError(f"--out: {options.out / name} exists already; --force writes over it")
+            raise FileExistsError(f"--out: {options.out / name} exists already; --overwrite writes over it")
 
 
 def _result(
