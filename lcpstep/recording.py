@@ -66,7 +66,7 @@ class Record(NamedTuple):
     times: Any  # keep the states at these times
     rows: Any  # (rows, LEAD + 2 n_q + n_c): time, mode, duration, q, v, impulses since the row before
     events: Any  # (events, 6): time, contact, gap velocity before and after, impulse, kind
-    dense: Any  # (rows, 7, 2 n_q) dense output of the step after each row; no rows where there is none
+    dense: Any  # (rows, 7, 2 n_q) dense output of the step after each row, or (rows, 1, n_q) its acceleration
 
 
 def write_row(row: Any, t: float, mode: float, q: Any, v: Any, impulse: Any) -> None:
@@ -100,7 +100,15 @@ class States(NamedTuple):
 class Recorder:
     """Buffers of one run, and what they held when they were emptied."""
 
-    def __init__(self, n_q: int, n_c: int, kept: Kept, rows: int, dense: bool = False) -> None:
+    def __init__(
+        self,
+        n_q: int,
+        n_c: int,
+        kept: Kept,
+        rows: int,
+        dense: bool = False,
+        dense_shape: tuple[int, int] | None = None,
+    ) -> None:
         self.n_q = n_q
         self.buffers = Record(
             every=kept.every,
@@ -108,7 +116,7 @@ class Recorder:
             times=kept.times,
             rows=np.zeros((rows, LEAD + 2 * n_q + n_c)),
             events=np.zeros((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ()))),
-            dense=np.zeros((rows if dense else 0, 7, 2 * n_q)),
+            dense=np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q)))),
         )
         b = self.buffers
         self._parts = {"rows": [b.rows[:0]], "events": [b.events[:0]], "dense": [b.dense[:0]]}

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from lagrangian import Scene, checks
-from lcpstep.errors import LcpStepError
+from lcpstep.events import many
 from lcpstep.events.closed_form import ClosedForm, oscillator_of
 from lcpstep.events.runge_kutta import RungeKutta
 from lcpstep.model import model, require
@@ -31,8 +31,19 @@ class EventDriven:
 
     Notes
     -----
-    One linear degree of freedom under constant and harmonic forces moves in closed form between events; all other
-    systems by DOP853. The scene has one contact, or none.
+    One linear degree of freedom under constant and harmonic forces moves in closed form between events, and so does
+    a system under constant forces with flat contacts at rest; all others by DOP853.
+
+    Several contacts: those that are closed at one time strike in one problem, 0 <= u+ + r u- complementary to
+    p >= 0 (Newton's law in Moreau's form), whether they have rested until then or meet at the same instant; with
+    joints, their impulses are part of it. Impacts at different times follow one another, however near. So balls of
+    a cradle that touch share the blow, and balls a thousandth of a micrometre apart hand it on. Where the motion is
+    known exactly "the same instant" is exact; otherwise a gap below the tolerance counts as closed. This law is
+    solvable for any contacts and loses energy for any restitutions, while the outcome of impacts in turn depends on
+    an order that nothing but a gap can tell.
+
+    Joints that depend on others are left out, and the others carry what all would; contacts that do so share their
+    forces in one of the possible ways. Joints and lasting contacts are put back onto g = 0, u = 0 after each step.
     """
 
     rtol: float = 1e-12
@@ -46,11 +57,9 @@ class EventDriven:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        require(scene, "EventDriven", joints=False, friction=False)
-        if scene.n_c > 1:
-            raise LcpStepError(
-                f"scene: EventDriven takes scenes with one contact, {scene.name!r} has {scene.n_c}; use Moreau"
-            )
+        require(scene, "EventDriven", joints=True, friction=False)
+        if scene.n_c > 1 or scene.n_j > 0:
+            return many.run(self, scene, kept, progress)
         m, fast = model(scene)
         o = oscillator_of(scene, m)
         if o is not None:

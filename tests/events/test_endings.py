@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, LcpStepError, simulate
+from lcpstep import EventDriven, simulate
 from lcpstep.trajectory import Kind, Status
 from tests.models import ball_on_table, no_damping
 
@@ -155,12 +155,6 @@ def test_a_scene_without_contacts_runs_to_its_end():
         X = 0.5 / (w2 - 6.25)
         modes.append(X * np.cos(2.5 * t) + (0.5 - X) * np.cos(math.sqrt(w2) * t))
     np.testing.assert_allclose(m.q[:, 0], modes[0] + modes[1], rtol=0, atol=1e-11)
-
-
-def test_several_contacts_are_refused_with_a_way_out():
-    scene = Scene(LinearSystem(M=np.eye(2)), [1.0, 1.0], [0.0, 0.0], (0.0, 1.0), LinearContacts(G=np.eye(2)))
-    with pytest.raises(LcpStepError, match=r"one contact.*has 2; use Moreau"):
-        simulate(scene, EventDriven())
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,196 @@
+"""Which of several contacts closes, or opens, first, as kernels.
+
+Under constant acceleration a gap is g + u tau + alpha tau^2 / 2, and its first root is known. Otherwise gaps are
+looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to change
+its sign at most once, that change splits the gap velocity into monotone parts, whose changes of sign split the gap
+into monotone parts; so a gap that dips below zero and returns is found. A closed contact opens where its multiplier
+turns negative. Source of the polishing: Newton's method safeguarded by bisection, W. Press et al., Numerical
+Recipes, section 9.4.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lcpstep.dense import split
+from lcpstep.dynamics import gaps, product
+from lcpstep.events.dop853 import interpolate
+from lcpstep.events.equations import (
+    ACCELERATION,
+    CLOSED,
+    CURVE,
+    FORCE,
+    GAP,
+    HELD,
+    HELD_ROWS,
+    LEFT_CURVE,
+    LEFT_GAP,
+    LEFT_MULTIPLIER,
+    LEFT_SPEED,
+    MULTIPLIER,
+    NOISE,
+    RATE,
+    RESOLUTION,
+    SPEED,
+    Q,
+    V,
+    biases,
+    constraint_rows,
+    right_hand_side,
+)
+from lcpstep.events.flow import LENGTH, T0, inside
+from lcpstep.events.impact import note
+
+MEETS, OPENS, NEVER_LEFT = range(3)  # what a contact does
+NONE = -1.0  # in place of a root's time
+MAX_ITERATIONS = 100
+
+
+def first_root(g: float, u: float, alpha: float) -> float:
+    """First tau >= 0 at which g + u tau + alpha tau^2 / 2 falls through zero, or infinity; g >= 0."""
+    if g <= 0.0 and u < 0.0:
+        return 0.0
+    square = u * u - 2.0 * alpha * g
+    if square < 0.0 or (u >= 0.0 and alpha >= 0.0):
+        return math.inf
+    if u < 0.0:
+        return 2.0 * g / (math.sqrt(square) - u)
+    return (u + math.sqrt(square)) / -alpha
+
+
+def observe(model: Any, joints: Any, s: Any, w: Any, dy: Any, tau: float) -> bool:
+    """Gaps, speeds, gap accelerations and multipliers at tau after the base, from the dense output."""
+    t = s.x[T0] + tau
+    q, v, a = s.state[Q], s.state[V], s.state[ACCELERATION]
+    interpolate(w.F, w.y, tau / s.x[LENGTH], w.y_stage)
+    split(w.y_stage, q, v)
+    if not right_hand_side(model, joints, s, t, w.y_stage, dy):
+        return False
+    n = len(q)
+    for i in range(n):
+        a[i] = dy[n + i]
+    if len(s.G) > 0:
+        gaps(model, t, q, v, s.contact[GAP])
+        biases(model, s, s.G, s.contact, inside(s, t), q, v)
+        constraint_rows(model, joints, s, t, q, v)
+    note(s, a)
+    finite = True
+    for c in range(len(s.G)):
+        u = product(s.G, v, c) + s.contact[RATE, c]
+        s.contact[SPEED, c] = u
+        finite = finite and math.isfinite(s.contact[GAP, c] + u + s.contact[CURVE, c])
+    return finite
+
+
+def remember(s: Any) -> None:
+    """What was observed last is the left end of the next interval."""
+    for c in range(len(s.G)):
+        for k in range(4):
+            s.contact[LEFT_GAP + k, c] = s.contact[GAP + k, c]
+
+
+def root(
+    model: Any, joints: Any, s: Any, w: Any, dy: Any, level: int, c: int,
+    a: float, f_a: float, b: float, f_b: float,
+) -> float:  # fmt: skip
+    """Root between a and b of a contact's gap (level GAP), velocity, acceleration or multiplier; f_a f_b <= 0."""
+    if f_a == 0.0:
+        return a
+    x, f_x = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
+    slope = (f_b - f_a) / (b - a)
+    before = b - a
+    for _ in range(MAX_ITERATIONS):
+        if f_x == 0.0:
+            return x
+        x_new = x - f_x / slope if slope != 0.0 else a
+        if not (a < x_new < b) or abs(x_new - x) > 0.5 * abs(before):
+            x_new = 0.5 * (a + b)
+        before = x_new - x
+        x_old, f_old, x = x, f_x, x_new
+        observe(model, joints, s, w, dy, x)
+        f_x = s.contact[level, c]
+        if (f_x > 0.0) == (f_a > 0.0):
+            a, f_a = x, f_x
+        else:
+            b = x
+        slope = s.contact[level + 1, c] if level < CURVE else (f_x - f_old) / (x - x_old)
+        if abs(before) <= 2.0 * RESOLUTION * abs(x) or b - a <= 2.0 * RESOLUTION * abs(x):
+            return x
+    return x
+
+
+def first_contact(
+    model: Any, joints: Any, s: Any, w: Any, dy: Any, c: int, a: float, b: float, left: Any, right: Any
+) -> float:
+    """First time in (a, b] at which the gap of contact c falls to zero, or NONE.
+
+    left, right : gap, velocity and acceleration at a and b.
+    """
+    middle, at_middle = b, right
+    if left[2] * right[2] < 0.0 and (left[1] < 0.0 or right[1] > 0.0 or right[0] <= 0.0):
+        middle = root(model, joints, s, w, dy, CURVE, c, a, left[2], b, right[2])
+        observe(model, joints, s, w, dy, middle)
+        at_middle = (s.contact[GAP, c], s.contact[SPEED, c], s.contact[CURVE, c])
+    found = first_in_half(model, joints, s, w, dy, c, a, middle, left, at_middle)
+    if found == NONE and middle < b:
+        found = first_in_half(model, joints, s, w, dy, c, middle, b, at_middle, right)
+    return found
+
+
+def first_in_half(
+    model: Any, joints: Any, s: Any, w: Any, dy: Any, c: int, a: float, b: float, left: Any, right: Any
+) -> float:
+    """The same where the gap velocity is monotone."""
+    if left[1] * right[1] < 0.0:
+        if left[1] > 0.0 and right[0] > 0.0:
+            return NONE
+        middle = root(model, joints, s, w, dy, SPEED, c, a, left[1], b, right[1])
+        observe(model, joints, s, w, dy, middle)
+        g = s.contact[GAP, c]
+        if left[1] < 0.0 and left[0] > 0.0 and g <= 0.0:
+            return root(model, joints, s, w, dy, GAP, c, a, left[0], middle, g)
+        if left[1] > 0.0:
+            return middle if g <= 0.0 else root(model, joints, s, w, dy, GAP, c, middle, g, b, right[0])
+        return NONE
+    if left[0] > 0.0 and right[0] <= 0.0:
+        return root(model, joints, s, w, dy, GAP, c, a, left[0], b, right[0])
+    return NONE
+
+
+def first_event(model: Any, joints: Any, s: Any, w: Any, dy: Any, a: float, b: float, seen: Any) -> float:
+    """First contact that closes or opens in (a, b], or NONE.
+
+    The left end is in the LEFT rows, the right end has just been observed and is kept in the first rows of `seen`;
+    which contact and what it does (MEETS, OPENS, NEVER_LEFT) into the last.
+    """
+    n_c, found, noise = len(s.G), NONE, multiplier_noise(s)
+    for c in range(n_c):  # what is observed now will be overwritten
+        for k in range(4):
+            seen[k, c] = s.contact[GAP + k, c]
+    for c in range(n_c):
+        tau, kind = NONE, MEETS
+        if s.mode[CLOSED, c] == 1:
+            left, right = s.contact[LEFT_MULTIPLIER, c], seen[MULTIPLIER, c]
+            if right < -noise and s.contact[HELD, c] < s.x[T0] + b:
+                kind = OPENS
+                tau = a if left <= 0.0 else root(model, joints, s, w, dy, MULTIPLIER, c, a, left, b, right)
+        else:
+            left_end = (s.contact[LEFT_GAP, c], s.contact[LEFT_SPEED, c], s.contact[LEFT_CURVE, c])
+            right_end = (seen[GAP, c], seen[SPEED, c], seen[CURVE, c])
+            tau = first_contact(model, joints, s, w, dy, c, a, b, left_end, right_end)
+            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
+                tau, kind = a, NEVER_LEFT
+        if tau != NONE and (found == NONE or tau < found):
+            found, seen[4, 0], seen[4, 1] = tau, float(c), float(kind)
+    return found
+
+
+def multiplier_noise(s: Any) -> float:
+    """Rounding of a multiplier."""
+    size = 0.0
+    for m in range(s.number[HELD_ROWS]):
+        size = max(size, abs(s.held[m]))
+    for j in range(s.state.shape[1]):
+        size = max(size, abs(s.state[FORCE, j]))
+    return NOISE * size
