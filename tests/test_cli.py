@@ -92,7 +92,7 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
 
 
 def test_a_run_that_ends_early_is_a_failure(capsys, monkeypatch):
-    monkeypatch.setattr(cli.simulate, "event_driven", lambda options: EventDriven(max_events=3))
+    monkeypatch.setitem(cli.simulate.METHODS, "event-driven", lambda options: EventDriven(max_events=3))
     status, out, _ = run(capsys, "simulate", "cam-follower", "--method", "event-driven", "--json")
     assert status == FAILED
     assert json.loads(out)["status"] == "TOO_MANY_EVENTS"
