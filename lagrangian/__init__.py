@@ -6,6 +6,7 @@ Nothing here knows how a motion is computed; see `lcpstep` for that.
 from lagrangian import scenes
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.friction import Coulomb
+from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.profiles import Arc, CamProfile
 from lagrangian.scene import Scene
@@ -16,12 +17,17 @@ __all__ = [
     "CamProfile",
     "Contacts",
     "Coulomb",
+    "Guard",
     "Harmonic",
+    "HybridScene",
+    "HybridSystem",
     "Joints",
     "LinearContacts",
     "LinearJoints",
     "LinearSystem",
+    "Mode",
     "Scene",
+    "Surface",
     "System",
     "scenes",
 ]

@@ -45,6 +45,11 @@ def call_solver(f: Any, W: Any, b: Any, z: Any, work: Any) -> int:
     return int(f(W, b, z, work))
 
 
+def call_first_order(f: Any, t: float, x: Any, p: Any, out: Any) -> None:
+    """Evaluate a function of a first-order system from within a kernel; f is an address once compiled."""
+    f(t, x, p, out)
+
+
 def inline(f: F) -> F:
     """Mark a kernel to be merged into its callers, so that the tuples it takes are not copied at every call."""
     f.inline = True  # type: ignore[attr-defined]
@@ -73,6 +78,12 @@ def address(f: Callback, ndim: int) -> int:
     """
     vector, matrix = np.zeros(1), np.zeros((1, 1))
     return _address(f, None, 0.0, vector, vector, vector, vector if ndim == 1 else matrix)
+
+
+def first_order_address(f: Callback) -> int:
+    """Address of a function f(t, x, p, out) of a first-order system compiled to machine code."""
+    vector = np.zeros(1)
+    return _address(f, None, 0.0, vector, vector, vector)
 
 
 def solver_address(f: Callable[..., int], work: Any) -> int:
@@ -108,8 +119,8 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
 @functools.cache
 def _callee(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     """F as other kernels call it: never from Python, so without the wrappers that take most of the compiling."""
-    if f is call or f is call_solver:
-        return _intrinsics()[f is call_solver]
+    if f in (call, call_solver, call_first_order):
+        return _intrinsics()[f]
     import numba
 
     inlined = hasattr(f, "inline")
@@ -215,8 +226,8 @@ def _value_text(value: Any) -> str:
 
 
 @functools.cache
-def _intrinsics() -> tuple[Any, Any]:
-    """`call` and `call_solver` as machine code: a jump to an address, with the arguments that a CFunc takes."""
+def _intrinsics() -> dict[FunctionType, Any]:
+    """`call` and its kin as machine code: a jump to an address, with the arguments that a CFunc takes."""
     from llvmlite import ir
     from numba import types
     from numba.extending import intrinsic
@@ -235,7 +246,19 @@ def _intrinsics() -> tuple[Any, Any]:
         return types.void(types.int64, types.float64, q, v, p, out), codegen
 
     @intrinsic
+    def call_first_order_address(typingctx: Any, f: Any, t: Any, x: Any, p: Any, out: Any) -> Any:
+        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            jump(context, builder, signature, args)
+            return context.get_dummy_value()
+
+        return types.void(types.int64, types.float64, x, p, out), codegen
+
+    @intrinsic
     def call_solver_address(typingctx: Any, f: Any, W: Any, b: Any, z: Any, work: Any) -> Any:
         return types.int64(types.int64, W, b, z, work), jump
 
-    return call_address, call_solver_address
+    return {
+        cast(FunctionType, call): call_address,
+        cast(FunctionType, call_solver): call_solver_address,
+        cast(FunctionType, call_first_order): call_first_order_address,
+    }

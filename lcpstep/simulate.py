@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, overload
 
-from lagrangian import Scene
+from lagrangian import HybridScene, Scene
+from lcpstep.errors import LcpStepError
 from lcpstep.recording import Keep, Kept
 
 if TYPE_CHECKING:
+    from lcpstep.events.hybrid_trajectory import HybridTrajectory
     from lcpstep.trajectory import Trajectory
 
 
@@ -19,14 +21,26 @@ class Method(Protocol):
         """The motion of a scene."""
 
 
+@overload
 def simulate(
     scene: Scene, method: Method, *, keep: Keep = 1, progress: Callable[[float], None] | None = None
-) -> Trajectory:
+) -> Trajectory: ...
+@overload
+def simulate(
+    scene: HybridScene, method: Method, *, keep: Keep = 1, progress: Callable[[float], None] | None = None
+) -> HybridTrajectory: ...
+def simulate(
+    scene: Scene | HybridScene,
+    method: Method,
+    *,
+    keep: Keep = 1,
+    progress: Callable[[float], None] | None = None,
+) -> Trajectory | HybridTrajectory:
     """Motion of a scene.
 
     Parameters
     ----------
-    scene : lagrangian.Scene
+    scene : lagrangian.Scene, or lagrangian.HybridScene for a system with modes (by `EventDriven`)
     method : lcpstep.Moreau or lcpstep.EventDriven
     keep : which states the trajectory holds
         1: every step (default); k: every k-th; increasing times: those; "impacts": those right after an event.
@@ -35,12 +49,14 @@ def simulate(
 
     Returns
     -------
-    Trajectory; its `status` is DONE, or says why the run ended before the end of the span
+    Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
+        end of the span
 
     Raises
     ------
     TypeError   scene is no Scene, or method no method
     ValueError   keep is none of the above
+    LcpStepError   the method does not treat the scene
     SimulationError   a callback or the motion became infinite or not-a-number; carries the motion so far
     SimulationInterrupted   a KeyboardInterrupt; carries the motion so far
 
@@ -52,8 +68,14 @@ def simulate(
     >>> ball.status.name
     'DONE'
     """
-    if not isinstance(scene, Scene):
+    if not isinstance(scene, (Scene, HybridScene)):
         raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
     if isinstance(method, type) or not hasattr(method, "run"):
         raise TypeError(f"method: expected for example lcpstep.Moreau(h=1e-4), got {method!r}")
-    return method.run(scene, Kept.parse(keep, scene.t_span), progress or (lambda _: None))
+    kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
+    if isinstance(scene, HybridScene):
+        if not hasattr(method, "run_hybrid"):
+            raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
+        moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
+        return moved
+    return method.run(scene, kept, report)

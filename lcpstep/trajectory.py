@@ -27,6 +27,8 @@ class Status(IntEnum):
     STEP_TOO_SMALL = 6  # the tolerance cannot be met
     JOINTS_FAILED = 7  # joints contradict each other
     PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
+    ENDLESS_SWITCHING = 9  # modes follow one another for ever at one instant
+    NOT_TRANSVERSAL = 10  # a guard is touched, and tolerances decide whether it acts
 
 
 class Kind(IntEnum):

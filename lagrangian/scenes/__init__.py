@@ -18,6 +18,11 @@ from lagrangian.scenes.chain import elastic_chain
 from lagrangian.scenes.double_pendulum import double_pendulum
 from lagrangian.scenes.dry_friction import coulomb_oscillator, sliding_block, slipping_wheel, slope_landing
 from lagrangian.scenes.grazing import grazing
+from lagrangian.scenes.hybrid_oscillators import (
+    bilinear_oscillator,
+    dry_friction_oscillator,
+    stick_slip_oscillator,
+)
 from lagrangian.scenes.impact_oscillator import chaotic_oscillator, impact_oscillator, sticking_oscillator
 from lagrangian.scenes.kane_pendulum import kane_pendulum
 from lagrangian.scenes.pendulum import pendulum_stop
@@ -188,6 +193,7 @@ __all__ = [
     "CATALOGUE",
     "Entry",
     "ball_on_table",
+    "bilinear_oscillator",
     "block_on_feet",
     "bouncing_ball",
     "bowl",
@@ -197,6 +203,7 @@ __all__ = [
     "column",
     "coulomb_oscillator",
     "double_pendulum",
+    "dry_friction_oscillator",
     "dyadic_ball",
     "elastic_ball",
     "elastic_chain",
@@ -217,5 +224,6 @@ __all__ = [
     "slipping_wheel",
     "slope_landing",
     "stack",
+    "stick_slip_oscillator",
     "sticking_oscillator",
 ]

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.events import many
 from lcpstep.events.closed_form import ClosedForm, oscillator_of
+from lcpstep.events.hybrid import HybridRun
+from lcpstep.events.hybrid_trajectory import HybridTrajectory
 from lcpstep.events.runge_kutta import RungeKutta
 from lcpstep.model import model, require
 from lcpstep.recording import Kept
@@ -54,6 +56,12 @@ class EventDriven:
         object.__setattr__(self, "rtol", checks.number("rtol", self.rtol, least=LEAST_TOLERANCE, most=1.0))
         object.__setattr__(self, "atol", checks.positive("atol", self.atol))
         object.__setattr__(self, "max_events", int(checks.number("max_events", self.max_events, least=1)))
+
+    def run_hybrid(
+        self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]
+    ) -> HybridTrajectory:
+        """The motion of a system with modes; see `lcpstep.simulate`."""
+        return HybridRun(self, scene).finish(kept, progress)
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""

@@ -1,0 +1,241 @@
+"""Piecewise-smooth systems with a discrete state: x' = f_mode(t, x), guards, resets, switching surfaces.
+
+A *guard* leaves its mode where its function rises through zero (or falls), for a target mode, with a reset of the
+state or without. A *surface* H(t, x) = 0 parts two modes, F1 below (H < 0) and F2 above. Where both fields point
+at it the motion slides on it, by Filippov's convex combination
+
+    F_s = (L2 F1 - L1 F2) / (L2 - L1),      L_i = H_t + H_x F_i,      L1 > 0 > L2
+
+until L1 or L2 vanishes; where both point the same way it passes through. Source: A. F. Filippov, Differential
+Equations with Discontinuous Righthand Sides (Kluwer 1988), chapter 2; G. Osorio, Complex Behavior in Impacting
+Systems, section 2.14; T. Henzinger, The theory of hybrid automata (LICS 1996) for guards and resets.
+
+Functions of the user have the signature f(t, x, p, out): they fill `out` from the time t, the state x (n_x,) and the
+parameters p (n_p,).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lagrangian import checks
+from lagrangian.checks import Array
+
+Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
+RISING, FALLING, BOTH = 1, -1, 0
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """When a mode is left, and for which.
+
+    Parameters
+    ----------
+    value : function filling out (1,)   the guard function
+    target : name of the mode entered
+    direction : 1 where it rises through zero (default), -1 where it falls, 0 for either
+    reset : function filling out (n_x,) with the state after the switch, or None where the state stays
+    at_once : whether the mode is left immediately when it is entered with the guard already passed
+        True (default) for "while the value is below zero, stay"; False for a guard that must be crossed. A guard
+        of direction 0 is always of the second kind.
+    """
+
+    value: Function
+    target: str
+    direction: int = RISING
+    reset: Function | None = None
+    at_once: bool = True
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            raise ValueError(f"guard.value: expected a function f(t, x, p, out), got {self.value!r}")
+        if self.direction not in (RISING, FALLING, BOTH):
+            raise ValueError(f"guard.direction: expected 1, -1 or 0, got {self.direction!r}")
+        if self.reset is not None and not callable(self.reset):
+            raise ValueError(f"guard.reset: expected a function f(t, x, p, out) or None, got {self.reset!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """A vector field, and the guards that leave it; of guards reached at one time the first acts.
+
+    Parameters
+    ----------
+    field : function filling out (n_x,)   x' = field(t, x, p)
+    guards : the guards of this mode
+    """
+
+    field: Function
+    guards: Sequence[Guard] = ()
+
+    def __post_init__(self) -> None:
+        if not callable(self.field):
+            raise ValueError(f"mode.field: expected a function f(t, x, p, out), got {self.field!r}")
+        object.__setattr__(self, "guards", tuple(self.guards))
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A switching surface H(t, x) = 0 between two modes, on which the motion may slide.
+
+    Parameters
+    ----------
+    value : function filling out (1,)   H
+    below, above : names of the modes for H < 0 and H > 0
+    sliding : name of the mode of sliding
+    guards : guards that leave the sliding mode, besides its end
+    """
+
+    value: Function
+    below: str
+    above: str
+    sliding: str = "sliding"
+    guards: Sequence[Guard] = ()
+
+    def __post_init__(self) -> None:
+        if not callable(self.value):
+            raise ValueError(f"surface.value: expected a function f(t, x, p, out), got {self.value!r}")
+        if self.below == self.above:
+            raise ValueError(f"surface: expected two different modes, got {self.below!r} on both sides")
+        object.__setattr__(self, "guards", tuple(self.guards))
+
+
+@dataclass(frozen=True, eq=False)
+class HybridSystem:
+    """Modes, and the surfaces between them.
+
+    Parameters
+    ----------
+    n_x : number of states
+    modes : modes by name
+    surfaces : switching surfaces; sliding on two of them at once is not described
+
+    Raises
+    ------
+    ValueError   a name is unknown or used twice, or something is no function
+    """
+
+    n_x: int
+    modes: Mapping[str, Mode]
+    surfaces: Sequence[Surface] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
+        object.__setattr__(self, "modes", dict(self.modes))
+        object.__setattr__(self, "surfaces", tuple(self.surfaces))
+        if not self.modes:
+            raise ValueError("modes: expected at least one mode")
+        names = self.names
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"surfaces: {name!r} names two modes; give each its own `sliding`")
+        for mode in self.modes.values():
+            self._check_targets(mode.guards)
+        for surface in self.surfaces:
+            self._check_targets(surface.guards)
+            for side in (surface.below, surface.above):
+                if side not in self.modes:
+                    raise ValueError(f"surface: unknown mode {side!r}; known: {', '.join(self.modes)}")
+
+    def _check_targets(self, guards: Sequence[Guard]) -> None:
+        for guard in guards:
+            if guard.target not in self.names:
+                raise ValueError(
+                    f"guard.target: unknown mode {guard.target!r}; known: {', '.join(self.names)}"
+                )
+
+    @property
+    def names(self) -> list[str]:
+        """Names of all modes, those of sliding last."""
+        return [*self.modes, *(surface.sliding for surface in self.surfaces)]
+
+    def trial(self, t: float, x: Array, p: Array) -> None:
+        """Evaluate every function once; raises ValueError where one does not fill its `out`."""
+        at = (t, x, p)
+        for name, mode in self.modes.items():
+            evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
+        for name, guards in self.guards().items():
+            for guard in guards:
+                evaluate(f"guard of mode {name!r}", guard.value, at, 1)
+                if guard.reset is not None:
+                    evaluate(f"reset of a guard of mode {name!r}", guard.reset, at, self.n_x)
+        for surface in self.surfaces:
+            evaluate(f"surface of {surface.sliding!r}", surface.value, at, 1)
+
+    def guards(self) -> dict[str, Sequence[Guard]]:
+        """The guards of every mode that the user gave, the sliding ones included."""
+        plain = {name: mode.guards for name, mode in self.modes.items()}
+        return plain | {surface.sliding: surface.guards for surface in self.surfaces}
+
+
+@dataclass(frozen=True, eq=False)
+class HybridScene:
+    """A system with modes, its initial state and mode, and a time span.
+
+    Parameters
+    ----------
+    system : HybridSystem
+    x0 : (n_x,)   state at the start
+    mode : name of the mode at the start
+    t_span : (t_start, t_end)
+    p : (n_p,)   parameters handed to every function; the values of `parameters` where not given
+    parameters : names and values of the scene's parameters, for reports
+    period : period of what depends on time, math.inf where nothing does; guards are looked at 16 times in it at least
+    name : a short name, for reports
+    exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
+
+    Raises
+    ------
+    ValueError   a shape does not fit, a function fails, or the mode is unknown; the message names the argument
+    """
+
+    system: HybridSystem
+    x0: ArrayLike
+    mode: str
+    t_span: tuple[float, float]
+    p: ArrayLike | None = None
+    parameters: Mapping[str, float | str] = field(default_factory=dict)
+    period: float = math.inf
+    name: str = "hybrid scene"
+    exact: Callable[[Array], Array] | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.system, HybridSystem):
+            raise TypeError(f"system: expected a lagrangian.HybridSystem, got {self.system!r}")
+        p = [x for x in self.parameters.values() if not isinstance(x, str)] if self.p is None else self.p
+        object.__setattr__(self, "x0", checks.array("x0", self.x0, (self.system.n_x,)))
+        object.__setattr__(self, "p", checks.vector("p", p))
+        if self.mode not in self.system.names:
+            raise ValueError(f"mode: unknown mode {self.mode!r}; known: {', '.join(self.system.names)}")
+        span = checks.array("t_span", self.t_span, (2,))
+        if not span[0] < span[1]:
+            raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
+        object.__setattr__(self, "t_span", (float(span[0]), float(span[1])))
+        if not self.period > 0.0:
+            raise ValueError(f"period: expected a positive time or math.inf, got {self.period!r}")
+        self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
+
+    def started(self, x0: ArrayLike, mode: str, t_span: tuple[float, float] | None = None) -> HybridScene:
+        """The same system from another state and mode; a motion in closed form is dropped."""
+        return replace(self, x0=x0, mode=mode, t_span=t_span or self.t_span, exact=None)
+
+
+def evaluate(name: str, f: Function, at: tuple[float, Array, Array], n: int) -> Array:
+    """Value of a user's function in plain Python, (n,); an error if it does not fill `out`."""
+    t, x, p = at
+
+    def with_velocities(t: float, q: Array, v: Array, p: Array, out: Array) -> Any:
+        return f(t, q, p, out)
+
+    try:
+        return checks.evaluate(name, with_velocities, (t, x, np.zeros(0), p), (n,))
+    except ValueError as error:
+        raise ValueError(
+            str(error).replace("f(t, q, v, p, out) with q, v of shape", "f(t, x, p, out) with x of shape")
+        ) from error

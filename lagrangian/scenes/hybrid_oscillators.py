@@ -1,0 +1,203 @@
+"""Oscillators with modes: bilinear, dry friction as a Filippov system, stick-slip on a belt; with closed forms.
+
+States are x = (position, velocity); units are those of m = k = 1. Sources: G. Osorio, Complex Behavior in Impacting
+Systems, sections 2.13 and 2.14; R. I. Leine, H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems
+(Springer 2004), chapter 8.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from lagrangian import checks
+from lagrangian.checks import Array
+from lagrangian.hybrid import FALLING, Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.scenes.dry_friction import coulomb_oscillator
+
+
+def _position(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0] = x[0]
+
+
+def _velocity(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0] = x[1]
+
+
+def _bilinear_left(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], p[3] * math.cos(p[4] * t) - p[0] * x[0] - p[2] * x[1]
+
+
+def _bilinear_right(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], p[3] * math.cos(p[4] * t) - p[1] * x[0] - p[2] * x[1]
+
+
+def bilinear_oscillator(
+    left: float = 1.0,
+    right: float = 9.0,
+    damping: float = 0.0,
+    amplitude: float = 0.0,
+    omega: float = 1.0,
+    x0: float = -1.0,
+    v0: float = 0.0,
+    t_end: float = 20.0,
+) -> HybridScene:
+    """Oscillator whose stiffness is another on either side of x = 0: x'' + c x' + k(x) x = F cos(omega t).
+
+    Free and undamped it has the period pi/sqrt(left) + pi/sqrt(right), and its motion in closed form.
+    """
+    for name, value in (("left", left), ("right", right), ("omega", omega), ("t_end", t_end)):
+        checks.positive(name, value)
+    system = HybridSystem(
+        2,
+        {
+            "left": Mode(_bilinear_left, [Guard(_position, "right")]),
+            "right": Mode(_bilinear_right, [Guard(_position, "left", FALLING)]),
+        },
+    )
+    free = damping == 0.0 and amplitude == 0.0
+    side = "right" if x0 > 0.0 or (x0 == 0.0 and v0 > 0.0) else "left"
+    return HybridScene(
+        system,
+        [x0, v0],
+        side,
+        (0.0, t_end),
+        parameters={"left": left, "right": right, "damping": damping, "amplitude": amplitude, "omega": omega},
+        period=math.inf if free else 2.0 * math.pi / omega,
+        name="bilinear-oscillator",
+        exact=(lambda times: _two_half_waves(times, left, right, x0, v0)) if free else None,
+    )
+
+
+def _two_half_waves(times: Array, left: float, right: float, x0: float, v0: float) -> Array:
+    """Half waves of sines on either side, joined at x = 0 with the speed w."""
+    a, b = math.sqrt(left), math.sqrt(right)
+    w = math.hypot(v0, (a if x0 < 0.0 else b) * x0)
+    # The phase counts from a passage to the right: [0, pi/b) on the right, then [pi/b, pi/a + pi/b) on the left.
+    start = math.atan2(b * x0, v0) / b if x0 >= 0.0 else math.pi / b + math.atan2(-a * x0, -v0) / a
+    tau = (np.asarray(times, dtype=float) + start) % (math.pi / a + math.pi / b)
+    on_right = tau < math.pi / b
+    s, c = np.where(on_right, b * tau, a * (tau - math.pi / b)), np.where(on_right, 1.0, -1.0)
+    return np.stack([c * w * np.sin(s) / np.where(on_right, b, a), c * w * np.cos(s)], axis=1)
+
+
+def _drag_left(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], p[1] * math.sin(p[2] * t) - x[0] + p[0]
+
+
+def _drag_right(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], p[1] * math.sin(p[2] * t) - x[0] - p[0]
+
+
+def dry_friction_oscillator(
+    x0: float = 1.05, drag: float = 0.1, amplitude: float = 0.0, omega: float = 1.0, t_end: float = 20.0
+) -> HybridScene:
+    """Oscillator with dry friction, from rest: x'' + x = -drag sign(x') + F sin(omega t), a Filippov system.
+
+    The surface is x' = 0; the sliding mode "stick" rests while |F sin(omega t) - x| <= drag. Without forcing the
+    motion is that of `coulomb_oscillator`, in closed form; a forced one starts where F sin(omega t) = x0 +- drag.
+    """
+    for name, value in (("drag", drag), ("omega", omega), ("t_end", t_end)):
+        checks.positive(name, value)
+    checks.number("x0", x0)
+    system = HybridSystem(
+        2,
+        {"left": Mode(_drag_left), "right": Mode(_drag_right)},
+        [Surface(_velocity, "left", "right", "stick")],
+    )
+    start = "left" if x0 > drag else "right" if x0 < -drag else "stick"
+    return HybridScene(
+        system,
+        [x0, 0.0],
+        start,
+        (0.0, t_end),
+        parameters={"drag": drag, "amplitude": amplitude, "omega": omega},
+        period=math.inf if amplitude == 0.0 else 2.0 * math.pi / omega,
+        name="dry-friction-oscillator",
+        exact=_one_coordinate(coulomb_oscillator(x0, drag).exact) if amplitude == 0.0 else None,
+    )
+
+
+def _one_coordinate(motion: Any) -> Any:
+    """A motion in closed form as states (x, x') of the first coordinate."""
+
+    def exact(times: Array) -> Array:
+        q, v = motion(times)
+        return np.stack([q[:, 0], v[:, 0]], axis=1)
+
+    return exact
+
+
+def _slower(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], p[2] - x[0]
+
+
+def _faster(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[1], -p[2] - x[0]
+
+
+def _carried(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = p[0], 0.0
+
+
+def _over_belt(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0] = x[1] - p[0]
+
+
+def _pulled(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0] = x[0] - p[1]
+
+
+def _pushed(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0] = x[0] + p[1]
+
+
+def _on_belt(t: float, x: Any, p: Any, out: Any) -> None:
+    out[0], out[1] = x[0], p[0]
+
+
+def stick_slip_oscillator(
+    belt: float = 0.2, static: float = 1.0, kinetic: float = 0.6, x0: float = 0.0, t_end: float = 40.0
+) -> HybridScene:
+    """Block on a belt that runs with `belt`, held by a spring; static friction above the kinetic one.
+
+    Carried by the belt from x0 on, it slips where the spring outweighs the static friction and sticks again at
+    x = 2 kinetic - static. With a = static - kinetic the period is 2 a/belt + pi + 2 atan(belt/a).
+    """
+    for name, value in (("belt", belt), ("kinetic", kinetic), ("t_end", t_end)):
+        checks.positive(name, value)
+    checks.number("static", static, least=kinetic)
+    checks.number("x0", x0, least=-static, most=static)
+    system = HybridSystem(
+        2,
+        {
+            "stick": Mode(_carried, [Guard(_pulled, "slower"), Guard(_pushed, "faster", FALLING)]),
+            "slower": Mode(_slower, [Guard(_over_belt, "stick", reset=_on_belt)]),
+            "faster": Mode(_faster, [Guard(_over_belt, "stick", FALLING, reset=_on_belt)]),
+        },
+    )
+    return HybridScene(
+        system,
+        [x0, belt],
+        "stick",
+        (0.0, t_end),
+        parameters={"belt": belt, "static": static, "kinetic": kinetic},
+        name="stick-slip-oscillator",
+        exact=lambda times: _stick_slip(times, belt, static, kinetic, x0),
+    )
+
+
+def _stick_slip(times: Array, belt: float, static: float, kinetic: float, x0: float) -> Array:
+    """Carried by the belt, then an arc of a circle about (kinetic, 0), and so on."""
+    a = static - kinetic
+    theta = math.atan2(belt, a)
+    slip, period = math.pi + 2.0 * theta, math.pi + 2.0 * theta + 2.0 * a / belt
+    since = np.asarray(times, dtype=float) - (static - x0) / belt  # the first slip
+    tau = np.where(since < 0.0, since, since % period)
+    slipping = (tau >= 0.0) & (tau < slip)
+    angle, radius = tau - theta, math.hypot(a, belt)
+    carried = np.where(tau < 0.0, static + belt * tau, 2.0 * kinetic - static + belt * (tau - slip))
+    x = np.where(slipping, kinetic + radius * np.cos(angle), carried)
+    return np.stack([x, np.where(slipping, -radius * np.sin(angle), belt)], axis=1)

@@ -1,0 +1,302 @@
+"""Runs of systems with modes (`lagrangian.HybridScene`) by the event-driven method."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
+from lcpstep import compiled
+from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.events import dop853
+from lcpstep.events import hybrid_loop as loop
+from lcpstep.events.hybrid_field import (
+    ARRIVE,
+    EXIT_ABOVE,
+    EXIT_BELOW,
+    NOT_SLIDING,
+    PLAIN,
+    Machine,
+    Space,
+    approaches,
+    scalar,
+)
+from lcpstep.events.hybrid_roots import CHECKS, DEGREE, scan
+from lcpstep.events.hybrid_trajectory import HybridTrajectory, Pieces
+from lcpstep.model import UncompiledCallback
+from lcpstep.recording import Kept
+from lcpstep.trajectory import Counts, Status
+
+Array = NDArray[np.float64]
+ROWS, SWITCHES = 4096, 4096
+PORTION = 2048  # steps between two looks at the outside world
+PER_PERIOD, PER_SPAN = 16, 50
+TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
+STATUS = {
+    loop.FINISHED: Status.DONE,
+    loop.NOT_FINITE: Status.NOT_FINITE,
+    loop.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
+    loop.STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
+    loop.ENDLESS: Status.ENDLESS_SWITCHING,
+    loop.NOT_TRANSVERSAL: Status.NOT_TRANSVERSAL,
+}
+
+
+def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
+    """The system as kernels see it, its functions compiled unless `plain`, and whether all of them could be."""
+    system, names = scene.system, scene.system.names
+    index = {name: k for k, name in enumerate(names)}
+    modes, surfaces = list(system.modes.values()), system.surfaces
+    rows = [_rows(system, index, name) for name in names]
+    table = [row for group in rows for row in group]
+    anything = modes[0].field
+    functions: dict[str, list[Any]] = {
+        "fields": [mode.field for mode in modes] + [anything for _ in surfaces],
+        "surfaces": [anything for _ in modes] + [surface.value for surface in surfaces],
+        "values": [value or anything for value, *_ in table],
+        "resets": [reset or anything for _, reset, *_ in table],
+    }
+    addresses, fast = _addresses(scene, functions, plain)
+    not_sliding = [NOT_SLIDING] * len(modes)
+    integers = {
+        "has_reset": [reset is not None for _, reset, *_ in table],
+        "first": np.cumsum([0, *map(len, rows)]),
+        "at_once": [row[3] for row in table],
+        "kind": [row[4] for row in table],
+        "target": [row[5] for row in table],
+        "below": not_sliding + [index[surface.below] for surface in surfaces],
+        "above": not_sliding + [index[surface.above] for surface in surfaces],
+    }
+    span = min(scene.period, scene.t_span[1] - scene.t_span[0])
+    return Machine(
+        **addresses,
+        **{name: np.array(x, dtype=np.int64) for name, x in integers.items()},
+        sign=np.array([row[2] for row in table], dtype=float),
+        p=np.array(scene.p),
+        dt=TIME_DIFFERENCE * span,
+    ), fast
+
+
+def _rows(
+    system: HybridSystem, index: dict[str, int], name: str
+) -> list[tuple[Any, Any, float, bool, int, int]]:
+    """The guards of a mode: function, reset, sign, whether it acts at once, kind, target."""
+    rows = [row for guard in system.guards()[name] for row in _guard_rows(guard, index)]
+    for surface in system.surfaces:
+        slides = index[surface.sliding]
+        if name in (surface.below, surface.above):
+            sign = 1.0 if name == surface.below else -1.0
+            rows.append((surface.value, None, sign, True, ARRIVE, slides))
+        elif name == surface.sliding:
+            rows.append((None, None, 1.0, True, EXIT_BELOW, index[surface.below]))
+            rows.append((None, None, 1.0, True, EXIT_ABOVE, index[surface.above]))
+    return rows
+
+
+def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, float, bool, int, int]]:
+    signs, at_once = [float(guard.direction)], guard.at_once
+    if guard.direction == BOTH:
+        signs, at_once = [1.0, -1.0], False
+    return [(guard.value, guard.reset, sign, at_once, PLAIN, index[guard.target]) for sign in signs]
+
+
+def _addresses(
+    scene: HybridScene, functions: dict[str, list[Any]], plain: bool
+) -> tuple[dict[str, Any], bool]:
+    if not (plain or compiled.jit_disabled()):
+        try:
+            return {
+                name: np.array([compiled.first_order_address(f) for f in fs], dtype=np.int64)
+                for name, fs in functions.items()
+            }, True
+        except Exception as error:  # numba's errors share no base class
+            reason = str(error).strip().splitlines()[0] if str(error) else type(error).__name__
+            warnings.warn(
+                f"a function of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
+                UncompiledCallback, stacklevel=5,
+            )  # fmt: skip
+    return {name: tuple(fs) for name, fs in functions.items()}, False
+
+
+def space(n: int) -> Space:
+    """Work space of a state of n numbers."""
+    return Space(*(np.zeros(1 if name == "out" else n) for name in Space._fields))
+
+
+def memory(n: int, guards: int, rows: int, switches: int) -> loop.Memory:
+    """Buffers of a run; rows = 0 where nothing but switches is kept."""
+    return loop.Memory(
+        armed=np.zeros(guards, dtype=np.int64), band=np.zeros(guards), states=np.zeros((DEGREE + 1 + CHECKS, n)),
+        rows=np.zeros((rows, loop.LEAD + n)), dense=np.zeros((rows, 7, n)),
+        log=np.zeros((switches, loop.SWITCH_LEAD + 2 * n)),
+    )  # fmt: skip
+
+
+def flow(scene: HybridScene, method: Any) -> loop.Flow:
+    """Span, tolerances and bounds of a run."""
+    span = scene.t_span[1] - scene.t_span[0]
+    longest = min(scene.period / PER_PERIOD, span / PER_SPAN)
+    return loop.Flow(scene.t_span[1], method.rtol, method.atol, longest, method.max_events)
+
+
+class HybridRun:
+    """One run: the kernel's arrays, and the portions that it is fed in."""
+
+    def __init__(self, method: Any, scene: HybridScene) -> None:
+        _check_start(scene)
+        n = scene.system.n_x
+        self.method, self.scene = method, scene
+        self.machine, fast = machine(scene)
+        self.flow, self.space, self.scan = flow(scene, method), space(n), scan()
+        self.memory = memory(n, len(self.machine.kind), ROWS, SWITCHES)
+        self.tableau, self.work = dop853.tableau(), dop853.work(n)
+        self.kernel = compiled.compiled(loop.run) if fast else loop.run
+        self.count, self.x = np.zeros(loop.N_COUNTERS, dtype=np.int64), np.zeros(loop.N_NUMBERS)
+        self.count[loop.MODE] = scene.system.names.index(scene.mode)
+        self.x[loop.NOW], self.x[loop.LAST_SWITCH] = scene.t_span[0], -math.inf
+        self.x[loop.NEXT] = 0.1 * self.flow.longest
+        self.work.y[:] = scene.x0
+        self.parts: dict[str, list[Array]] = {"rows": [], "dense": [], "log": []}
+
+    def finish(self, kept: Kept, progress: Callable[[float], None]) -> HybridTrajectory:
+        """Run to the end of the span, or to where it cannot go on."""
+        code, t_end = loop.FINISHED, self.scene.t_span[1]
+        try:
+            while True:
+                goal = int(self.count[loop.STEP]) + PORTION
+                try:
+                    code = int(self.kernel(
+                        self.machine, self.flow, self.space, self.scan, self.memory, self.tableau, self.work,
+                        self.count, self.x, goal,
+                    ))  # fmt: skip
+                except Exception as error:  # a function in plain Python; compiled code raises nothing
+                    message = f"a function of the scene failed after t = {self.now:.9g}: {error}"
+                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE, kept)) from error
+                self._empty()
+                progress(self.now)
+                if code not in (loop.FINISHED, loop.BUFFER_FULL) or (
+                    code == loop.FINISHED and self.now >= t_end
+                ):
+                    break
+        except KeyboardInterrupt:
+            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, kept)) from None
+        result = self.trajectory(STATUS[code], kept)
+        if result.status == Status.NOT_FINITE:
+            raise SimulationError(result.message, result)
+        return result
+
+    @property
+    def now(self) -> float:
+        """Time reached."""
+        return float(self.x[loop.NOW])
+
+    def _empty(self) -> None:
+        rows, switches = int(self.count[loop.ROW]), int(self.count[loop.SWITCH])
+        self.parts["rows"].append(self.memory.rows[:rows].copy())
+        self.parts["dense"].append(self.memory.dense[:rows].copy())
+        self.parts["log"].append(self.memory.log[:switches].copy())
+        self.count[loop.ROW] = self.count[loop.SWITCH] = 0
+
+    def trajectory(self, status: Status, kept: Kept) -> HybridTrajectory:
+        """Everything computed so far."""
+        n, mode = self.scene.system.n_x, int(self.count[loop.MODE])
+        last = np.concatenate([[self.now, 0.0, mode], self.work.y])[None]
+        rows = np.concatenate([*self.parts["rows"], last])
+        pieces = Pieces(
+            t=np.ascontiguousarray(rows[:, loop.TIME]), h=rows[:, loop.LENGTH],
+            mode=rows[:, loop.ROW_MODE].astype(np.int64), x=np.ascontiguousarray(rows[:, loop.LEAD :]),
+            dense=np.concatenate([*self.parts["dense"], np.zeros((1, 7, n))]),
+        )  # fmt: skip
+        log = np.concatenate([np.zeros((0, loop.SWITCH_LEAD + 2 * n)), *self.parts["log"]])
+        whole = HybridTrajectory(
+            scene=self.scene, method=self.method, t=pieces.t, x=pieces.x,
+            mode=np.array(self.scene.system.names)[pieces.mode], switches=self._switches(log), status=status,
+            message=self._message(status, log),
+            counts=Counts(
+                steps=int(self.count[loop.STEP]), force_evaluations=int(self.count[loop.FORCES]),
+                events=int(self.count[loop.EVENTS]),
+            ),
+            pieces=pieces,
+        )  # fmt: skip
+        return chosen(whole, kept)
+
+    def _switches(self, log: Array) -> Any:
+        n, names = self.scene.system.n_x, np.array(self.scene.system.names)
+        kind = f"U{max(map(len, names))}"
+        dtype = [
+            ("time", "f8"),
+            ("source", kind),
+            ("target", kind),
+            ("before", "f8", (n,)),
+            ("after", "f8", (n,)),
+        ]
+        result = np.zeros(len(log), dtype=dtype)
+        result["time"] = log[:, 0]
+        result["source"], result["target"] = names[log[:, 1].astype(int)], names[log[:, 2].astype(int)]
+        result["before"] = log[:, loop.SWITCH_LEAD : loop.SWITCH_LEAD + n]
+        result["after"] = log[:, loop.SWITCH_LEAD + n :]
+        return result.view(np.recarray)
+
+    def _message(self, status: Status, log: Array) -> str:
+        names, t = self.scene.system.names, f"t = {self.now:.12g}"
+        mode = names[int(self.count[loop.MODE])]
+        if status == Status.ENDLESS_SWITCHING:
+            chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
+            return (
+                f"at {t} the modes {' -> '.join([*chain, chain[0]])} follow one another for ever at one instant, or "
+                f"ever faster; where two fields point at each other, describe the switching as a lagrangian.Surface"
+            )
+        if status == Status.NOT_TRANSVERSAL:
+            return (
+                f"at {t} the motion in mode {mode!r} touches the guard towards {self._target()!r} and turns back "
+                f"within the tolerance: the guard is not transversal there, and whether it acts is undecided"
+            )
+        return {
+            Status.DONE: "ran to the end of the span",
+            Status.INTERRUPTED: f"interrupted at {t}",
+            Status.NOT_FINITE: f"after {t} the field of mode {mode!r} or the state is not finite",
+            Status.TOO_MANY_EVENTS: f"{self.count[loop.EVENTS]} switches up to {t}: more than max_events allows",
+            Status.STEP_TOO_SMALL: f"at {t} in mode {mode!r} the tolerance cannot be met by any step",
+        }[status]
+
+    def _target(self) -> str:
+        return self.scene.system.names[int(self.machine.target[self.count[loop.CULPRIT]])]
+
+
+def chosen(whole: HybridTrajectory, kept: Kept) -> HybridTrajectory:
+    """The trajectory with the states that were asked for."""
+    from dataclasses import replace
+
+    t = whole.pieces.t
+    if kept.all:
+        return whole
+    if kept.on_events:
+        t = np.unique(np.concatenate([t[:1], whole.switches.time, t[-1:]]))
+    elif kept.every:
+        t = t[:: kept.every]
+    else:
+        t = kept.times[kept.times <= t[-1]]
+    return replace(whole, t=t, x=whole.at(t), mode=whole.mode_at(t))
+
+
+def _check_start(scene: HybridScene) -> None:
+    """A motion can start sliding only where both fields point at the surface."""
+    for surface in scene.system.surfaces:
+        if scene.mode != surface.sliding:
+            continue
+        (m, _), n, t = machine(scene, plain=True), scene.system.n_x, scene.t_span[0]
+        w, x, k = space(n), np.array(scene.x0), scene.system.names.index(scene.mode)
+        L1, L2 = approaches(m, w, k, t, x)
+        H = scalar(surface.value, w, t, x, m.p)
+        if abs(H) > 1e-9 * max(1.0, float(np.max(np.abs(x)))):
+            raise LcpStepError(f"x0: mode {scene.mode!r} starts on its surface, but H = {H:.6g} there")
+        if not (L1 >= 0.0 >= L2):
+            raise LcpStepError(
+                f"mode: {scene.mode!r} needs both fields to point at the surface (L1 >= 0 >= L2), but at x0 "
+                f"L1 = {L1:.6g} and L2 = {L2:.6g}; start on one of its sides"
+            )

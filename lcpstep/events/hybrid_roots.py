@@ -1,0 +1,149 @@
+"""First root of a guard within a step, none missed, as kernels: sign changes of Bernstein coefficients.
+
+A guard along the dense output is a polynomial in the fraction s of the step (of degree 7 for a linear guard), or as
+near to one as the step is cut into parts. In Bernstein form, coefficients without a sign change have no root between
+them, and one sign change is exactly one root; otherwise the interval is halved (de Casteljau). So roots that come in
+pairs inside a step are found, too. Source: T. Sederberg, Computer Aided Geometric Design, chapter 9; G. Farin, Curves and
+Surfaces for CAGD (Morgan Kaufmann 2002), section 5.3.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lcpstep.dense import assign
+
+DEGREE = 9
+DEPTH = 42  # halvings at most
+NONE = -1.0  # in place of a root
+CHECKS = 2  # further samples, which say whether the polynomial is the guard
+MAX_ITERATIONS = 60
+RESOLUTION = 2.0**-52
+
+
+class Scan(NamedTuple):
+    """Sample points, conversion to Bernstein form, and work space."""
+
+    s: Any  # (DEGREE + 1 + CHECKS,) where the guard is sampled, in [0, 1]
+    to_bernstein: Any  # (DEGREE + 1, DEGREE + 1)
+    at_checks: Any  # (CHECKS, DEGREE + 1)
+    sample: Any  # (DEGREE + 1 + CHECKS,)
+    c: Any  # (DEGREE + 1,) Bernstein coefficients of the guard
+    half: Any  # (DEGREE + 1,)
+    stack: Any  # (DEPTH + 3, DEGREE + 1)
+    low: Any  # (DEPTH + 3,)
+    high: Any
+
+
+def scan() -> Scan:
+    """Chebyshev points and the inverse of the Bernstein basis there."""
+    n = DEGREE + 1
+    nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(n) / DEGREE)
+    checks = np.array([0.3819, 0.8137])
+    basis = [math.comb(DEGREE, j) for j in range(n)]
+
+    def bernstein(s: Any) -> Any:
+        return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
+
+    return Scan(
+        s=np.concatenate([nodes, checks]), to_bernstein=np.linalg.inv(bernstein(nodes)), at_checks=bernstein(checks),
+        sample=np.zeros(n + CHECKS), c=np.zeros(n), half=np.zeros(n), stack=np.zeros((DEPTH + 3, n)),
+        low=np.zeros(DEPTH + 3), high=np.zeros(DEPTH + 3),
+    )  # fmt: skip
+
+
+def convert(scan: Any) -> float:
+    """Bernstein coefficients of the samples; how far the polynomial is from the further samples."""
+    n = DEGREE + 1
+    for j in range(n):
+        scan.c[j] = 0.0
+        for i in range(n):
+            scan.c[j] += scan.to_bernstein[j, i] * scan.sample[i]
+    worst = 0.0
+    for k in range(CHECKS):
+        value = 0.0
+        for j in range(n):
+            value += scan.at_checks[k, j] * scan.c[j]
+        worst = max(worst, abs(value - scan.sample[n + k]))
+    return worst
+
+
+def largest(scan: Any) -> float:
+    """The largest sample."""
+    most = 0.0
+    for x in scan.sample:
+        most = max(most, abs(x))
+    return most
+
+
+def taylor(d: Any, s: float, work: Any) -> tuple[float, float, float]:
+    """Value, first and second derivative of a polynomial in Bernstein form."""
+    assign(work, d)
+    n, slope, curvature = DEGREE, 0.0, 0.0
+    for i in range(n):
+        if i == n - 2:
+            curvature = n * (n - 1) * (work[2] - 2.0 * work[1] + work[0])
+        if i == n - 1:
+            slope = n * (work[1] - work[0])
+        for j in range(n - i):
+            work[j] = (1.0 - s) * work[j] + s * work[j + 1]
+    return work[0], slope, curvature
+
+
+def first_rise(scan: Any, sign: float, level: float, start: float) -> float:
+    """First s in (start, 1] where sign times the polynomial rises through the level, or NONE."""
+    for j in range(DEGREE + 1):
+        scan.stack[0, j] = sign * scan.c[j] - level
+    scan.low[0], scan.high[0] = 0.0, 1.0
+    top = 1
+    while top > 0:
+        top -= 1
+        d, a, b = scan.stack[top], scan.low[top], scan.high[top]
+        if b <= start:
+            continue
+        changes = 0
+        for j in range(DEGREE):
+            changes += (d[j] < 0.0) != (d[j + 1] < 0.0)
+        if changes == 0 or (changes == 1 and d[0] >= 0.0):
+            continue
+        if changes == 1:
+            s = a + (b - a) * single_root(d, scan.half)
+            if s > start:
+                return s
+            continue
+        if top >= DEPTH:
+            if d[0] < 0.0 <= d[DEGREE]:
+                return b
+            continue
+        left = scan.stack[top + 1]
+        for i in range(DEGREE + 1):
+            left[i] = d[0]
+            for j in range(DEGREE - i):
+                d[j] = 0.5 * (d[j] + d[j + 1])
+        middle = 0.5 * (a + b)
+        scan.low[top], scan.high[top] = middle, b
+        scan.low[top + 1], scan.high[top + 1] = a, middle
+        top += 2
+    return NONE
+
+
+def single_root(d: Any, work: Any) -> float:
+    """The root in [0, 1] of a polynomial that rises through zero once: Newton's method within a bracket."""
+    a, b = 0.0, 1.0
+    s = d[0] / (d[0] - d[DEGREE])
+    for _ in range(MAX_ITERATIONS):
+        f, slope, _ = taylor(d, s, work)
+        if f < 0.0:
+            a = s
+        else:
+            b = s
+        new = s - f / slope if slope > 0.0 else a
+        if not a < new < b:
+            new = 0.5 * (a + b)
+        if abs(new - s) <= RESOLUTION or b - a <= RESOLUTION:
+            return new
+        s = new
+    return s

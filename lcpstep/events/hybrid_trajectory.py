@@ -1,0 +1,100 @@
+"""The answer of a run of a system with modes: states, modes, and the log of switches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lagrangian.hybrid import HybridScene
+from lcpstep.trajectory import Counts, Status
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """Steps: start t (n,), length h (n,), mode (n,), state x (n, n_x) and dense output (n, 7, n_x)."""
+
+    t: Array
+    h: Array
+    mode: NDArray[np.int64]
+    x: Array
+    dense: Array
+
+
+@dataclass(frozen=True, eq=False)
+class HybridTrajectory:
+    """A motion of a system with modes.
+
+    Attributes
+    ----------
+    t : (n,)   times of the kept states
+    x : (n, n_x)   states; after the switch at a time that has one
+    mode : (n,)   names of the modes from these times on
+    switches : record array (m,)
+        Fields time, source, target (names of the modes left and entered), before, after (states, (n_x,) each).
+    status : Status   DONE, or why the run ended early; `message` says it in words
+    counts : Counts   steps, evaluations of the field, switches (`events`)
+    scene, method : the question, and how it was answered
+    """
+
+    scene: HybridScene
+    method: Any
+    t: Array
+    x: Array
+    mode: NDArray[np.str_]
+    switches: Any
+    status: Status
+    message: str
+    counts: Counts
+    pieces: Pieces
+
+    def at(self, t: ArrayLike) -> Array:
+        """State at any time of the run; the right limit where it jumps.
+
+        Parameters
+        ----------
+        t : number or (m,)   times within the run
+
+        Returns
+        -------
+        (n_x,) for a number, (m, n_x) for an array
+
+        Raises
+        ------
+        ValueError   a time lies outside the run
+        """
+        times, row = self._rows(t)
+        s = self.pieces
+        with np.errstate(invalid="ignore"):
+            fraction = np.clip((times - s.t[row]) / np.where(s.h[row] > 0.0, s.h[row], np.inf), 0.0, 1.0)[
+                :, None
+            ]
+        total = np.zeros((len(times), s.x.shape[1]))
+        for k in range(7):
+            total = (total + s.dense[row, 6 - k]) * (fraction if k % 2 == 0 else 1.0 - fraction)
+        x = s.x[row] + total
+        return x[0] if np.ndim(t) == 0 else x
+
+    def mode_at(self, t: ArrayLike) -> Any:
+        """Name of the mode at any time of the run, or (m,) names; the later one at a switch."""
+        names = np.array(self.scene.system.names)
+        _, row = self._rows(t)
+        result = names[self.pieces.mode[row]]
+        return str(result[0]) if np.ndim(t) == 0 else result
+
+    def _rows(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
+        times, s = np.atleast_1d(np.asarray(t, dtype=float)), self.pieces
+        outside = ~((times >= s.t[0]) & (times <= s.t[-1]))
+        if np.any(outside):
+            raise ValueError(f"t: expected times within [{s.t[0]:g}, {s.t[-1]:g}], got {times[outside][0]:g}")
+        return times, np.searchsorted(s.t, times, side="right") - 1
+
+    def __repr__(self) -> str:
+        return (
+            f"HybridTrajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g}, "
+            f"{len(self.t)} states, {len(self.switches)} switches, {self.status.name})"
+        )
