@@ -9,7 +9,7 @@ standard error. Source: G. Osorio, Complex Behavior in Impacting Systems, sectio
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -152,6 +152,18 @@ def attractors(
     return Attractors(shared, first, label, settings)
 
 
+def with_new(known: Attractors, more: Attractors) -> Attractors:
+    """The known attractors, and those of another search that are not among them; shares are of each search."""
+    tolerance = known.settings["tolerance"]
+
+    def is_known(a: Attractor) -> bool:
+        size = max(float(np.max(np.abs(a.points))), 1e-300)
+        return any(_same(b, a.points, a.periods, tolerance * size) for b in known.found)
+
+    new = [a for a in more.found if not is_known(a)]
+    return replace(known, found=(*known.found, *new))
+
+
 def random_starts(box: ArrayLike, n: int, seed: int) -> Array:
     """N states drawn uniformly from a box (2, 2 n_q) of lowest and highest ones, (n, 2 n_q)."""
     box = np.asarray(box, dtype=float)
@@ -215,6 +227,4 @@ def _same(known: Attractor, states: Array, n: int, tolerance: float) -> bool:
 
 
 def _with_share(attractor: Attractor, share: float) -> Attractor:
-    from dataclasses import replace
-
     return replace(attractor, share=share)

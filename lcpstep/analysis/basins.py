@@ -4,7 +4,8 @@
 2. A cell is settled once an image lies near an attractor, or in a cell that is settled on the same attractor as
    all its eight neighbours. Repeated until nothing changes, the labels spread outwards from the attractors.
 3. Cells left over, those between basins, are carried on from their last image, two periods a round, and the few of
-   the last round until they come near an attractor themselves.
+   the last round until they come near an attractor themselves. Attractors are looked for once more from cells that
+   then have no label.
 
 So only the labels of homogeneous neighbourhoods are shared, and a label depends neither on the order of the cells
 nor on how the work is divided. The share of an attractor is that of its cells; its uncertainty is that of a grid
@@ -18,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis.attractors import Attractor, Attractors, attractors, random_starts
+from lcpstep.analysis.attractors import Attractor, Attractors, attractors, random_starts, with_new
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, Targets, periods
@@ -96,6 +97,7 @@ def basins(
         raise ValueError(f"lowest, highest: expected an increasing range of q and of v, got {low} and {high}")
     n_q, n_v = (checks.count("shape", n) for n in shape)
     longest, method = checks.count("longest", longest), method or EventDriven()
+    complete = known is None
     if known is None:
         starts = outside(scene, random_starts([low, high], STARTS, seed), phase)
         known = attractors(scene, method, starts, phase=phase, transient=longest)
@@ -132,6 +134,13 @@ def basins(
             break
     if len(rest):
         label[rest] = stage("rest", study.to_the_end, PART // 8)["label"]
+    rest = np.flatnonzero(label == UNKNOWN)
+    if len(rest) and complete:  # they may go to attractors that no random start went to
+        some = rest[np.linspace(0, len(rest) - 1, min(len(rest), STARTS)).astype(int)]
+        more = attractors(scene, method, grid.centres(some), phase=phase, transient=longest)
+        known = with_new(known, more)
+        study = replace(study, targets=neighbourhoods(scene, method, known.found, phase, longest, seed))
+        label[rest] = stage("second-look", study.to_the_end, PART // 8)["label"]
     wrong = _wrong(study, label, sample, seed)
     return study.dataset(known, label, wrong, seed, sample)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian.scenes import cam_follower
+from lagrangian.scenes import cam_follower, impact_oscillator
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors, random_starts, return_time
 from lcpstep.analysis.basins import OBSTACLE, Grid, basins, homogeneous, spread
@@ -169,6 +169,16 @@ def test_all_cells_go_to_the_chaotic_attractor_where_there_is_no_other():
     data = basins(cam_follower(rpm=660.0), [0.01, -20.0], [1.0, 20.0], (24, 24), longest=400, sample=0)
     assert list(data["name"].values) == ["chaotic"]
     assert np.mean(data["label"].values == 0) > 0.99
+
+
+def test_an_attractor_with_a_small_basin_is_found_from_the_cells_that_are_left():
+    # The oscillator that never touches its stop, next to one that strikes it once a period
+    scene = impact_oscillator(omega=1.3, amplitude=0.3, stop=0.5)
+    data = basins(scene, [-1.5, -2.0], [0.6, 2.0], (60, 60), sample=200)
+    shares = dict(zip(data["name"].values, data["share"].values, strict=True))
+    assert set(shares) == {"O(1, 1)", "O(1, 0)"}
+    assert 0.005 < shares["O(1, 0)"] < 0.05
+    assert data.attrs["unlabelled"] == 0.0
 
 
 def blocks(random, n, shift=0.0):
