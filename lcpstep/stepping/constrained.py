@@ -70,7 +70,6 @@ class Constraints(NamedTuple):
 
     joints: Any  # models: see `lcpstep.model`
     tangents: Any
-    mu: Any  # (n_c,)
     tangent_restitution: Any  # (n_c,)
     constant: bool  # the rows never change
     projected: bool
@@ -88,16 +87,13 @@ class Constraints(NamedTuple):
     b: Any  # (n,) rates without impulses, with restitution
     p: Any  # (n,) impulses
     ids: Any  # (n,) the rows that take part: normals, tangents, joints
-    carrier: Any  # (n_c,) place in `ids` of the normal of each tangent there
     sliding: Any  # (n_c or 0,) sliding velocities at the start of the step
     near: Any  # (n_c,) contacts that the projection looks at
     gaps: Any  # (n_c,)
     joint_gaps: Any  # (n_j,)
     M: Any  # (n_q, n_q)
     failed: Any  # (n_j,) 1 for joints that contradict others
-    R: Any  # (4 n_c^2,) mobilities of the contacts, the joints eliminated
-    reduced: Any  # (2 n_c,)
-    solution: Any  # (2 n_c,)
+    problem: Any  # see `friction.Problem`
     joint_work: Any
 
 
@@ -150,7 +146,7 @@ def run(
 def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: float, t_next: float) -> int:
     """One step with n_a active contacts into next_q, next_v, and the impulses."""
     n_j = len(c.J_t)
-    n_f = take_part(state.active, c.mu, c.ids, c.carrier, n_a, len(c.T_t), n_j)
+    n_f = take_part(state.active, c.problem.mu, c.ids, c.problem.carrier, n_a, len(c.T_t), n_j)
     n_k = n_a + n_f + n_j
     if n_a > 0:
         predicted_rates(model, plan, state, t_next)
@@ -188,17 +184,17 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: flo
             model.restitution,
             c.tangent_restitution,
             c.ids,
-            c.carrier,
+            c.problem.carrier,
             n_a,
             n_f,
             c.b,
         )
-        eliminate(c.joint_work, c.W, c.b, c.ids, n_a + n_f, n_k, c.R, c.reduced)
+        eliminate(c.joint_work, c.W, c.b, c.ids, n_a + n_f, n_k, c.problem.R, c.problem.reduced)
         if n_a > 0:
             count[LCP_CALLS] += 1
-            if not solve_contacts(c, state, n_a, n_f):
+            if not solve_contacts(c.problem, n_a, n_f):
                 return LCP_FAILED
-        distribute(c.joint_work, c.solution, c.ids, n_a + n_f, n_k, c.p)
+        distribute(c.joint_work, c.problem.solution, c.ids, n_a + n_f, n_k, c.p)
         change = apply(state.v, state.v_free, c.X, c.p, c.ids, n_f, n_k, state.next_v)
         if not iterate or change <= CONVERGED:
             break

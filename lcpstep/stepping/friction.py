@@ -21,25 +21,40 @@ Sources: C. Glocker, F. Pfeiffer, Nonlinear Dynamics 7 (1995) 471; M. Anitescu, 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
-from lcpstep.compiled import call_solver, inline
+from lcpstep.compiled import call_solver
 
 DEGENERATE = 1e-13  # determinant, relative to its terms, below which normal and tangent are one direction
 ROUNDING = 1e-13  # relative: a sliding velocity this small has no sign
 
 
-@inline
-def solve_contacts(c: Any, state: Any, n_a: int, n_f: int) -> bool:
+class Problem(NamedTuple):
+    """The contacts of a step, the joints eliminated, and where their complementarity problem is written."""
+
+    R: Any  # (4 n_c^2,) mobilities, row by row
+    reduced: Any  # (2 n_c,) rates
+    solution: Any  # (2 n_c,) impulses: normals, then tangents
+    mu: Any  # (n_c,)
+    ids: Any  # rows that take part; the first are the contacts
+    carrier: Any  # (n_c,) place in `ids` of the normal of each tangent
+    W: Any
+    b: Any
+    z: Any
+    solver: Any  # the complementarity solver, a function or its address
+    work: Any  # its work space
+
+
+def solve_contacts(c: Any, n_a: int, n_f: int) -> bool:
     """Impulses of n_a contacts, the frictional n_f of them, from c.R and c.reduced into c.solution."""
     if n_a == 1 and n_f == 1 and solve_frictional(c.R, c.reduced, c.mu[c.ids[0]], c.solution):
         return True
     if n_a == 1 and n_f == 0 and c.R[0] > 0.0:
         c.solution[0] = max(0.0, -c.reduced[0] / c.R[0])
         return True
-    if solve_three_rows(c, state, n_a, n_f):
+    if solve_three_rows(c, n_a, n_f):
         return True
-    return n_f > 0 and solve_four_rows(c, state, n_a, n_f)
+    return n_f > 0 and solve_four_rows(c, n_a, n_f)
 
 
 def solve_frictional(R: Any, b: Any, mu: float, p: Any) -> bool:
@@ -67,13 +82,13 @@ def solve_frictional(R: Any, b: Any, mu: float, p: Any) -> bool:
     return False
 
 
-def solve_three_rows(c: Any, state: Any, n_a: int, n_f: int) -> bool:
+def solve_three_rows(c: Any, n_a: int, n_f: int) -> bool:
     """Unknowns p_N of all contacts, then p_R and xi_L of the frictional ones."""
     m, n, R = n_a + n_f, n_a + 2 * n_f, c.R
-    W = state.W[: n * n].reshape((n, n))
-    clear(W, state.b, state.z, n)
+    W = c.W[: n * n].reshape((n, n))
+    clear(W, c.b, c.z, n)
     for i in range(m):
-        state.b[i] = c.reduced[i]
+        c.b[i] = c.reduced[i]
         for k in range(m):
             W[i, k] = R[i * m + k]
     for f in range(n_f):
@@ -83,43 +98,43 @@ def solve_three_rows(c: Any, state: Any, n_a: int, n_f: int) -> bool:
             W[i, k] -= R[i * m + T] * mu
         W[T, m + f] = 1.0
         W[m + f, k], W[m + f, T] = 2.0 * mu, -1.0
-    if call_solver(state.solver, W, state.b[:n], state.z[:n], state.lcp) != 0:
+    if call_solver(c.solver, W, c.b[:n], c.z[:n], c.work) != 0:
         return False
     for i in range(m):
-        c.solution[i] = state.z[i]
+        c.solution[i] = c.z[i]
     for f in range(n_f):
         k, T = c.carrier[f], n_a + f
-        limit = c.mu[c.ids[k]] * state.z[k]
-        c.solution[T] = max(-limit, min(limit, state.z[T] - limit))
+        limit = c.mu[c.ids[k]] * c.z[k]
+        c.solution[T] = max(-limit, min(limit, c.z[T] - limit))
     return True
 
 
-def solve_four_rows(c: Any, state: Any, n_a: int, n_f: int) -> bool:
+def solve_four_rows(c: Any, n_a: int, n_f: int) -> bool:
     """Unknowns p_N of all contacts, then p_T+, p_T- and the slack of the frictional ones."""
     m, n, R = n_a + n_f, n_a + 3 * n_f, c.R
-    W = state.W[: n * n].reshape((n, n))
-    clear(W, state.b, state.z, n)
+    W = c.W[: n * n].reshape((n, n))
+    clear(W, c.b, c.z, n)
     for i in range(m):
-        state.b[i] = c.reduced[i]
+        c.b[i] = c.reduced[i]
         for k in range(m):
             W[i, k] = R[i * m + k]
     for f in range(n_f):
         k, T, L, slack = c.carrier[f], n_a + f, m + f, m + n_f + f
         for i in range(m):
             W[i, L], W[L, i] = -R[i * m + T], -R[T * m + i]
-        state.b[L] = -state.b[T]
+        c.b[L] = -c.b[T]
         W[T, slack] = W[L, slack] = 1.0
         W[slack, k], W[slack, T], W[slack, L] = c.mu[c.ids[k]], -1.0, -1.0
     for f in range(n_f):
         for g in range(n_f):
             W[m + f, m + g] = R[(n_a + f) * m + n_a + g]
-    if call_solver(state.solver, W, state.b[:n], state.z[:n], state.lcp) != 0:
+    if call_solver(c.solver, W, c.b[:n], c.z[:n], c.work) != 0:
         return False
     for i in range(n_a):
-        c.solution[i] = state.z[i]
+        c.solution[i] = c.z[i]
     for f in range(n_f):
-        limit = c.mu[c.ids[c.carrier[f]]] * state.z[c.carrier[f]]
-        c.solution[n_a + f] = max(-limit, min(limit, state.z[n_a + f] - state.z[m + f]))
+        limit = c.mu[c.ids[c.carrier[f]]] * c.z[c.carrier[f]]
+        c.solution[n_a + f] = max(-limit, min(limit, c.z[n_a + f] - c.z[m + f]))
     return True
 
 

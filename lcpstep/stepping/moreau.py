@@ -136,9 +136,9 @@ def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop
         **contacts,
     )
     if features is not None:
-        state = enlarged(scene, state, features)
-    solver = loop.solve_single if len(state.b) <= 1 else solve_small
-    return state._replace(solver=solver_address(solver, state.lcp) if fast else solver)
+        return enlarged(state, features)
+    solver = loop.solve_single if n_c <= 1 else solve_small
+    return state._replace(solver=solver_address(solver, lcp) if fast else solver)
 
 
 class _Run:
@@ -149,10 +149,11 @@ class _Run:
         self.extra: tuple[Constraints, ...] = ()  # of the kernel: constraints, where there are any
         if method.beyond_contacts(scene):
             (self.model, joints, tangents), fast = models(scene)
-            self.extra = (constraints(scene, self.model, joints, tangents, method.projected),)
+            fast = fast and not jit_disabled()
+            self.extra = (constraints(scene, self.model, joints, tangents, method.projected, fast),)
         else:
             self.model, fast = model(scene)
-        fast = fast and not jit_disabled()
+            fast = fast and not jit_disabled()
         never = (loop.linearise,) if self.model.linear and not self.extra else ()
         steps: Callable[..., int] = constrained.run if self.extra else loop.run
         self.kernel = compiled(steps, never) if fast else steps

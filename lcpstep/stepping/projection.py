@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.compiled import inline
 from lcpstep.dense import assign, positive_definite, solve_definite
 from lcpstep.dynamics import gap_rates, gaps, mass
 from lcpstep.stepping.friction import solve_contacts
@@ -56,7 +55,6 @@ def project(model: Any, plan: Any, state: Any, c: Any, t: float) -> int:
     return NO_POSITION
 
 
-@inline
 def correct(model: Any, plan: Any, state: Any, c: Any, t: float) -> bool:
     """One step of Newton's method; False where the linearised gaps allow no position."""
     n_c, n_j = len(state.u), len(c.joint_gaps)
@@ -84,10 +82,10 @@ def correct(model: Any, plan: Any, state: Any, c: Any, t: float) -> bool:
         c.b[i] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
         divide_by_mass(model.linear, model.M_inverse, c.M, c.H[i], c.X[i])
     mobilities(c.H, c.X, c.ids, n_k, c.W)
-    eliminate(c.joint_work, c.W, c.b, c.ids, n_a, n_k, c.R, c.reduced)
-    if n_a > 0 and not solve_contacts(c, state, n_a, 0):
+    eliminate(c.joint_work, c.W, c.b, c.ids, n_a, n_k, c.problem.R, c.problem.reduced)
+    if n_a > 0 and not solve_contacts(c.problem, n_a, 0):
         return False
-    distribute(c.joint_work, c.solution, c.ids, n_a, n_k, c.p)
+    distribute(c.joint_work, c.problem.solution, c.ids, n_a, n_k, c.p)
     for k in range(n_k):
         for i in range(len(state.q)):
             state.next_q[i] += c.X[c.ids[k], i] * c.p[c.ids[k]]
