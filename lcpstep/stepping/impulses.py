@@ -21,6 +21,7 @@ from lcpstep.recording import write_event
 from lcpstep.stepping.located_work import (
     ACCUMULATION,
     CLOSED,
+    CLOSED_NOW,
     END,
     EVENT,
     EVENTS,
@@ -35,7 +36,6 @@ from lcpstep.stepping.located_work import (
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
-MANY = 200  # impacts in one step after which hops are taken as one if they end within the step
 COLLAPSE = 1e-9  # of a step: impacts as close as this,
 IN_A_ROW = 8  # so many of them in a row, are an inelastic collapse
 
@@ -112,9 +112,10 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
 
 
 @inline
-def stick(w: Any, record: Any, count: Any, c: int, t: float) -> None:
+def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
     """A contact stays closed from here on."""
     w.u[c], w.status[c] = 0.0, CLOSED
+    x[CLOSED_NOW] += 1
     w.older[c] = w.multiplier[c] = 0.0
     log(record, count, t, c, 0.0, 0.0, 0.0, STICK)
 
@@ -133,6 +134,7 @@ def release_time(w: Any, c: int, t: float, rest: float, deficit: float) -> float
 def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: float) -> None:
     """A closed contact opens."""
     w.status[c], w.grounded[c] = OPEN, 1
+    x[CLOSED_NOW] -= 1
     w.multiplier[c] = w.older[c] = 0.0
     w.g[c], w.u[c] = 0.0, after
     log(record, count, t, c, 0.0, after, 0.0, RELEASE)
@@ -181,7 +183,8 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
     """The impact of contact `first`, and of those that fire with it; how many took part, 0 if none was solved."""
     n_s = choose_struck(plan, w, first)
-    n_s = choose_connected(w, n_s)
+    if x[CLOSED_NOW] > 0:
+        n_s = choose_connected(w, n_s)
     alone = n_s == 1
     for k in range(n_s):
         c = w.chosen[k]
@@ -255,7 +258,9 @@ def closes(m: Any, plan: Any, w: Any, x: Any, c: int, alone: bool) -> bool:
     if not alone:
         return hop < SHORT_TOGETHER * plan.h
     ends_in_time = hop / (1.0 - r) <= x[END] - x[SIGMA]
-    return (ends_in_time and (hop < SHORT * plan.h or w.hits[c] > MANY)) or hop < COLLAPSE * SHORT * plan.h
+    return (
+        ends_in_time and (hop < SHORT * plan.h or w.hits[c] > plan.many)
+    ) or hop < COLLAPSE * SHORT * plan.h
 
 
 @inline
@@ -306,12 +311,12 @@ def after_impact(
             T = r * before / w.half[c] / (1.0 - r)
             p += -2.0 * w.half[c] * T / w.W[c, c]
         log(record, count, t + T, c, before, 0.0, p, ACCUMULATION)
-        stick(w, record, count, c, t + T)
+        stick(w, record, count, x, c, t + T)
         return
     w.u[c] = -r * before if r > 0.0 else 0.0
     log(record, count, t, c, before, w.u[c], p, IMPACT)
     if r == 0.0:
-        stick(w, record, count, c, t)
+        stick(w, record, count, x, c, t)
 
 
 @inline

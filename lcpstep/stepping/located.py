@@ -12,14 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
-from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, require
-from lcpstep.recording import Kept, Recorder
+from lcpstep.recording import Kept, Record, Recorder
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
+from lcpstep.stepping import polynomial_loop
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -27,6 +28,11 @@ Array = NDArray[np.float64]
 PORTION = 16384  # steps between two looks at the outside world
 WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
 SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
+ORDERS = (2, 4, "exact")
+# Impacts in one step after which the rest of a chattering sequence, if it ends within the step, is taken as one: the
+# frozen acceleration of order two makes no error by that
+MANY, MANY_EXACTLY = 200, 20_000
+PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstacle
 MARGIN = 2.0**-49  # relative; by which times are moved off a corner
 
 
@@ -37,6 +43,10 @@ class Located:
     Parameters
     ----------
     h : step [s]; the last step is shortened where h does not divide the span
+    order : 2, 4 or "exact", of the smooth motion and with it of the whole
+        4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
+        up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
+        contacts; a moving obstacle or frame with one coordinate only.
     max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step
 
     Raises
@@ -54,47 +64,89 @@ class Located:
     """
 
     h: float = 1e-3
+    order: int | str = 2
     max_events: int = 1_000_000
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
+        if self.order not in ORDERS or isinstance(self.order, (bool, float)):
+            raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
         object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
         require(scene, "Located", joints=False, friction=False)
+        if self.order == "exact":
+            require_linear(scene)
         return _Run(self, scene, kept).finish(progress)
 
 
-def plan(scene: Scene, m: Model, h: float, max_events: int) -> work.Plan:
+def require_linear(scene: Scene) -> None:
+    """Refuse a scene whose motion between impacts is not known in closed form."""
+    s, c = scene.system, scene.contacts
+    if not (isinstance(s, LinearSystem) and isinstance(s.force, Harmonic)):
+        reason = "a LinearSystem whose force is constant or Harmonic"
+    elif not (c is None or isinstance(c, LinearContacts)):
+        reason = "LinearContacts"
+    elif scene.n_q > 1 and (s.frame is not None or (c is not None and c.motion is not None)):
+        reason = "one coordinate where the frame or an obstacle moves"
+    else:
+        return
+    raise LcpStepError(f'scene: Located(order="exact") expects {reason}; take order=4 for {scene.name!r}')
+
+
+def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     """Constants of steps of size h."""
     n_q = scene.n_q
     stiff = bool(m.linear and (np.any(m.C) or np.any(m.K)))
     steady = bool(m.linear and not stiff and m.force == ABSENT and m.frame == ABSENT and m.omega == 0.0)
     A_inverse = np.zeros((2, n_q, n_q))
     if m.linear:
-        A_inverse[:] = np.linalg.inv(m.M + 0.5 * h * m.C + 0.25 * h * h * m.K)
+        implicit = h if method.order == 2 else 0.0
+        A_inverse[:] = np.linalg.inv(m.M + 0.5 * implicit * m.C + 0.25 * implicit**2 * m.K)
     size = max(np.max(np.abs(x), initial=0.0) for x in (scene.q0, m.offset, h * np.asarray(scene.v0)))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     return work.Plan(
         h=h, stiff=stiff, steady=steady,
         plain=bool(m.linear and m.flat and m.motion == ABSENT), constant=bool(m.linear and m.flat),
-        small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), max_events=max_events,
+        small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), max_events=method.max_events,
+        many=MANY if method.order == 2 else MANY_EXACTLY,
+        exact=method.order == "exact", longest=longest(scene, m, method),
         corners=np.array(scene.corners), period=scene.period,
         margin=MARGIN * t_scale if len(np.asarray(scene.corners)) else 0.0,
         A_inverse=A_inverse, A=np.zeros((n_q, n_q)), unit=np.zeros(n_q), pivots=np.zeros(n_q, dtype=np.int64),
     )  # fmt: skip
 
 
+def longest(scene: Scene, m: Model, method: Located) -> float:
+    """Longest piece on which a Taylor polynomial is exact and gap velocities turn but once in a quarter of it."""
+    if method.order != "exact":
+        return np.inf
+    stiffness = np.max(np.abs(np.linalg.eigvals(m.M_inverse @ m.K)))
+    damping = np.max(np.abs(np.linalg.eigvals(m.M_inverse @ m.C)))
+    rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
+    return float(1.0 / rate) if rate > 0.0 else np.inf
+
+
+def polynomial(n_q: int, n_c: int) -> work.Polynomial:
+    """Work space of a polynomial piece."""
+    vectors = ("q", "v", "q_stage", "v_stage", "v_end", "q_end")
+    return work.Polynomial(
+        T=np.zeros((work.DEGREE + 1, n_q)), scale=np.ones(1), a=np.zeros((5, n_q)),
+        **{name: np.zeros(n_q) for name in vectors},
+        **{name: np.zeros(n_c) for name in ("g_from", "u_from", "g_to", "u_to", "u_now")},
+    )  # fmt: skip
+
+
 def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
-    vectors = ("free", "a", "force", "next_force", "q_try", "v_try", "a_try")
+    vectors = ("free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try")
     numbers = (
         "g", "u", "half", "alpha", "bend", "bias", "g_try", "g_t", "g_t_try", "end_s", "last", "multiplier", "older",
         "older_time", "impulse", "p", "b", "z",
     )  # fmt: skip
-    integers = ("status", "grounded", "hits", "close_hits", "plastic", "chosen", "pivots")
+    integers = ("status", "grounded", "hits", "close_hits", "plastic", "chosen")
     lcp = workspace(max(n_c, 1))
     solver = solve_single if n_c <= 1 else solve_small
     return work.Work(
@@ -104,7 +156,7 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
         **{name: np.zeros(n_c, dtype=np.int64) for name in integers},
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
-        M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
+        pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
         solver=solver_address(solver, lcp) if fast else solver, lcp=lcp,
     )  # fmt: skip
 
@@ -123,9 +175,10 @@ class _Run:
         self.method, self.scene, self.kept = method, scene, kept
         self.model, fast = model(scene)
         self.fast = fast and not jit_disabled()
-        self.plan = plan(scene, self.model, method.h, method.max_events)
+        self.plan = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, self.plan, self.fast)
         self.x = np.zeros(work.N_NUMBERS)
+        self.piece = polynomial(scene.n_q, scene.n_c)
         self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 8)
         self.count = np.zeros(work.N_COUNTERS, dtype=np.int64)
         self.totals = {"events": 0}
@@ -157,25 +210,33 @@ class _Run:
 
     def prepare(self, h: float) -> None:
         """Constants for steps of size h."""
-        self.plan = plan(self.scene, self.model, h, self.method.max_events)
+        self.plan = plan(self.scene, self.model, self.method, h)
         respond(self.model, self.plan, self.work)
 
     def portions(self, t0: float, first: int, last: int, progress: Callable[[float], None]) -> Status:
         """Steps first .. last - 1 of the run, all of one size."""
         count, b = self.count, self.recorder.buffers
         self.t0, self.first = t0, first
-        run = compiled(loop.run) if self.fast else loop.run
         code = work.FINISHED
         while count[work.STEP] < last and code in (work.FINISHED, work.BUFFER_FULL):
             goal = min(last, int(count[work.STEP]) + PORTION)
             try:
-                code = run(self.model, self.plan, self.work, self.x, b, count, t0, first, goal)
+                code = self.steps(b, t0, first, goal)
             except Exception as error:  # a callback in plain Python; compiled code raises nothing
                 message = f"a callback failed in the step from t = {self.now:.9g} s: {error}"
                 raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
             self.empty()
             progress(self.now)
         return STATUS[code]
+
+    def steps(self, b: Record, t0: float, first: int, goal: int) -> int:
+        """Steps up to `goal`, by the kernel of the method's order."""
+        m, p, w, x, count = self.model, self.plan, self.work, self.x, self.count
+        if self.method.order == 2:
+            run = compiled(loop.run) if self.fast else loop.run
+            return int(run(m, p, w, x, b, count, t0, first, goal))
+        run = compiled(polynomial_loop.run) if self.fast else polynomial_loop.run
+        return int(run(m, p, w, x, self.piece, b, count, t0, first, goal))
 
     @property
     def now(self) -> float:
@@ -208,8 +269,19 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=_interpolation(t, q, v, self.kept.all),
+            dense=_interpolation(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
         )  # fmt: skip
+
+    def again(self) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, by another run that keeps them."""
+        method, scene = self.method, self.scene
+
+        def at(times: Array) -> tuple[Array, Array]:
+            unique, place = np.unique(times, return_inverse=True)
+            m = method.run(scene, Kept.parse(unique, scene.t_span), lambda _: None)
+            return m.q[place], m.v[place]
+
+        return at
 
     def message(self, status: Status) -> str:
         """How the run ended, in words."""

@@ -21,6 +21,7 @@ from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
 from lcpstep.stepping.located_work import (
     BUFFER_FULL,
     CLOSED,
+    CLOSED_NOW,
     END,
     EPS,
     EVENT,
@@ -36,15 +37,15 @@ from lcpstep.stepping.located_work import (
     ROW,
     SIGMA,
     STEP,
+    UNCHANGED,
     UNDER_WAY,
     WHOLE,
 )
-from lcpstep.stepping.quadratic import first_zero
+from lcpstep.stepping.quadratic import first_zero, may_reach_zero
 from lcpstep.stepping.smooth import (
     ON_THE_SURFACE,
     accelerate,
     advance,
-    anything_closed,
     free_acceleration,
     gap_bias,
     lift,
@@ -52,6 +53,7 @@ from lcpstep.stepping.smooth import (
     put_on_surface,
     refactor,
     respond,
+    settle_state,
     within,
 )
 
@@ -85,6 +87,7 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
                 size += abs(w.G[c, i] * w.v[i])
             if abs(w.u[c]) <= 64 * EPS * size:
                 w.u[c], w.status[c] = 0.0, CLOSED
+                x[CLOSED_NOW] += 1
     if len(record.times) == 0:
         keep(w, record, count, t)
     elif record.times[0] == t:
@@ -114,7 +117,7 @@ def run(
         if code != FINISHED:
             return code
         t_next = t0 + plan.h * (count[STEP] + 1 - first)
-        keep_times(w, record, count, t_next + LATE * plan.h, t_next + LATE * plan.h)
+        keep_times(model, plan, w, x, record, count, t_next + LATE * plan.h, t_next + LATE * plan.h)
         count[STEP] += 1
         x[UNDER_WAY] = 0.0
         if not finite(w):
@@ -157,10 +160,12 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
                 obstacle(model, inner, w.q, w.v)
                 s_next = model.motion_now[0, 2]
                 half -= s / 3.0 + s_next / 6.0
-            if first_zero(g, u, half) <= h + SAME_TIME * (abs(t) + h):
+            latest = h + SAME_TIME * (abs(t) + h)
+            if may_reach_zero(g, u, half, latest) and first_zero(g, u, half) <= latest:
                 break
             if moving:
-                obstacle(model, t, w.q, w.v)
+                if inner != t:
+                    obstacle(model, t, w.q, w.v)
                 q_next, v_next = q + h * (v + 0.5 * h * a), v + h * a
                 g_next = G * q_next + offset - model.motion_now[0, 0]
                 if not g_next > 0.0:
@@ -253,7 +258,10 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     if n_c == 0:
         assign(w.a, w.free)
         return True
-    closed = anything_closed(w)
+    closed = x[CLOSED_NOW] > 0
+    if x[UNCHANGED] == 1.0 and not closed:
+        return True
+    x[UNCHANGED] = 1.0 if plan.steady and plan.plain and not closed else 0.0
     if m.flat:
         flat_accelerations(m, plan, w, t, x)
     elif needs_bias(w):
@@ -335,7 +343,7 @@ def first_contact(plan: Any, w: Any, rest: float, t_end: float) -> tuple[int, fl
     """Which gap closes first, and when; NOBODY and the end of the piece if none does."""
     found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
     for c in range(len(w.u)):
-        if w.status[c] == OPEN:
+        if w.status[c] == OPEN and may_reach_zero(w.g[c], w.u[c], w.half[c], tau):
             zero = first_zero(w.g[c], w.u[c], w.half[c])
             if zero < tau or (zero == 0.0 and tau == 0.0 and w.u[c] < w.u[found]):
                 found, tau = c, zero
@@ -375,16 +383,16 @@ def move(
 ) -> int:
     """Go on to x[SIGMA] + tau; contacts that were closed all the way stay on the surface."""
     now = t + x[SIGMA]
-    keep_times(w, record, count, now, now + tau)
+    keep_times(m, plan, w, x, record, count, now, now + tau)
     if tau > 0.0:
         for c in range(len(w.u)):
             w.grounded[c] = 0
-        if not advance(m, plan, w, within(plan, x, now), tau, count):
+        if not advance(m, plan, w, x, within(plan, x, now), tau, count):
             return NOT_FINITE
     x[SIGMA] = x[END] if to_end else x[SIGMA] + tau
     if to_end and m.linear and not plan.steady:
         assign(w.force, w.next_force)
-    if tau > 0.0 and (anything_closed(w) or penetrates(plan, w)):
+    if tau > 0.0 and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
         if plan.plain:
             if to_end:
                 put_on_surface(m, plan, w, now + tau)
@@ -395,7 +403,8 @@ def move(
                 respond(m, w)
             if not land(m, plan, w, x, record, now + tau, tau, count):
                 return LCP_FAILED
-            put_on_surface(m, plan, w, now + tau)
+            if penetrates(plan, w):
+                put_on_surface(m, plan, w, now + tau)
             measure(m, plan, w, now + tau)
     return FINISHED
 
@@ -417,7 +426,7 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
     if w.u[c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
         w.g[c], w.grounded[c] = 0.0, 1
         if w.u[c] == 0.0:
-            stick(w, record, count, c, now)
+            stick(w, record, count, x, c, now)
         return FINISHED
     if not plan.constant:
         if not refactor(m, w, now):
@@ -482,7 +491,7 @@ def finite(w: Any) -> bool:
 
 
 @inline
-def keep_times(w: Any, record: Any, count: Any, now: float, before: float) -> None:
+def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < before:
         t = record.times[count[NEXT_TIME]]
@@ -490,6 +499,7 @@ def keep_times(w: Any, record: Any, count: Any, now: float, before: float) -> No
         for i in range(len(w.q)):
             w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
             w.v_try[i] = w.v[i] + tau * w.a[i]
+        settle_state(m, plan, w, x, t, w.q_try)
         write_row(record.rows[count[ROW]], t, 0.0, w.q_try, w.v_try, w.impulse)
         count[ROW] += 1
         count[NEXT_TIME] += 1

@@ -10,9 +10,10 @@ FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED = range(4)
 STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME = range(6)
 N_COUNTERS = 6
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
-# step, the interval of time without corners, events in this step, whether a step is under way
-SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY = range(6)
-N_NUMBERS = 6
+# step, the interval of time without corners, events in this step, whether a step is under way,
+# how many contacts are closed, whether the gaps have the accelerations of the piece before
+SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED = range(8)
+N_NUMBERS = 8
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
@@ -33,6 +34,9 @@ class Plan(NamedTuple):
     small: bool  # few coordinates: matrices for the rest of a step are made anew
     slack: float  # gaps up to here count as zero
     max_events: int  # in one step
+    many: int  # impacts of a contact in one step after which hops are taken as one if they end within it
+    exact: bool  # pieces are Taylor polynomials; else, where pieces are polynomials, Runge-Kutta
+    longest: float  # piece of motion
     corners: Any  # (m,) in [0, period)
     period: float
     margin: float  # by which times are moved off a corner
@@ -54,6 +58,7 @@ class Work(NamedTuple):
     a: Any  # acceleration with them
     force: Any  # F(t) of linear systems at the base, and at the end of the smooth interval
     next_force: Any
+    q_base: Any
     q_try: Any
     v_try: Any
     a_try: Any
@@ -87,8 +92,30 @@ class Work(NamedTuple):
     WA: Any  # (2, n_c, n_c)  G A^-1 G^T
     M: Any  # (n_q, n_q)
     problem: Any  # (n_c * n_c,)
-    pivots: Any  # (n_c,)
+    pivots: Any  # (n_c + 1,)
     b: Any
     z: Any
     solver: Any
     lcp: Any
+
+
+class Polynomial(NamedTuple):
+    """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events."""
+
+    T: Any  # (DEGREE + 1, n_q)
+    scale: Any  # (1,)
+    q: Any  # (n_q,) state last asked for
+    v: Any
+    q_stage: Any
+    v_stage: Any
+    a: Any  # (5, n_q) accelerations of the stages
+    v_end: Any
+    q_end: Any
+    g_from: Any  # (n_c,) gaps and their velocities at both ends of an interval of the scan
+    u_from: Any
+    g_to: Any
+    u_to: Any
+    u_now: Any
+
+
+DEGREE = 22  # of the Taylor polynomials

@@ -27,3 +27,11 @@ def first_zero(g: float, u: float, half: float) -> float:
         return 0.5 * (u + math.sqrt(u * u - 4.0 * half * g)) / -half
     discriminant = u * u - 4.0 * half * g  # negative: the lowest point lies above zero
     return 2.0 * g / (math.sqrt(discriminant) - u) if discriminant >= 0.0 else NEVER
+
+
+@inline
+def may_reach_zero(g: float, u: float, half: float, tau: float) -> bool:
+    """Whether the gap can be zero within [0, tau]; a cheap bound, true where in doubt."""
+    if half <= 0.0:  # lowest at the ends
+        return g <= 0.0 or g + tau * (u + tau * half) <= 0.0
+    return g <= 0.0 or g + tau * u <= 0.0  # above its tangent

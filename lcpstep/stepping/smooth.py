@@ -18,7 +18,7 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign, factorise, positive_definite, solve, solve_definite
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.model import ABSENT
-from lcpstep.stepping.located_work import CLOSED, END, FORCES, HIGH, LOW, REST, SIGMA, WHOLE
+from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, END, FORCES, HIGH, LOW, REST, SIGMA, WHOLE
 
 DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
 LANDINGS = 6  # Newton iterations onto the surface
@@ -179,15 +179,6 @@ def shift(w: Any, tau: float) -> None:
 
 
 @inline
-def anything_closed(w: Any) -> bool:
-    """Whether some contact is closed."""
-    some = False
-    for c in range(len(w.u)):
-        some = some or w.status[c] == CLOSED
-    return some
-
-
-@inline
 def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
     for _ in range(LANDINGS):
@@ -202,17 +193,34 @@ def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
         if not plan.constant:
             gap_rates(m, t, w.q, w.v, w.G, w.g_t)
             respond(m, w)
-        if not newton_step(w):
+        if not newton_step(w, w.q):
             for c in range(len(w.u)):
                 if w.g_try[c] != 0.0:
                     lift(m, plan, w, w.q, c, -w.g_try[c])
 
 
-def newton_step(w: Any) -> bool:
-    """Q + M^-1 G^T z with G M^-1 G^T z = -g for the gaps in w.g_try that are not zero; False if they depend."""
+@inline
+def settle_state(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any) -> None:
+    """Q, a state within a piece, onto closed contacts and out of obstacles."""
+    if plan.plain or len(w.u) == 0 or (plan.exact and x[CLOSED_NOW] > 0):
+        return
+    assign(w.q_base, w.q)
+    assign(w.q, q)
+    if refactor(m, w, t):
+        put_on_surface(m, plan, w, t)
+    assign(q, w.q)
+    assign(w.q, w.q_base)
+
+
+@inline
+def newton_step(w: Any, x: Any) -> bool:
+    """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.g_try of closed and violated contacts.
+
+    False if their constraints depend on each other.
+    """
     n_k = 0
     for c in range(len(w.u)):
-        if w.g_try[c] != 0.0:
+        if w.g_try[c] != 0.0 or w.status[c] == CLOSED:
             w.chosen[n_k] = c
             w.z[n_k] = -w.g_try[c]
             n_k += 1
@@ -225,7 +233,7 @@ def newton_step(w: Any) -> bool:
     solve(W, w.pivots, w.z[:n_k])
     for k in range(n_k):
         for i in range(len(w.q)):
-            w.q[i] += w.MG[w.chosen[k], i] * w.z[k]
+            x[i] += w.MG[w.chosen[k], i] * w.z[k]
     return True
 
 
@@ -241,7 +249,7 @@ def lift(m: Any, plan: Any, w: Any, x: Any, c: int, distance: float) -> None:
 
 
 @inline
-def advance(m: Any, plan: Any, w: Any, t: float, tau: float, count: Any) -> bool:
+def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any) -> bool:
     """The state at tau after the base becomes the base; False where the mass matrix fails.
 
     With a Jacobian that changes, the contact forces of the base act over half the piece; `land` gives the rest.
@@ -255,8 +263,7 @@ def advance(m: Any, plan: Any, w: Any, t: float, tau: float, count: Any) -> bool
         w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
     for c in range(len(w.u)):
         w.impulse[c] += 0.5 * tau * w.multiplier[c]
-    closed = anything_closed(w)
-    if closed:
+    if x[CLOSED_NOW] > 0:
         if not refactor(m, w, t_next):
             return False
         put_on_surface(m, plan, w, t_next)

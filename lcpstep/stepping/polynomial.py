@@ -1,0 +1,228 @@
+"""Pieces of smooth motion as polynomials, as kernels: Taylor's of a linear system, Hermite's of a Runge-Kutta step.
+
+Taylor: y'' = M^-1 (F(t) - C y' - K y) under constant and harmonic forces gives each coefficient from the two before,
+
+    (k+1) (k+2) T_{k+2} = M^-1 (F_k - C (k+1) T_{k+1} - K T_k),
+
+exact to rounding where the piece is short against the periods. In a moving frame y = q + c(t). Runge-Kutta: the
+classical step of order four, and the quintic through position, velocity and acceleration at both of its ends. Closed
+contacts enter by their forces, lambda = -(G M^-1 G^T)^-1 (G a + bias). Sources: E. Hairer, S. Norsett, G. Wanner,
+Solving Ordinary Differential Equations I, sections I.8 and II.1; G. Osorio, eq. 3.5.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lcpstep.compiled import call, inline
+from lcpstep.dense import assign, factorise, solve
+from lcpstep.dynamics import gap_rates, gaps, obstacle, product
+from lcpstep.model import ABSENT
+from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, DEGREE, FORCES
+from lcpstep.stepping.smooth import free_acceleration, gap_bias, respond, within
+
+QUINTIC = 5
+NODES = (
+    (0.06943184420297371, 0.17392742256872692),
+    (0.33000947820757187, 0.32607257743127307),
+    (0.6699905217924281, 0.32607257743127307),
+    (0.9305681557970263, 0.17392742256872692),
+)  # Gauss-Legendre on [0, 1]
+
+
+@inline
+def on_surface(m: Any, plan: Any, w: Any, x: Any) -> bool:
+    """Whether the one coordinate of an exact motion lies on its obstacle, which then says where it is."""
+    return plan.exact and x[CLOSED_NOW] > 0 and len(w.q) == 1
+
+
+@inline
+def biases(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any) -> None:
+    """Gap accelerations at v' = 0, into w.bias."""
+    inner = within(plan, x, t)
+    if not m.flat:
+        gap_bias(m, w, inner, q, v)
+        return
+    obstacle(m, inner, q, v)
+    for c in range(len(w.u)):
+        w.bias[c] = -m.motion_now[c, 2] if m.motion != ABSENT else 0.0
+
+
+@inline
+def constrained(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out: Any, count: Any) -> bool:
+    """Acceleration with the forces of closed contacts, which go to w.p; False where a matrix fails."""
+    count[FORCES] += 1
+    if not free_acceleration(m, w, within(plan, x, t), q, v, out):
+        return False
+    if x[CLOSED_NOW] == 0:
+        return True
+    gap_rates(m, t, q, v, w.G, w.g_t)
+    biases(m, plan, w, x, t, q, v)
+    if not plan.constant:
+        respond(m, w)
+    for c in range(len(w.u)):
+        w.alpha[c] = product(w.G, out, c) + w.bias[c]
+    if not factor_closed(w, False) and not factor_closed(w, True):
+        return False
+    n_k = closed_forces(w)
+    for k in range(n_k):
+        for i in range(len(out)):
+            out[i] += w.MG[w.chosen[k], i] * w.z[k]
+    return True
+
+
+@inline
+def factor_closed(w: Any, loaded: bool) -> bool:
+    """Factors of the closed contacts' Delassus matrix; of those under load only, where all depend on each other."""
+    n_k = 0
+    for c in range(len(w.u)):
+        w.p[c] = 0.0
+        if w.status[c] == CLOSED and (w.multiplier[c] > 0.0 or not loaded):
+            w.chosen[n_k] = c
+            n_k += 1
+    w.pivots[len(w.u)] = n_k
+    W = w.problem[: n_k * n_k].reshape((n_k, n_k))
+    for i in range(n_k):
+        for j in range(n_k):
+            W[i, j] = w.W[w.chosen[i], w.chosen[j]]
+    return factorise(W, w.pivots)
+
+
+@inline
+def closed_forces(w: Any) -> int:
+    """Forces that cancel w.alpha of the closed contacts, into w.z and w.p; their number."""
+    n_k = w.pivots[len(w.u)]
+    for k in range(n_k):
+        w.z[k] = -w.alpha[w.chosen[k]]
+    solve(w.problem[: n_k * n_k].reshape((n_k, n_k)), w.pivots, w.z[:n_k])
+    for k in range(n_k):
+        w.p[w.chosen[k]] = w.z[k]
+    return n_k
+
+
+@inline
+def expand(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, length: float, count: Any) -> bool:
+    """The polynomial of the piece that begins at t."""
+    if plan.exact:
+        return taylor(m, plan, w, x, z, t)
+    return hermite(m, plan, w, x, z, t, length, count)
+
+
+@inline
+def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
+    """Taylor coefficients of y at t."""
+    n = len(w.q)
+    z.scale[0] = 1.0
+    assign(z.T[0], w.q)
+    assign(z.T[1], w.v)
+    if m.frame != ABSENT:
+        call(m.frame, t, w.q, w.v, m.p, m.frame_now)
+        for i in range(n):
+            z.T[0, i] += m.frame_now[i, 0]
+            z.T[1, i] += m.frame_now[i, 1]
+    if on_surface(m, plan, w, x):
+        return True
+    if x[CLOSED_NOW] > 0 and not factor_closed(w, False) and not factor_closed(w, True):
+        return False
+    c_k, s_k = math.cos(m.omega * t), math.sin(m.omega * t)
+    for k in range(DEGREE - 1):
+        for i in range(n):
+            w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k + (m.constant[i] if k == 0 else 0.0)
+            for j in range(n):
+                w.a_try[i] -= m.C[i, j] * (k + 1) * z.T[k + 1, j] + m.K[i, j] * z.T[k, j]
+        for i in range(n):
+            w.v_try[i] = product(m.M_inverse, w.a_try, i)
+        if x[CLOSED_NOW] > 0:
+            for c in range(len(w.u)):
+                w.alpha[c] = product(m.G, w.v_try, c)
+            n_k = closed_forces(w)
+            for d in range(n_k):
+                for i in range(n):
+                    w.v_try[i] += w.MG[w.chosen[d], i] * w.z[d]
+        for i in range(n):
+            z.T[k + 2, i] = w.v_try[i] / ((k + 1) * (k + 2))
+        c_k, s_k = -m.omega * s_k / (k + 1), m.omega * c_k / (k + 1)
+    return True
+
+
+@inline
+def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count: Any) -> bool:
+    """Runge-Kutta step of length L, and the quintic through both of its ends."""
+    n = len(w.q)
+    good = constrained(m, plan, w, x, t, w.q, w.v, z.a[0], count)
+    for i in range(n):
+        z.q_end[i] = w.q[i] + L * w.v[i] / 6.0
+        z.v_end[i] = w.v[i] + L * z.a[0, i] / 6.0
+        z.v_stage[i] = w.v[i]
+    for k in range(1, 4):
+        share = 1.0 if k == 3 else 0.5
+        weight = L / (6.0 if k == 3 else 3.0)
+        for i in range(n):
+            z.q_stage[i] = w.q[i] + share * L * z.v_stage[i]
+            z.v_stage[i] = w.v[i] + share * L * z.a[k - 1, i]
+        good = good and constrained(m, plan, w, x, t + share * L, z.q_stage, z.v_stage, z.a[k], count)
+        for i in range(n):
+            z.q_end[i] += weight * z.v_stage[i]
+            z.v_end[i] += weight * z.a[k, i]
+    good = good and constrained(m, plan, w, x, t + L, z.q_end, z.v_end, z.a[4], count)
+    z.scale[0] = L
+    for i in range(n):
+        c_1, c_2 = L * w.v[i], 0.5 * L * L * z.a[0, i]
+        d = z.q_end[i] - w.q[i] - c_1 - c_2
+        d_v = L * z.v_end[i] - c_1 - 2.0 * c_2
+        d_a = L * L * z.a[4, i] - 2.0 * c_2
+        z.T[0, i], z.T[1, i], z.T[2, i] = w.q[i], c_1, c_2
+        z.T[3, i] = 10.0 * d - 4.0 * d_v + 0.5 * d_a
+        z.T[4, i] = -15.0 * d + 7.0 * d_v - d_a
+        z.T[5, i] = 6.0 * d - 3.0 * d_v + 0.5 * d_a
+    return good
+
+
+@inline
+def state_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float) -> None:
+    """State at tau after the base t of the piece, into z.q and z.v."""
+    n = len(w.q)
+    if on_surface(m, plan, w, x):
+        surface_state(m, w, z, t + tau)
+        return
+    degree = DEGREE if plan.exact else QUINTIC
+    s = tau / z.scale[0]
+    for i in range(n):
+        q, v = z.T[degree, i], 0.0
+        for k in range(degree - 1, -1, -1):
+            v = v * s + q
+            q = q * s + z.T[k, i]
+        z.q[i], z.v[i] = q, v / z.scale[0]
+    if plan.exact and m.frame != ABSENT:
+        call(m.frame, t + tau, w.q, w.v, m.p, m.frame_now)
+        for i in range(n):
+            z.q[i] -= m.frame_now[i, 0]
+            z.v[i] -= m.frame_now[i, 1]
+
+
+@inline
+def surface_state(m: Any, w: Any, z: Any, t: float) -> None:
+    """State of the one coordinate on its obstacle."""
+    for c in range(len(w.u)):
+        if w.status[c] == CLOSED:
+            obstacle(m, t, w.q, w.v)
+            z.q[0] = (m.motion_now[c, 0] - m.offset[c]) / m.G[c, 0]
+            z.v[0] = m.motion_now[c, 1] / m.G[c, 0]
+
+
+@inline
+def contacts_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, g: Any, u: Any) -> None:
+    """Gaps and gap velocities at tau after the base of the piece."""
+    state_at(m, plan, w, x, z, t, tau)
+    gaps(m, t + tau, z.q, z.v, g)
+    gap_rates(m, t + tau, z.q, z.v, w.G_try, w.g_t_try)
+    for c in range(len(u)):
+        u[c] = product(w.G_try, z.v, c) + w.g_t_try[c]
+
+
+@inline
+def force_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, count: Any) -> bool:
+    """Forces of the closed contacts at tau after the base of the piece, into w.p."""
+    state_at(m, plan, w, x, z, t, tau)
+    return constrained(m, plan, w, x, t + tau, z.q, z.v, w.a_try, count)

@@ -1,0 +1,249 @@
+"""The loop of `Located` of order four and of exact motion, as kernels: steps made of polynomial pieces.
+
+Like `located_loop`, but a piece is a polynomial (`polynomial`) on which events are searched for (`scan`): landings,
+and releases where a contact force vanishes.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.dense import assign
+from lcpstep.dynamics import gap_rates, product
+from lcpstep.recording import write_row
+from lcpstep.stepping.impulses import hold, release, settle_rest, stick, strike
+from lcpstep.stepping.located_loop import (
+    LATE,
+    begin_step,
+    find_corners,
+    finite,
+    keep,
+    penetrates,
+)
+from lcpstep.stepping.located_work import (
+    BUFFER_FULL,
+    CLOSED,
+    CLOSED_NOW,
+    END,
+    EPS,
+    EVENT,
+    EVENTS,
+    FINISHED,
+    HIGH,
+    LCP_FAILED,
+    LOW,
+    NEXT_TIME,
+    NOT_FINITE,
+    OPEN,
+    ROW,
+    SIGMA,
+    STEP,
+    UNDER_WAY,
+    WHOLE,
+)
+from lcpstep.stepping.polynomial import (
+    NODES,
+    biases,
+    constrained,
+    expand,
+    force_at,
+    on_surface,
+    state_at,
+)
+from lcpstep.stepping.scan import NOBODY, first_landing, first_release
+from lcpstep.stepping.smooth import (
+    free_acceleration,
+    measure,
+    newton_step,
+    put_on_surface,
+    refactor,
+    respond,
+    settle_state,
+    within,
+)
+
+STALLED = 1e-3  # of a step: a touch is no event twice within so short a time
+
+
+def run(
+    model: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t0: float, first: int, last: int
+) -> int:
+    """Steps count[STEP] .. last - 1, step `first` beginning at t0; says why it returned."""
+    while count[STEP] < last:
+        if x[UNDER_WAY] == 0.0:
+            begin_step(w, x)
+        code = step(model, plan, w, x, z, record, count, t0 + plan.h * (count[STEP] - first))
+        if code != FINISHED:
+            return code
+        t_next = t0 + plan.h * (count[STEP] + 1 - first)
+        while (
+            count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < t_next + LATE * plan.h
+        ):
+            keep_now(w, record, count, record.times[count[NEXT_TIME]], w.q, w.v)
+            count[NEXT_TIME] += 1
+        count[STEP] += 1
+        x[UNDER_WAY] = 0.0
+        if not finite(w):
+            return NOT_FINITE
+        if record.every > 0 and count[STEP] % record.every == 0:
+            keep(w, record, count, t_next)
+    return FINISHED
+
+
+@inline
+def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: float) -> int:
+    """The rest of the step that began at t: from x[SIGMA] to its end."""
+    n_c = len(w.u)
+    while True:
+        if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
+            return BUFFER_FULL
+        now = t + x[SIGMA]
+        if x[SIGMA] >= x[END]:
+            if x[END] >= plan.h:
+                return FINISHED
+            if now >= x[HIGH] - plan.margin:
+                x[LOW], x[HIGH] = find_corners(plan, now)
+            x[END] = plan.h
+            if t + plan.h > x[HIGH] + plan.margin:
+                x[END] = max(x[HIGH] - t, x[SIGMA])
+            continue
+        length = min(x[END] - x[SIGMA], plan.longest)
+        if not load(m, plan, w, x, record, now, count):
+            return LCP_FAILED if finite(w) else NOT_FINITE
+        if x[EVENTS] > plan.max_events:
+            x[EVENTS] = 0.0
+            if not settle_rest(m, plan, w, x, record, now, count):
+                return LCP_FAILED
+        if not expand(m, plan, w, x, z, now, length, count):
+            return NOT_FINITE
+        opening, stop = first_release(m, plan, w, x, z, now, length, count)
+        landing, tau = first_landing(m, plan, w, x, z, now, stop)
+        ends = landing == NOBODY and opening == NOBODY and x[SIGMA] + length >= x[END] * (1.0 - EPS)
+        code = follow(m, plan, w, x, z, record, t, tau, ends, count)
+        if code != FINISHED:
+            return code
+        if landing != NOBODY:
+            code = touch(m, plan, w, x, z, record, t + x[SIGMA], landing, count)
+            if code != FINISHED:
+                return code
+        elif opening != NOBODY:
+            release(w, record, count, x, opening, t + x[SIGMA], 0.0)
+            if record.on_events or record.every == 1:
+                keep(w, record, count, t + x[SIGMA])
+
+
+@inline
+def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
+    """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
+    n_c = len(w.u)
+    if n_c == 0:
+        return True
+    if not free_acceleration(m, w, within(plan, x, t), w.q, w.v, w.free):
+        return False
+    needed = x[CLOSED_NOW] > 0
+    for c in range(n_c):
+        needed = needed or w.grounded[c] == 1
+        w.older[c] = 0.0
+    if not needed:
+        return True
+    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+    biases(m, plan, w, x, t, w.q, w.v)
+    for c in range(n_c):
+        w.alpha[c] = product(w.G, w.free, c) + w.bias[c]
+    if x[CLOSED_NOW] > 0 and not plan.constant:
+        if not refactor(m, w, t):
+            return False
+        respond(m, w)
+    if not hold(m, plan, w, x, record, WHOLE, t, count):
+        return False
+    for c in range(n_c):
+        w.half[c] = 0.5 * (product(w.G, w.a, c) + w.bias[c]) if w.status[c] == OPEN else 0.0
+    return True
+
+
+@inline
+def follow(
+    m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, tau: float, ends: bool, count: Any
+) -> int:
+    """Go on to x[SIGMA] + tau along the polynomial."""
+    now = t + x[SIGMA]
+    while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < now + tau:
+        state_at(m, plan, w, x, z, now, max(0.0, record.times[count[NEXT_TIME]] - now))
+        settle_state(m, plan, w, x, record.times[count[NEXT_TIME]], z.q)
+        keep_now(w, record, count, record.times[count[NEXT_TIME]], z.q, z.v)
+        count[NEXT_TIME] += 1
+    x[SIGMA] = x[END] if ends else x[SIGMA] + tau
+    if tau == 0.0:
+        return FINISHED
+    if x[CLOSED_NOW] > 0:
+        for node, weight in NODES:
+            if not force_at(m, plan, w, x, z, now, node * tau, count):
+                return NOT_FINITE
+            for c in range(len(w.u)):
+                w.impulse[c] += weight * tau * w.p[c]
+    state_at(m, plan, w, x, z, now, tau)
+    assign(w.q, z.q)
+    assign(w.v, z.v)
+    for c in range(len(w.u)):
+        w.grounded[c] = 0
+    measure(m, plan, w, now + tau)
+    if not on_surface(m, plan, w, x) and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
+        if not plan.constant:
+            if not refactor(m, w, now + tau):
+                return NOT_FINITE
+            respond(m, w)
+        put_on_surface(m, plan, w, now + tau)
+        slide(m, w, now + tau)
+        measure(m, plan, w, now + tau)
+    return FINISHED
+
+
+@inline
+def slide(m: Any, w: Any, t: float) -> None:
+    """Velocities of closed contacts along the surface, against the drift of the integration."""
+    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+    for c in range(len(w.u)):
+        w.g_try[c] = product(w.G, w.v, c) + w.g_t[c] if w.status[c] == CLOSED else 0.0
+    newton_step(w, w.v)
+
+
+@inline
+def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: int, count: Any) -> int:
+    """Contact c lands at x[SIGMA]: an impact, or a touch without one."""
+    if w.u[c] >= 0.0:
+        w.g[c], w.grounded[c] = 0.0, 1
+        if w.u[c] == 0.0 or x[SIGMA] - w.last[c] <= STALLED * plan.h:
+            stick(w, record, count, x, c, t)
+        w.last[c] = x[SIGMA]
+        x[EVENTS] += 1
+        return FINISHED
+    if not constrained(m, plan, w, x, t, w.q, w.v, w.a, count):
+        return NOT_FINITE
+    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+    biases(m, plan, w, x, t, w.q, w.v)
+    if not plan.constant:
+        if not refactor(m, w, t):
+            return NOT_FINITE
+        respond(m, w)
+    for d in range(len(w.u)):
+        w.half[d] = 0.5 * (product(w.G, w.a, d) + w.bias[d])
+    n_s = strike(m, plan, w, x, record, c, t, count)
+    if n_s == 0:
+        return LCP_FAILED
+    for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
+        d = w.chosen[k]
+        W, error = w.W[d, d], w.u[d] - product(w.G, w.v, d) - w.g_t[d]
+        if W > 0.0:
+            for i in range(len(w.q)):
+                w.v[i] += w.MG[d, i] * error / W
+    if record.on_events or record.every == 1:
+        keep(w, record, count, t)
+    return FINISHED
+
+
+@inline
+def keep_now(w: Any, record: Any, count: Any, t: float, q: Any, v: Any) -> None:
+    """Keep a state asked for."""
+    write_row(record.rows[count[ROW]], t, 0.0, q, v, w.impulse)
+    count[ROW] += 1

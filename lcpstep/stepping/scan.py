@@ -1,0 +1,174 @@
+"""Events on a polynomial piece of motion, as kernels: the first gap that closes, the first contact that opens.
+
+The piece is divided into intervals in which each gap velocity changes its sign at most once; so a gap that falls to
+zero and returns within an interval is found at its lowest point. Roots are bracketed before they are polished. A
+hop that began on the surface is followed by the mean of its gap velocity, g / tau, which keeps all digits.
+Source: W. Press et al., Numerical Recipes, sections 9.2 and 9.4.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.dense import assign
+from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, EPS, OPEN
+from lcpstep.stepping.polynomial import NODES, contacts_at, force_at
+
+NOBODY = -1
+PARTS = 4  # intervals of a piece
+PROBES = 4  # of contact forces
+ITERATIONS = 60
+
+
+@inline
+def gap_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, c: int) -> tuple[float, float]:
+    """One gap and its velocity."""
+    contacts_at(m, plan, w, x, z, t, tau, w.g_try, z.u_now)
+    return w.g_try[c], z.u_now[c]
+
+
+@inline
+def hop_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, c: int) -> tuple[float, float]:
+    """Mean of a gap velocity over (0, tau), and its slope."""
+    mean = 0.0
+    for node, weight in NODES:
+        _, u = gap_at(m, plan, w, x, z, t, node * tau, c)
+        mean += weight * u
+    _, u = gap_at(m, plan, w, x, z, t, tau, c)
+    return mean, (u - mean) / tau
+
+
+@inline
+def landing(
+    m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int, hop: bool
+) -> float:
+    """Where gap c falls to zero in (a, b]: positive at a, or on its way up, and not positive at b."""
+    tau = b
+    if hop and w.half[c] < 0.0:
+        tau = min(b, -w.u[c] / w.half[c])
+    for _ in range(ITERATIONS):
+        if hop:
+            f, slope = hop_at(m, plan, w, x, z, t, tau, c)
+        else:
+            f, slope = gap_at(m, plan, w, x, z, t, tau, c)
+        if f > 0.0:
+            a = tau
+        else:
+            b = tau
+        new = tau - f / slope if slope < 0.0 else a
+        if not a < new < b:
+            new = 0.5 * (a + b)
+        if abs(new - tau) <= 2.0 * EPS * tau or b - a <= EPS * b:
+            return min(max(new, a), b)
+        tau = new
+    return tau
+
+
+@inline
+def lowest(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int) -> float:
+    """Where the velocity of gap c passes zero upwards in (a, b): regula falsi after Illinois."""
+    f_a, f_b, side, tau = z.u_from[c], z.u_to[c], 0, a
+    for _ in range(ITERATIONS):
+        tau = (a * f_b - b * f_a) / (f_b - f_a)
+        if not a < tau < b:
+            tau = 0.5 * (a + b)
+        _, f = gap_at(m, plan, w, x, z, t, tau, c)
+        if f == 0.0 or b - a <= 4.0 * EPS * b:
+            break
+        if f < 0.0:
+            a, f_a = tau, f
+            f_b = 0.5 * f_b if side < 0 else f_b
+            side = -1
+        else:
+            b, f_b = tau, f
+            f_a = 0.5 * f_a if side > 0 else f_a
+            side = 1
+    return tau
+
+
+@inline
+def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float) -> tuple[int, float]:
+    """Which gap closes first in (0, end], and when; NOBODY and the end if none does."""
+    n_c, found, first = len(w.u), NOBODY, end
+    for c in range(n_c):
+        if w.status[c] == OPEN and w.g[c] <= 0.0 and w.u[c] < 0.0:
+            return c, 0.0
+    assign(z.g_from, w.g)
+    assign(z.u_from, w.u)
+    a = 0.0
+    for part in range(1, PARTS + 1):
+        b = end * part / PARTS
+        contacts_at(m, plan, w, x, z, t, b, z.g_to, z.u_to)
+        for c in range(n_c):
+            if w.status[c] != OPEN:
+                continue
+            hop = part == 1 and z.g_from[c] <= 0.0
+            low = b
+            if z.g_to[c] > 0.0:
+                if hop or not (z.u_from[c] < 0.0 < z.u_to[c]):
+                    continue
+                low = lowest(m, plan, w, x, z, t, a, b, c)
+                g, _ = gap_at(m, plan, w, x, z, t, low, c)
+                if g > 0.0:
+                    continue
+            tau = landing(m, plan, w, x, z, t, a, low, c, hop) if not hop or w.u[c] > 0.0 else 0.0
+            if tau < first or found == NOBODY:
+                found, first = c, tau
+        if found != NOBODY:
+            return found, first
+        assign(z.g_from, z.g_to)
+        assign(z.u_from, z.u_to)
+        a = b
+    return NOBODY, end
+
+
+@inline
+def first_release(
+    m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float, count: Any
+) -> tuple[int, float]:
+    """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does."""
+    if x[CLOSED_NOW] == 0:
+        return NOBODY, end
+    a, found, first = 0.0, NOBODY, end
+    for probe in range(1, PROBES + 1):
+        b = end * probe / PROBES
+        force_at(m, plan, w, x, z, t, b, count)
+        assign(z.u_to, w.p)
+        for c in range(len(w.u)):
+            if w.status[c] == CLOSED and z.u_to[c] < 0.0:
+                tau = vanishing(m, plan, w, x, z, t, a, b, c, count)
+                if tau < first or found == NOBODY:
+                    found, first = c, tau
+        if found != NOBODY:
+            return found, first
+        a = b
+    return NOBODY, end
+
+
+@inline
+def vanishing(
+    m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int, count: Any
+) -> float:
+    """Where the force of contact c vanishes in (a, b]: regula falsi after Illinois."""
+    force_at(m, plan, w, x, z, t, a, count)
+    f_a, f_b, side, tau = w.p[c], z.u_to[c], 0, b
+    if f_a <= 0.0:
+        return a
+    for _ in range(ITERATIONS):
+        tau = (a * f_b - b * f_a) / (f_b - f_a)
+        if not a < tau < b:
+            tau = 0.5 * (a + b)
+        force_at(m, plan, w, x, z, t, tau, count)
+        f = w.p[c]
+        if f == 0.0 or b - a <= 4.0 * EPS * (t + b):
+            break
+        if f > 0.0:
+            a, f_a = tau, f
+            f_b = 0.5 * f_b if side > 0 else f_b
+            side = 1
+        else:
+            b, f_b = tau, f
+            f_a = 0.5 * f_a if side < 0 else f_a
+            side = -1
+    return tau
