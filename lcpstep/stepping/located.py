@@ -130,30 +130,21 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
 
 def polynomial(n_q: int, n_c: int) -> work.Polynomial:
     """Work space of a polynomial piece."""
-    vectors = ("q", "v", "q_stage", "v_stage", "v_end", "q_end")
     return work.Polynomial(
         T=np.zeros((work.DEGREE + 1, n_q)), scale=np.ones(1), a=np.zeros((5, n_q)),
-        **{name: np.zeros(n_q) for name in vectors},
-        **{name: np.zeros(n_c) for name in ("g_from", "u_from", "g_to", "u_to", "u_now")},
+        vec=np.zeros((work.N_PIECE_VEC, n_q)), num=np.zeros((work.N_PIECE_NUM, n_c)),
     )  # fmt: skip
 
 
 def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
-    vectors = ("free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try")
-    numbers = (
-        "g", "u", "half", "alpha", "bend", "bias", "g_try", "g_t", "g_t_try", "end_s", "last", "multiplier", "older",
-        "older_time", "impulse", "p", "b", "z",
-    )  # fmt: skip
-    integers = ("status", "grounded", "hits", "close_hits", "plastic", "chosen")
+    vec = np.zeros((work.N_VEC, n_q))
+    vec[work.Q], vec[work.V] = scene.q0, scene.v0
     lcp = workspace(max(n_c, 1))
     solver = solve_single if n_c <= 1 else solve_small
     return work.Work(
-        q=np.array(scene.q0), v=np.array(scene.v0),
-        **{name: np.zeros(n_q) for name in vectors},
-        **{name: np.zeros(n_c) for name in numbers},
-        **{name: np.zeros(n_c, dtype=np.int64) for name in integers},
+        vec=vec, num=np.zeros((work.N_NUM, n_c)), mark=np.zeros((work.N_MARK, n_c), dtype=np.int64),
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
         pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
@@ -255,10 +246,11 @@ class _Run:
         """Everything computed so far."""
         self.empty()
         kept, w = self.recorder.states(), self.work
+        q_now, v_now, impulse_now = w.vec[work.Q], w.vec[work.V], w.num[work.IMPULSE]
         t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
         if len(self.kept.times) == 0 and self.now > t[-1]:
-            t, q, v = np.append(t, self.now), np.vstack([q, w.q]), np.vstack([v, w.v])
-            impulse = np.vstack([impulse, w.impulse])
+            t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
+            impulse = np.vstack([impulse, impulse_now])
         if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
         count = self.count
@@ -285,15 +277,16 @@ class _Run:
 
     def message(self, status: Status) -> str:
         """How the run ended, in words."""
-        w = self.work
+        q, v = self.work.vec[work.Q], self.work.vec[work.V]
         if status == Status.DONE:
             return "reached the end of the span"
-        where = f"at t = {self.now:.9g} s, q = {w.q.tolist()}, v = {w.v.tolist()}"
+        where = f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
-            return f"no solution was found for the contacts {np.flatnonzero(w.status).tolist()} {where}"
-        return f"{culprit(self.scene, (self.now, self.now + self.plan.h), w.q, w.v)} {where}"
+            closed = np.flatnonzero(self.work.mark[work.STATUS]).tolist()
+            return f"no solution was found for the impact or the forces of closed contacts ({closed}) {where}"
+        return f"{culprit(self.scene, (self.now, self.now + self.plan.h), q, v)} {where}"
 
 
 STATUS = {

@@ -19,27 +19,52 @@ from lcpstep.recording import LEAD, write_row
 from lcpstep.recording import TIME as ROW_TIME
 from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
 from lcpstep.stepping.located_work import (
+    ALPHA,
+    BEND,
+    BIAS,
     BUFFER_FULL,
+    CHOSEN,
+    CLOSE_HITS,
     CLOSED,
     CLOSED_NOW,
     END,
+    END_S,
     EPS,
     EVENT,
     EVENTS,
     FINISHED,
+    FORCE,
+    FORCE_NOW,
     FORCES,
+    FREE,
+    GAP,
+    GAP_T,
+    GAP_TRY,
+    GROUNDED,
+    HALF,
     HIGH,
+    HITS,
+    IMPULSE,
+    LAST,
     LCP_FAILED,
     LOW,
+    NEXT_FORCE,
     NEXT_TIME,
     NOT_FINITE,
     OPEN,
+    Q_TRY,
+    RATE,
     ROW,
     SIGMA,
+    STATUS,
     STEP,
     UNCHANGED,
     UNDER_WAY,
+    V_TRY,
     WHOLE,
+    A,
+    Q,
+    V,
 )
 from lcpstep.stepping.quadratic import first_zero, may_reach_zero
 from lcpstep.stepping.smooth import (
@@ -67,26 +92,26 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
     """Forces, gaps and status of the initial state, which is kept where states are."""
     x[LOW], x[HIGH] = find_corners(plan, t)
     if m.linear:
-        external_force(m, within(plan, x, t), w.q, w.v, w.force)
-    elif not free_acceleration(m, w, t, w.q, w.v, w.free):
+        external_force(m, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FORCE])
+    elif not free_acceleration(m, w, t, w.vec[Q], w.vec[V], w.vec[FREE]):
         return NOT_FINITE
     count[FORCES] += 1
     if plan.steady:
-        for i in range(len(w.q)):
-            w.free[i] = product(plan.A_inverse[WHOLE], w.force, i)
+        for i in range(w.vec.shape[1]):
+            w.vec[FREE, i] = product(plan.A_inverse[WHOLE], w.vec[FORCE], i)
     measure(m, plan, w, t)
     if plan.constant:
         respond(m, w)
-        for c in range(len(w.u)):
-            w.alpha[c] = product(m.G, w.free, c)
-    for c in range(len(w.u)):
-        if w.g[c] <= plan.slack:
-            w.g[c], w.grounded[c] = 0.0, 1
-            size = abs(w.g_t[c])
-            for i in range(len(w.q)):
-                size += abs(w.G[c, i] * w.v[i])
-            if abs(w.u[c]) <= 64 * EPS * size:
-                w.u[c], w.status[c] = 0.0, CLOSED
+        for c in range(w.num.shape[1]):
+            w.num[ALPHA, c] = product(m.G, w.vec[FREE], c)
+    for c in range(w.num.shape[1]):
+        if w.num[GAP, c] <= plan.slack:
+            w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+            size = abs(w.num[GAP_T, c])
+            for i in range(w.vec.shape[1]):
+                size += abs(w.G[c, i] * w.vec[V, i])
+            if abs(w.num[RATE, c]) <= 64 * EPS * size:
+                w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
                 x[CLOSED_NOW] += 1
     if len(record.times) == 0:
         keep(w, record, count, t)
@@ -100,11 +125,11 @@ def run(
     model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t0: float, first: int, last: int
 ) -> int:
     """Steps count[STEP] .. last - 1, step `first` beginning at t0; says why it returned."""
-    n_c = len(w.u)
-    single = model.linear and model.flat and n_c <= 1 and len(w.q) == 1 and len(record.times) == 0
+    n_c = w.num.shape[1]
+    single = model.linear and model.flat and n_c <= 1 and w.vec.shape[1] == 1 and len(record.times) == 0
     while count[STEP] < last:
         if x[UNDER_WAY] == 0.0:
-            if single and (n_c == 0 or w.status[0] == OPEN):
+            if single and (n_c == 0 or w.mark[STATUS, 0] == OPEN):
                 end = last
                 if record.every > 0:
                     end = min(last, count[STEP] + record.every - 1 - count[STEP] % record.every)
@@ -135,13 +160,13 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
     """
     h = plan.h
     A_inverse, C, K = plan.A_inverse[WHOLE, 0, 0], model.C[0, 0], model.K[0, 0]
-    q, v, f = w.q[0], w.v[0], w.force[0]
+    q, v, f = w.vec[Q, 0], w.vec[V, 0], w.vec[FORCE, 0]
     g, u, G, offset, s = math.inf, 0.0, 0.0, 0.0, 0.0
-    contact, moving = len(w.u) > 0, model.motion != ABSENT
+    contact, moving = w.num.shape[1] > 0, model.motion != ABSENT
     if contact:
-        g, u, G, offset = w.g[0], w.u[0], model.G[0, 0], model.offset[0]
+        g, u, G, offset = w.num[GAP, 0], w.num[RATE, 0], model.G[0, 0], model.offset[0]
         if moving:
-            obstacle(model, within(plan, x, t0 + h * (count[STEP] - first)), w.q, w.v)
+            obstacle(model, within(plan, x, t0 + h * (count[STEP] - first)), w.vec[Q], w.vec[V])
             s = model.motion_now[0, 2]
     k = start = count[STEP]
     while k < last:
@@ -149,15 +174,15 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
         if t > x[HIGH]:
             break
         inner = within(plan, x, t)
-        external_force(model, inner, w.q, w.v, w.next_force)
-        f_next = w.next_force[0]
+        external_force(model, inner, w.vec[Q], w.vec[V], w.vec[NEXT_FORCE])
+        f_next = w.vec[NEXT_FORCE, 0]
         a = A_inverse * (0.5 * (f + f_next) - C * v - K * (q + 0.5 * h * v))
         if a - a != 0.0:
             break
         if contact:
             half, s_next = 0.5 * G * a, 0.0
             if moving:
-                obstacle(model, inner, w.q, w.v)
+                obstacle(model, inner, w.vec[Q], w.vec[V])
                 s_next = model.motion_now[0, 2]
                 half -= s / 3.0 + s_next / 6.0
             latest = h + SAME_TIME * (abs(t) + h)
@@ -165,7 +190,7 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
                 break
             if moving:
                 if inner != t:
-                    obstacle(model, t, w.q, w.v)
+                    obstacle(model, t, w.vec[Q], w.vec[V])
                 q_next, v_next = q + h * (v + 0.5 * h * a), v + h * a
                 g_next = G * q_next + offset - model.motion_now[0, 0]
                 if not g_next > 0.0:
@@ -175,9 +200,9 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
                 g, u = g + h * (u + h * half), u + 2.0 * h * half
         q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
         k += 1
-    w.q[0], w.v[0], w.force[0] = q, v, f
+    w.vec[Q, 0], w.vec[V, 0], w.vec[FORCE, 0] = q, v, f
     if contact:
-        w.g[0], w.u[0] = g, u
+        w.num[GAP, 0], w.num[RATE, 0] = g, u
     count[STEP] = k
     count[FORCES] += k - start
 
@@ -187,15 +212,15 @@ def begin_step(w: Any, x: Any) -> None:
     """Nothing has happened in this step yet."""
     x[SIGMA] = x[EVENTS] = x[END] = 0.0
     x[UNDER_WAY] = 1.0
-    for c in range(len(w.u)):
-        w.hits[c] = w.close_hits[c] = 0
-        w.last[c] = -1.0
+    for c in range(w.num.shape[1]):
+        w.mark[HITS, c] = w.mark[CLOSE_HITS, c] = 0
+        w.num[LAST, c] = -1.0
 
 
 @inline
 def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
     """The rest of the step that began at t: from x[SIGMA] to its end."""
-    n_c = len(w.u)
+    n_c = w.num.shape[1]
     settled = False
     while True:
         if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
@@ -226,37 +251,36 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                 return code
 
 
-@inline
 def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> None:
     """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends."""
     now = t + x[SIGMA]
     if now >= x[HIGH] - plan.margin:
         x[LOW], x[HIGH] = find_corners(plan, now)
         if m.linear and not plan.steady:
-            external_force(m, within(plan, x, now), w.q, w.v, w.force)
+            external_force(m, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FORCE])
         elif not m.linear:
-            free_acceleration(m, w, within(plan, x, now), w.q, w.v, w.free)
+            free_acceleration(m, w, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FREE])
         count[FORCES] += 1
     x[END] = plan.h
     if t + plan.h > x[HIGH] + plan.margin:
         x[END] = max(x[HIGH] - t, x[SIGMA])
     end = within(plan, x, t + x[END])
     if m.linear and not plan.steady:
-        external_force(m, end, w.q, w.v, w.next_force)
+        external_force(m, end, w.vec[Q], w.vec[V], w.vec[NEXT_FORCE])
         count[FORCES] += 1
     if m.flat and m.motion != ABSENT:
-        obstacle(m, end, w.q, w.v)
-        for c in range(len(w.u)):
-            w.end_s[c] = m.motion_now[c, 2]
+        obstacle(m, end, w.vec[Q], w.vec[V])
+        for c in range(w.num.shape[1]):
+            w.num[END_S, c] = m.motion_now[c, 2]
 
 
 @inline
 def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
     """Accelerations and gap quadratics of the piece that begins at t."""
-    n_c = len(w.u)
+    n_c = w.num.shape[1]
     place = accelerate(m, plan, w, x, t)
     if n_c == 0:
-        assign(w.a, w.free)
+        assign(w.vec[A], w.vec[FREE])
         return True
     closed = x[CLOSED_NOW] > 0
     if x[UNCHANGED] == 1.0 and not closed:
@@ -265,9 +289,9 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     if m.flat:
         flat_accelerations(m, plan, w, t, x)
     elif needs_bias(w):
-        gap_bias(m, w, within(plan, x, t), w.q, w.v)
+        gap_bias(m, w, within(plan, x, t), w.vec[Q], w.vec[V])
         for c in range(n_c):
-            w.alpha[c] = product(w.G, w.free, c) + w.bias[c]
+            w.num[ALPHA, c] = product(w.G, w.vec[FREE], c) + w.num[BIAS, c]
     if closed and not plan.constant:
         if not refactor(m, w, t):
             return False
@@ -276,16 +300,16 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
         return False
     if plan.constant:
         for c in range(n_c):
-            w.half[c] = 0.5 * (w.alpha[c] + w.bend[c])
+            w.num[HALF, c] = 0.5 * (w.num[ALPHA, c] + w.num[BEND, c])
         if closed:
             pressed(w, place)
     else:
         fitted(m, w, t, x[END] - x[SIGMA])
     for c in range(n_c):
-        if w.status[c] == CLOSED:
-            w.g[c] = w.u[c] = w.half[c] = 0.0
-        elif w.grounded[c] == 1 and w.u[c] == 0.0:  # just released
-            w.half[c] = max(w.half[c], 0.0)
+        if w.mark[STATUS, c] == CLOSED:
+            w.num[GAP, c] = w.num[RATE, c] = w.num[HALF, c] = 0.0
+        elif w.mark[GROUNDED, c] == 1 and w.num[RATE, c] == 0.0:  # just released
+            w.num[HALF, c] = max(w.num[HALF, c], 0.0)
     return True
 
 
@@ -293,48 +317,47 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
 def flat_accelerations(m: Any, plan: Any, w: Any, t: float, x: Any) -> None:
     """Mean accelerations of the gaps of flat contacts over the piece without contact forces.
 
-    In w.alpha so that the velocity is right at the end; w.bend is what must be added for the position.
+    In w.num[ALPHA] so that the velocity is right at the end; w.num[BEND] is what must be added for the position.
     """
     if not plan.steady or m.motion != ABSENT:
-        for c in range(len(w.u)):
-            w.alpha[c] = product(m.G, w.free, c)
+        for c in range(w.num.shape[1]):
+            w.num[ALPHA, c] = product(m.G, w.vec[FREE], c)
     if m.motion != ABSENT:
-        obstacle(m, within(plan, x, t), w.q, w.v)
-        for c in range(len(w.u)):
-            s, s_end = m.motion_now[c, 2], w.end_s[c]
-            w.alpha[c] -= 0.5 * (s + s_end)
-            w.bend[c] = (s_end - s) / 6.0
+        obstacle(m, within(plan, x, t), w.vec[Q], w.vec[V])
+        for c in range(w.num.shape[1]):
+            s, s_end = m.motion_now[c, 2], w.num[END_S, c]
+            w.num[ALPHA, c] -= 0.5 * (s + s_end)
+            w.num[BEND, c] = (s_end - s) / 6.0
 
 
 @inline
 def pressed(w: Any, place: int) -> None:
     """Add to the gap quadratics what contact forces do."""
-    for d in range(len(w.u)):
-        force = w.multiplier[d]
-        if w.status[d] == CLOSED and force > 0.0:
-            for c in range(len(w.u)):
-                w.half[c] += 0.5 * w.WA[place, c, d] * force
+    for d in range(w.num.shape[1]):
+        force = w.num[FORCE_NOW, d]
+        if w.mark[STATUS, d] == CLOSED and force > 0.0:
+            for c in range(w.num.shape[1]):
+                w.num[HALF, c] += 0.5 * w.WA[place, c, d] * force
 
 
-@inline
 def fitted(m: Any, w: Any, t: float, rest: float) -> None:
     """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
-    for i in range(len(w.q)):
-        w.q_try[i] = w.q[i] + rest * (w.v[i] + 0.5 * rest * w.a[i])
-    gaps(m, t + rest, w.q_try, w.v, w.g_try)
-    for c in range(len(w.u)):
-        if w.grounded[c] == 1:
-            w.half[c] = 0.5 * (product(w.G, w.a, c) + w.bias[c])
+    for i in range(w.vec.shape[1]):
+        w.vec[Q_TRY, i] = w.vec[Q, i] + rest * (w.vec[V, i] + 0.5 * rest * w.vec[A, i])
+    gaps(m, t + rest, w.vec[Q_TRY], w.vec[V], w.num[GAP_TRY])
+    for c in range(w.num.shape[1]):
+        if w.mark[GROUNDED, c] == 1:
+            w.num[HALF, c] = 0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c])
         else:
-            w.half[c] = (w.g_try[c] - w.g[c] - rest * w.u[c]) / (rest * rest)
+            w.num[HALF, c] = (w.num[GAP_TRY, c] - w.num[GAP, c] - rest * w.num[RATE, c]) / (rest * rest)
 
 
 @inline
 def needs_bias(w: Any) -> bool:
     """Whether some contact is closed or has just been left."""
     some = False
-    for c in range(len(w.u)):
-        some = some or w.status[c] == CLOSED or w.grounded[c] == 1
+    for c in range(w.num.shape[1]):
+        some = some or w.mark[STATUS, c] == CLOSED or w.mark[GROUNDED, c] == 1
     return some
 
 
@@ -342,29 +365,28 @@ def needs_bias(w: Any) -> bool:
 def first_contact(plan: Any, w: Any, rest: float, t_end: float) -> tuple[int, float]:
     """Which gap closes first, and when; NOBODY and the end of the piece if none does."""
     found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
-    for c in range(len(w.u)):
-        if w.status[c] == OPEN and may_reach_zero(w.g[c], w.u[c], w.half[c], tau):
-            zero = first_zero(w.g[c], w.u[c], w.half[c])
-            if zero < tau or (zero == 0.0 and tau == 0.0 and w.u[c] < w.u[found]):
+    for c in range(w.num.shape[1]):
+        if w.mark[STATUS, c] == OPEN and may_reach_zero(w.num[GAP, c], w.num[RATE, c], w.num[HALF, c], tau):
+            zero = first_zero(w.num[GAP, c], w.num[RATE, c], w.num[HALF, c])
+            if zero < tau or (zero == 0.0 and tau == 0.0 and w.num[RATE, c] < w.num[RATE, found]):
                 found, tau = c, zero
     return found, min(tau, rest)
 
 
-@inline
 def polish(m: Any, plan: Any, w: Any, c: int, t: float, tau: float, rest: float) -> tuple[int, float]:
     """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
     if tau == 0.0:
         return c, 0.0
     for _ in range(POLISHING):
-        for i in range(len(w.q)):
-            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-        gaps(m, t + tau, w.q_try, w.v, w.g_try)
-        u = w.u[c] + 2.0 * tau * w.half[c]
-        if abs(w.g_try[c]) <= 0.125 * plan.slack:
+        for i in range(w.vec.shape[1]):
+            w.vec[Q_TRY, i] = w.vec[Q, i] + tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
+        gaps(m, t + tau, w.vec[Q_TRY], w.vec[V], w.num[GAP_TRY])
+        u = w.num[RATE, c] + 2.0 * tau * w.num[HALF, c]
+        if abs(w.num[GAP_TRY, c]) <= 0.125 * plan.slack:
             return c, tau
         if u >= 0.0:
             break
-        change = -w.g_try[c] / u
+        change = -w.num[GAP_TRY, c] / u
         if tau + change > rest:
             return NOBODY, rest
         if tau + change <= 0.0:
@@ -372,7 +394,7 @@ def polish(m: Any, plan: Any, w: Any, c: int, t: float, tau: float, rest: float)
         tau += change
         if abs(change) <= EPS * tau:
             return c, tau
-    if w.g_try[c] > 0.0:
+    if w.num[GAP_TRY, c] > 0.0:
         return NOBODY, tau
     return c, tau
 
@@ -385,13 +407,13 @@ def move(
     now = t + x[SIGMA]
     keep_times(m, plan, w, x, record, count, now, now + tau)
     if tau > 0.0:
-        for c in range(len(w.u)):
-            w.grounded[c] = 0
+        for c in range(w.num.shape[1]):
+            w.mark[GROUNDED, c] = 0
         if not advance(m, plan, w, x, within(plan, x, now), tau, count):
             return NOT_FINITE
     x[SIGMA] = x[END] if to_end else x[SIGMA] + tau
     if to_end and m.linear and not plan.steady:
-        assign(w.force, w.next_force)
+        assign(w.vec[FORCE], w.vec[NEXT_FORCE])
     if tau > 0.0 and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
         if plan.plain:
             if to_end:
@@ -413,9 +435,9 @@ def move(
 def penetrates(plan: Any, w: Any) -> bool:
     """Whether an open contact has been closed by what its quadratic neglects."""
     lowest = 0.0
-    for c in range(len(w.u)):
-        if w.status[c] == OPEN:
-            lowest = min(lowest, w.g[c])
+    for c in range(w.num.shape[1]):
+        if w.mark[STATUS, c] == OPEN:
+            lowest = min(lowest, w.num[GAP, c])
     return not plan.plain and lowest < -ON_THE_SURFACE * plan.slack
 
 
@@ -423,9 +445,9 @@ def penetrates(plan: Any, w: Any) -> bool:
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
     """The impact of contact c at x[SIGMA], and what it changes."""
     now = t + x[SIGMA]
-    if w.u[c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
-        w.g[c], w.grounded[c] = 0.0, 1
-        if w.u[c] == 0.0:
+    if w.num[RATE, c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
+        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+        if w.num[RATE, c] == 0.0:
             stick(w, record, count, x, c, now)
         return FINISHED
     if not plan.constant:
@@ -437,14 +459,14 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
         return LCP_FAILED
     if plan.plain:  # rounding of the state must not add up over many impacts
         for k in range(n_s):
-            d = w.chosen[k]
-            lift(m, plan, w, w.q, d, -height(m, w, d))
-            lift(m, plan, w, w.v, d, w.u[d] - product(m.G, w.v, d))
+            d = w.mark[CHOSEN, k]
+            lift(m, plan, w, w.vec[Q], d, -height(m, w, d))
+            lift(m, plan, w, w.vec[V], d, w.num[RATE, d] - product(m.G, w.vec[V], d))
     if m.linear and not plan.steady:
-        external_force(m, within(plan, x, now), w.q, w.v, w.force)
+        external_force(m, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FORCE])
         count[FORCES] += 1
     elif not m.linear:
-        if not free_acceleration(m, w, within(plan, x, now), w.q, w.v, w.free):
+        if not free_acceleration(m, w, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FREE]):
             return NOT_FINITE
         count[FORCES] += 1
     if record.on_events or record.every == 1:
@@ -455,10 +477,9 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
 @inline
 def height(m: Any, w: Any, c: int) -> float:
     """The gap c of a flat contact at rest, from the coordinates."""
-    return product(m.G, w.q, c) + m.offset[c]
+    return product(m.G, w.vec[Q], c) + m.offset[c]
 
 
-@inline
 def find_corners(plan: Any, t: float) -> tuple[float, float]:
     """The smooth interval that begins at t or holds it."""
     low, high = -math.inf, math.inf
@@ -480,37 +501,35 @@ def find_corners(plan: Any, t: float) -> tuple[float, float]:
 def finite(w: Any) -> bool:
     """Whether state and gaps are finite."""
     total = 0.0
-    for i in range(len(w.q)):
-        total += (w.q[i] - w.q[i]) + (w.v[i] - w.v[i])
-    for c in range(len(w.u)):
-        total += (w.g[c] - w.g[c]) + (w.u[c] - w.u[c])
+    for i in range(w.vec.shape[1]):
+        total += (w.vec[Q, i] - w.vec[Q, i]) + (w.vec[V, i] - w.vec[V, i])
+    for c in range(w.num.shape[1]):
+        total += (w.num[GAP, c] - w.num[GAP, c]) + (w.num[RATE, c] - w.num[RATE, c])
     return total == 0.0
 
 
 # --- what is kept ---------------------------------------------------------------------------------------------
 
 
-@inline
 def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < before:
         t = record.times[count[NEXT_TIME]]
         tau = max(0.0, t - now)
-        for i in range(len(w.q)):
-            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-            w.v_try[i] = w.v[i] + tau * w.a[i]
-        settle_state(m, plan, w, x, t, w.q_try)
-        write_row(record.rows[count[ROW]], t, 0.0, w.q_try, w.v_try, w.impulse)
+        for i in range(w.vec.shape[1]):
+            w.vec[Q_TRY, i] = w.vec[Q, i] + tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
+            w.vec[V_TRY, i] = w.vec[V, i] + tau * w.vec[A, i]
+        settle_state(m, plan, w, x, t, w.vec[Q_TRY])
+        write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q_TRY], w.vec[V_TRY], w.num[IMPULSE])
         count[ROW] += 1
         count[NEXT_TIME] += 1
 
 
-@inline
 def keep(w: Any, record: Any, count: Any, t: float) -> None:
     """Keep the current state; states at one time share a row."""
     if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:
         count[ROW] -= 1
-        for c in range(len(w.impulse)):
-            w.impulse[c] += record.rows[count[ROW], LEAD + 2 * len(w.q) + c]
-    write_row(record.rows[count[ROW]], t, 0.0, w.q, w.v, w.impulse)
+        for c in range(w.num.shape[1]):
+            w.num[IMPULSE, c] += record.rows[count[ROW], LEAD + 2 * w.vec.shape[1] + c]
+    write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q], w.vec[V], w.num[IMPULSE])
     count[ROW] += 1

@@ -22,6 +22,59 @@ WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest o
 EPS = 2.0**-52
 ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size
 
+# Rows of Work.vec: the state at the base of the piece, accelerations and forces there, work space
+Q = 0  # state at the base of the piece
+V = 1
+FREE = 2  # acceleration without contact forces
+A = 3  # acceleration with them
+FORCE = 4  # F(t) of linear systems at the base, and at the end of the smooth interval
+NEXT_FORCE = 5
+Q_BASE = 6
+Q_TRY = 7
+V_TRY = 8
+A_TRY = 9
+N_VEC = 10
+# Rows of Work.num, a number per contact
+GAP = 0  # g
+RATE = 1  # u
+HALF = 2  # half the gap acceleration
+ALPHA = 3  # gap acceleration without contact forces
+BEND = 4  # what the mean acceleration lacks for the position, of moving flat obstacles
+BIAS = 5  # gap acceleration at v' = 0
+GAP_TRY = 6
+GAP_T = 7
+GAP_T_TRY = 8
+END_S = 9  # s'' of the obstacles at the end of the smooth interval
+LAST = 10  # time of the last impact since the start of the step
+FORCE_NOW = 11  # contact force
+OLDER = 12  # the last positive contact force, and when
+OLDER_TIME = 13
+IMPULSE = 14  # since the last kept state
+P = 15  # impulses of the event at hand
+B = 16  # of the complementarity problem at hand, and its solution
+Z = 17
+N_NUM = 18
+# Rows of Work.mark, a whole number per contact
+STATUS = 0  # OPEN or CLOSED
+GROUNDED = 1  # the piece began at gap zero
+HITS = 2  # impacts in this step
+CLOSE_HITS = 3  # the latest of them that came at hardly any distance
+PLASTIC = 4  # restitution of the event at hand is zero
+CHOSEN = 5  # contacts of the problem at hand
+N_MARK = 6
+# Rows of Polynomial.vec (after Q and V) and of Polynomial.num
+Q_STAGE = 2
+V_STAGE = 3
+V_END = 4
+Q_END = 5
+N_PIECE_VEC = 6
+GAP_FROM = 0
+RATE_FROM = 1
+GAP_TO = 2
+RATE_TO = 3
+RATE_NOW = 4
+N_PIECE_NUM = 5
+
 
 class Plan(NamedTuple):
     """Constants of a run."""
@@ -49,43 +102,15 @@ class Plan(NamedTuple):
 class Work(NamedTuple):
     """The piece of motion that began at the last event or step, and work space.
 
-    Over the piece q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2.
+    Over the piece q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2. Vectors and numbers
+    of one kind lie in one array, whose rows have names: a kernel is called the faster the fewer arrays it takes.
     """
 
-    q: Any  # (n_q,) state at the base of the piece
-    v: Any
-    free: Any  # acceleration without contact forces
-    a: Any  # acceleration with them
-    force: Any  # F(t) of linear systems at the base, and at the end of the smooth interval
-    next_force: Any
-    q_base: Any
-    q_try: Any
-    v_try: Any
-    a_try: Any
-    g: Any  # (n_c,)
-    u: Any
-    half: Any
-    alpha: Any  # gap acceleration without contact forces
-    bend: Any  # what the mean acceleration lacks for the position, of moving flat obstacles
-    bias: Any  # gap acceleration at v' = 0
-    g_try: Any
-    g_t: Any
-    end_s: Any  # s'' of the obstacles at the end of the smooth interval
-    status: Any  # (n_c,) OPEN or CLOSED
-    grounded: Any  # (n_c,) the piece began at gap zero
-    hits: Any  # (n_c,) impacts in this step
-    close_hits: Any  # (n_c,) the latest of them that came at hardly any distance
-    last: Any  # (n_c,) time since the start of the step of the last one
-    multiplier: Any  # (n_c,) contact force
-    older: Any  # (n_c,) the one before, and when
-    older_time: Any
-    impulse: Any  # (n_c,) since the last kept state
-    p: Any  # (n_c,) of the event at hand
-    plastic: Any  # (n_c,) restitution of the event at hand is zero
-    chosen: Any  # (n_c,) contacts of the problem at hand
+    vec: Any  # (N_VEC, n_q)
+    num: Any  # (N_NUM, n_c)
+    mark: Any  # (N_MARK, n_c)
     G: Any  # (n_c, n_q)
     G_try: Any
-    g_t_try: Any
     MG: Any  # (n_c, n_q)  (M^-1 G^T)^T
     W: Any  # (n_c, n_c)  G M^-1 G^T
     AG: Any  # (2, n_c, n_q)  (A^-1 G^T)^T
@@ -93,8 +118,6 @@ class Work(NamedTuple):
     M: Any  # (n_q, n_q)
     problem: Any  # (n_c * n_c,)
     pivots: Any  # (n_c + 1,)
-    b: Any
-    z: Any
     solver: Any
     lcp: Any
 
@@ -104,18 +127,9 @@ class Polynomial(NamedTuple):
 
     T: Any  # (DEGREE + 1, n_q)
     scale: Any  # (1,)
-    q: Any  # (n_q,) state last asked for
-    v: Any
-    q_stage: Any
-    v_stage: Any
     a: Any  # (5, n_q) accelerations of the stages
-    v_end: Any
-    q_end: Any
-    g_from: Any  # (n_c,) gaps and their velocities at both ends of an interval of the scan
-    u_from: Any
-    g_to: Any
-    u_to: Any
-    u_now: Any
+    vec: Any  # (N_PIECE_VEC, n_q) state last asked for, stages
+    num: Any  # (N_PIECE_NUM, n_c) gaps and their velocities at both ends of an interval of the scan
 
 
 DEGREE = 22  # of the Taylor polynomials

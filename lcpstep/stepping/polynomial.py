@@ -19,7 +19,29 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign, factorise, solve
 from lcpstep.dynamics import gap_rates, gaps, obstacle, product
 from lcpstep.model import ABSENT
-from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, DEGREE, FORCES
+from lcpstep.stepping.located_work import (
+    A_TRY,
+    ALPHA,
+    BIAS,
+    CHOSEN,
+    CLOSED,
+    CLOSED_NOW,
+    DEGREE,
+    FORCE_NOW,
+    FORCES,
+    GAP_T,
+    GAP_T_TRY,
+    Q_END,
+    Q_STAGE,
+    STATUS,
+    V_END,
+    V_STAGE,
+    V_TRY,
+    P,
+    Q,
+    V,
+    Z,
+)
 from lcpstep.stepping.smooth import free_acceleration, gap_bias, respond, within
 
 QUINTIC = 5
@@ -34,70 +56,68 @@ NODES = (
 @inline
 def on_surface(m: Any, plan: Any, w: Any, x: Any) -> bool:
     """Whether the one coordinate of an exact motion lies on its obstacle, which then says where it is."""
-    return plan.exact and x[CLOSED_NOW] > 0 and len(w.q) == 1
+    return plan.exact and x[CLOSED_NOW] > 0 and w.vec.shape[1] == 1
 
 
 @inline
 def biases(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any) -> None:
-    """Gap accelerations at v' = 0, into w.bias."""
+    """Gap accelerations at v' = 0, into w.num[BIAS]."""
     inner = within(plan, x, t)
     if not m.flat:
         gap_bias(m, w, inner, q, v)
         return
     obstacle(m, inner, q, v)
-    for c in range(len(w.u)):
-        w.bias[c] = -m.motion_now[c, 2] if m.motion != ABSENT else 0.0
+    for c in range(w.num.shape[1]):
+        w.num[BIAS, c] = -m.motion_now[c, 2] if m.motion != ABSENT else 0.0
 
 
-@inline
 def constrained(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out: Any, count: Any) -> bool:
-    """Acceleration with the forces of closed contacts, which go to w.p; False where a matrix fails."""
+    """Acceleration with the forces of closed contacts, which go to w.num[P]; False where a matrix fails."""
     count[FORCES] += 1
     if not free_acceleration(m, w, within(plan, x, t), q, v, out):
         return False
     if x[CLOSED_NOW] == 0:
         return True
-    gap_rates(m, t, q, v, w.G, w.g_t)
+    gap_rates(m, t, q, v, w.G, w.num[GAP_T])
     biases(m, plan, w, x, t, q, v)
     if not plan.constant:
         respond(m, w)
-    for c in range(len(w.u)):
-        w.alpha[c] = product(w.G, out, c) + w.bias[c]
+    for c in range(w.num.shape[1]):
+        w.num[ALPHA, c] = product(w.G, out, c) + w.num[BIAS, c]
     if not factor_closed(w, False) and not factor_closed(w, True):
         return False
     n_k = closed_forces(w)
     for k in range(n_k):
         for i in range(len(out)):
-            out[i] += w.MG[w.chosen[k], i] * w.z[k]
+            out[i] += w.MG[w.mark[CHOSEN, k], i] * w.num[Z, k]
     return True
 
 
-@inline
 def factor_closed(w: Any, loaded: bool) -> bool:
     """Factors of the closed contacts' Delassus matrix; of those under load only, where all depend on each other."""
     n_k = 0
-    for c in range(len(w.u)):
-        w.p[c] = 0.0
-        if w.status[c] == CLOSED and (w.multiplier[c] > 0.0 or not loaded):
-            w.chosen[n_k] = c
+    for c in range(w.num.shape[1]):
+        w.num[P, c] = 0.0
+        if w.mark[STATUS, c] == CLOSED and (w.num[FORCE_NOW, c] > 0.0 or not loaded):
+            w.mark[CHOSEN, n_k] = c
             n_k += 1
-    w.pivots[len(w.u)] = n_k
+    w.pivots[w.num.shape[1]] = n_k
     W = w.problem[: n_k * n_k].reshape((n_k, n_k))
     for i in range(n_k):
         for j in range(n_k):
-            W[i, j] = w.W[w.chosen[i], w.chosen[j]]
+            W[i, j] = w.W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
     return factorise(W, w.pivots)
 
 
 @inline
 def closed_forces(w: Any) -> int:
-    """Forces that cancel w.alpha of the closed contacts, into w.z and w.p; their number."""
-    n_k = w.pivots[len(w.u)]
+    """Forces that cancel w.num[ALPHA] of the closed contacts, into w.num[Z] and w.num[P]; their number."""
+    n_k = w.pivots[w.num.shape[1]]
     for k in range(n_k):
-        w.z[k] = -w.alpha[w.chosen[k]]
-    solve(w.problem[: n_k * n_k].reshape((n_k, n_k)), w.pivots, w.z[:n_k])
+        w.num[Z, k] = -w.num[ALPHA, w.mark[CHOSEN, k]]
+    solve(w.problem[: n_k * n_k].reshape((n_k, n_k)), w.pivots, w.num[Z, :n_k])
     for k in range(n_k):
-        w.p[w.chosen[k]] = w.z[k]
+        w.num[P, w.mark[CHOSEN, k]] = w.num[Z, k]
     return n_k
 
 
@@ -109,15 +129,14 @@ def expand(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, length: float, c
     return hermite(m, plan, w, x, z, t, length, count)
 
 
-@inline
 def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
     """Taylor coefficients of y at t."""
-    n = len(w.q)
+    n = w.vec.shape[1]
     z.scale[0] = 1.0
-    assign(z.T[0], w.q)
-    assign(z.T[1], w.v)
+    assign(z.T[0], w.vec[Q])
+    assign(z.T[1], w.vec[V])
     if m.frame != ABSENT:
-        call(m.frame, t, w.q, w.v, m.p, m.frame_now)
+        call(m.frame, t, w.vec[Q], w.vec[V], m.p, m.frame_now)
         for i in range(n):
             z.T[0, i] += m.frame_now[i, 0]
             z.T[1, i] += m.frame_now[i, 1]
@@ -128,51 +147,52 @@ def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
     c_k, s_k = math.cos(m.omega * t), math.sin(m.omega * t)
     for k in range(DEGREE - 1):
         for i in range(n):
-            w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k + (m.constant[i] if k == 0 else 0.0)
+            w.vec[A_TRY, i] = m.cosine[i] * c_k + m.sine[i] * s_k + (m.constant[i] if k == 0 else 0.0)
             for j in range(n):
-                w.a_try[i] -= m.C[i, j] * (k + 1) * z.T[k + 1, j] + m.K[i, j] * z.T[k, j]
+                w.vec[A_TRY, i] -= m.C[i, j] * (k + 1) * z.T[k + 1, j] + m.K[i, j] * z.T[k, j]
         for i in range(n):
-            w.v_try[i] = product(m.M_inverse, w.a_try, i)
+            w.vec[V_TRY, i] = product(m.M_inverse, w.vec[A_TRY], i)
         if x[CLOSED_NOW] > 0:
-            for c in range(len(w.u)):
-                w.alpha[c] = product(m.G, w.v_try, c)
+            for c in range(w.num.shape[1]):
+                w.num[ALPHA, c] = product(m.G, w.vec[V_TRY], c)
             n_k = closed_forces(w)
             for d in range(n_k):
                 for i in range(n):
-                    w.v_try[i] += w.MG[w.chosen[d], i] * w.z[d]
+                    w.vec[V_TRY, i] += w.MG[w.mark[CHOSEN, d], i] * w.num[Z, d]
         for i in range(n):
-            z.T[k + 2, i] = w.v_try[i] / ((k + 1) * (k + 2))
+            z.T[k + 2, i] = w.vec[V_TRY, i] / ((k + 1) * (k + 2))
         c_k, s_k = -m.omega * s_k / (k + 1), m.omega * c_k / (k + 1)
     return True
 
 
-@inline
 def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count: Any) -> bool:
     """Runge-Kutta step of length L, and the quintic through both of its ends."""
-    n = len(w.q)
-    good = constrained(m, plan, w, x, t, w.q, w.v, z.a[0], count)
+    n = w.vec.shape[1]
+    good = constrained(m, plan, w, x, t, w.vec[Q], w.vec[V], z.a[0], count)
     for i in range(n):
-        z.q_end[i] = w.q[i] + L * w.v[i] / 6.0
-        z.v_end[i] = w.v[i] + L * z.a[0, i] / 6.0
-        z.v_stage[i] = w.v[i]
+        z.vec[Q_END, i] = w.vec[Q, i] + L * w.vec[V, i] / 6.0
+        z.vec[V_END, i] = w.vec[V, i] + L * z.a[0, i] / 6.0
+        z.vec[V_STAGE, i] = w.vec[V, i]
     for k in range(1, 4):
         share = 1.0 if k == 3 else 0.5
         weight = L / (6.0 if k == 3 else 3.0)
         for i in range(n):
-            z.q_stage[i] = w.q[i] + share * L * z.v_stage[i]
-            z.v_stage[i] = w.v[i] + share * L * z.a[k - 1, i]
-        good = good and constrained(m, plan, w, x, t + share * L, z.q_stage, z.v_stage, z.a[k], count)
+            z.vec[Q_STAGE, i] = w.vec[Q, i] + share * L * z.vec[V_STAGE, i]
+            z.vec[V_STAGE, i] = w.vec[V, i] + share * L * z.a[k - 1, i]
+        good = good and constrained(
+            m, plan, w, x, t + share * L, z.vec[Q_STAGE], z.vec[V_STAGE], z.a[k], count
+        )
         for i in range(n):
-            z.q_end[i] += weight * z.v_stage[i]
-            z.v_end[i] += weight * z.a[k, i]
-    good = good and constrained(m, plan, w, x, t + L, z.q_end, z.v_end, z.a[4], count)
+            z.vec[Q_END, i] += weight * z.vec[V_STAGE, i]
+            z.vec[V_END, i] += weight * z.a[k, i]
+    good = good and constrained(m, plan, w, x, t + L, z.vec[Q_END], z.vec[V_END], z.a[4], count)
     z.scale[0] = L
     for i in range(n):
-        c_1, c_2 = L * w.v[i], 0.5 * L * L * z.a[0, i]
-        d = z.q_end[i] - w.q[i] - c_1 - c_2
-        d_v = L * z.v_end[i] - c_1 - 2.0 * c_2
+        c_1, c_2 = L * w.vec[V, i], 0.5 * L * L * z.a[0, i]
+        d = z.vec[Q_END, i] - w.vec[Q, i] - c_1 - c_2
+        d_v = L * z.vec[V_END, i] - c_1 - 2.0 * c_2
         d_a = L * L * z.a[4, i] - 2.0 * c_2
-        z.T[0, i], z.T[1, i], z.T[2, i] = w.q[i], c_1, c_2
+        z.T[0, i], z.T[1, i], z.T[2, i] = w.vec[Q, i], c_1, c_2
         z.T[3, i] = 10.0 * d - 4.0 * d_v + 0.5 * d_a
         z.T[4, i] = -15.0 * d + 7.0 * d_v - d_a
         z.T[5, i] = 6.0 * d - 3.0 * d_v + 0.5 * d_a
@@ -181,8 +201,8 @@ def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count
 
 @inline
 def state_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float) -> None:
-    """State at tau after the base t of the piece, into z.q and z.v."""
-    n = len(w.q)
+    """State at tau after the base t of the piece, into z.vec[Q] and z.vec[V]."""
+    n = w.vec.shape[1]
     if on_surface(m, plan, w, x):
         surface_state(m, w, z, t + tau)
         return
@@ -193,36 +213,35 @@ def state_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float) ->
         for k in range(degree - 1, -1, -1):
             v = v * s + q
             q = q * s + z.T[k, i]
-        z.q[i], z.v[i] = q, v / z.scale[0]
+        z.vec[Q, i], z.vec[V, i] = q, v / z.scale[0]
     if plan.exact and m.frame != ABSENT:
-        call(m.frame, t + tau, w.q, w.v, m.p, m.frame_now)
+        call(m.frame, t + tau, w.vec[Q], w.vec[V], m.p, m.frame_now)
         for i in range(n):
-            z.q[i] -= m.frame_now[i, 0]
-            z.v[i] -= m.frame_now[i, 1]
+            z.vec[Q, i] -= m.frame_now[i, 0]
+            z.vec[V, i] -= m.frame_now[i, 1]
 
 
 @inline
 def surface_state(m: Any, w: Any, z: Any, t: float) -> None:
     """State of the one coordinate on its obstacle."""
-    for c in range(len(w.u)):
-        if w.status[c] == CLOSED:
-            obstacle(m, t, w.q, w.v)
-            z.q[0] = (m.motion_now[c, 0] - m.offset[c]) / m.G[c, 0]
-            z.v[0] = m.motion_now[c, 1] / m.G[c, 0]
+    for c in range(w.num.shape[1]):
+        if w.mark[STATUS, c] == CLOSED:
+            obstacle(m, t, w.vec[Q], w.vec[V])
+            z.vec[Q, 0] = (m.motion_now[c, 0] - m.offset[c]) / m.G[c, 0]
+            z.vec[V, 0] = m.motion_now[c, 1] / m.G[c, 0]
 
 
-@inline
 def contacts_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, g: Any, u: Any) -> None:
     """Gaps and gap velocities at tau after the base of the piece."""
     state_at(m, plan, w, x, z, t, tau)
-    gaps(m, t + tau, z.q, z.v, g)
-    gap_rates(m, t + tau, z.q, z.v, w.G_try, w.g_t_try)
+    gaps(m, t + tau, z.vec[Q], z.vec[V], g)
+    gap_rates(m, t + tau, z.vec[Q], z.vec[V], w.G_try, w.num[GAP_T_TRY])
     for c in range(len(u)):
-        u[c] = product(w.G_try, z.v, c) + w.g_t_try[c]
+        u[c] = product(w.G_try, z.vec[V], c) + w.num[GAP_T_TRY, c]
 
 
 @inline
 def force_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, count: Any) -> bool:
-    """Forces of the closed contacts at tau after the base of the piece, into w.p."""
+    """Forces of the closed contacts at tau after the base of the piece, into w.num[P]."""
     state_at(m, plan, w, x, z, t, tau)
-    return constrained(m, plan, w, x, t + tau, z.q, z.v, w.a_try, count)
+    return constrained(m, plan, w, x, t + tau, z.vec[Q], z.vec[V], w.vec[A_TRY], count)

@@ -22,7 +22,10 @@ from lcpstep.stepping.located_loop import (
     penetrates,
 )
 from lcpstep.stepping.located_work import (
+    ALPHA,
+    BIAS,
     BUFFER_FULL,
+    CHOSEN,
     CLOSED,
     CLOSED_NOW,
     END,
@@ -30,17 +33,32 @@ from lcpstep.stepping.located_work import (
     EVENT,
     EVENTS,
     FINISHED,
+    FREE,
+    GAP,
+    GAP_T,
+    GAP_TRY,
+    GROUNDED,
+    HALF,
     HIGH,
+    IMPULSE,
+    LAST,
     LCP_FAILED,
     LOW,
     NEXT_TIME,
     NOT_FINITE,
+    OLDER,
     OPEN,
+    RATE,
     ROW,
     SIGMA,
+    STATUS,
     STEP,
     UNDER_WAY,
     WHOLE,
+    A,
+    P,
+    Q,
+    V,
 )
 from lcpstep.stepping.polynomial import (
     NODES,
@@ -80,7 +98,7 @@ def run(
         while (
             count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < t_next + LATE * plan.h
         ):
-            keep_now(w, record, count, record.times[count[NEXT_TIME]], w.q, w.v)
+            keep_now(w, record, count, record.times[count[NEXT_TIME]], w.vec[Q], w.vec[V])
             count[NEXT_TIME] += 1
         count[STEP] += 1
         x[UNDER_WAY] = 0.0
@@ -94,7 +112,7 @@ def run(
 @inline
 def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: float) -> int:
     """The rest of the step that began at t: from x[SIGMA] to its end."""
-    n_c = len(w.u)
+    n_c = w.num.shape[1]
     while True:
         if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
@@ -133,24 +151,23 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
                 keep(w, record, count, t + x[SIGMA])
 
 
-@inline
 def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
     """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
-    n_c = len(w.u)
+    n_c = w.num.shape[1]
     if n_c == 0:
         return True
-    if not free_acceleration(m, w, within(plan, x, t), w.q, w.v, w.free):
+    if not free_acceleration(m, w, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FREE]):
         return False
     needed = x[CLOSED_NOW] > 0
     for c in range(n_c):
-        needed = needed or w.grounded[c] == 1
-        w.older[c] = 0.0
+        needed = needed or w.mark[GROUNDED, c] == 1
+        w.num[OLDER, c] = 0.0
     if not needed:
         return True
-    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
-    biases(m, plan, w, x, t, w.q, w.v)
+    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+    biases(m, plan, w, x, t, w.vec[Q], w.vec[V])
     for c in range(n_c):
-        w.alpha[c] = product(w.G, w.free, c) + w.bias[c]
+        w.num[ALPHA, c] = product(w.G, w.vec[FREE], c) + w.num[BIAS, c]
     if x[CLOSED_NOW] > 0 and not plan.constant:
         if not refactor(m, w, t):
             return False
@@ -158,7 +175,9 @@ def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -
     if not hold(m, plan, w, x, record, WHOLE, t, count):
         return False
     for c in range(n_c):
-        w.half[c] = 0.5 * (product(w.G, w.a, c) + w.bias[c]) if w.status[c] == OPEN else 0.0
+        w.num[HALF, c] = (
+            0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c]) if w.mark[STATUS, c] == OPEN else 0.0
+        )
     return True
 
 
@@ -170,8 +189,8 @@ def follow(
     now = t + x[SIGMA]
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < now + tau:
         state_at(m, plan, w, x, z, now, max(0.0, record.times[count[NEXT_TIME]] - now))
-        settle_state(m, plan, w, x, record.times[count[NEXT_TIME]], z.q)
-        keep_now(w, record, count, record.times[count[NEXT_TIME]], z.q, z.v)
+        settle_state(m, plan, w, x, record.times[count[NEXT_TIME]], z.vec[Q])
+        keep_now(w, record, count, record.times[count[NEXT_TIME]], z.vec[Q], z.vec[V])
         count[NEXT_TIME] += 1
     x[SIGMA] = x[END] if ends else x[SIGMA] + tau
     if tau == 0.0:
@@ -180,13 +199,13 @@ def follow(
         for node, weight in NODES:
             if not force_at(m, plan, w, x, z, now, node * tau, count):
                 return NOT_FINITE
-            for c in range(len(w.u)):
-                w.impulse[c] += weight * tau * w.p[c]
+            for c in range(w.num.shape[1]):
+                w.num[IMPULSE, c] += weight * tau * w.num[P, c]
     state_at(m, plan, w, x, z, now, tau)
-    assign(w.q, z.q)
-    assign(w.v, z.v)
-    for c in range(len(w.u)):
-        w.grounded[c] = 0
+    assign(w.vec[Q], z.vec[Q])
+    assign(w.vec[V], z.vec[V])
+    for c in range(w.num.shape[1]):
+        w.mark[GROUNDED, c] = 0
     measure(m, plan, w, now + tau)
     if not on_surface(m, plan, w, x) and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
         if not plan.constant:
@@ -199,44 +218,44 @@ def follow(
     return FINISHED
 
 
-@inline
 def slide(m: Any, w: Any, t: float) -> None:
     """Velocities of closed contacts along the surface, against the drift of the integration."""
-    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
-    for c in range(len(w.u)):
-        w.g_try[c] = product(w.G, w.v, c) + w.g_t[c] if w.status[c] == CLOSED else 0.0
-    newton_step(w, w.v)
+    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+    for c in range(w.num.shape[1]):
+        w.num[GAP_TRY, c] = (
+            product(w.G, w.vec[V], c) + w.num[GAP_T, c] if w.mark[STATUS, c] == CLOSED else 0.0
+        )
+    newton_step(w, w.vec[V])
 
 
-@inline
 def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: int, count: Any) -> int:
     """Contact c lands at x[SIGMA]: an impact, or a touch without one."""
-    if w.u[c] >= 0.0:
-        w.g[c], w.grounded[c] = 0.0, 1
-        if w.u[c] == 0.0 or x[SIGMA] - w.last[c] <= STALLED * plan.h:
+    if w.num[RATE, c] >= 0.0:
+        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+        if w.num[RATE, c] == 0.0 or x[SIGMA] - w.num[LAST, c] <= STALLED * plan.h:
             stick(w, record, count, x, c, t)
-        w.last[c] = x[SIGMA]
+        w.num[LAST, c] = x[SIGMA]
         x[EVENTS] += 1
         return FINISHED
-    if not constrained(m, plan, w, x, t, w.q, w.v, w.a, count):
+    if not constrained(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
         return NOT_FINITE
-    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
-    biases(m, plan, w, x, t, w.q, w.v)
+    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+    biases(m, plan, w, x, t, w.vec[Q], w.vec[V])
     if not plan.constant:
         if not refactor(m, w, t):
             return NOT_FINITE
         respond(m, w)
-    for d in range(len(w.u)):
-        w.half[d] = 0.5 * (product(w.G, w.a, d) + w.bias[d])
+    for d in range(w.num.shape[1]):
+        w.num[HALF, d] = 0.5 * (product(w.G, w.vec[A], d) + w.num[BIAS, d])
     n_s = strike(m, plan, w, x, record, c, t, count)
     if n_s == 0:
         return LCP_FAILED
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
-        d = w.chosen[k]
-        W, error = w.W[d, d], w.u[d] - product(w.G, w.v, d) - w.g_t[d]
+        d = w.mark[CHOSEN, k]
+        W, error = w.W[d, d], w.num[RATE, d] - product(w.G, w.vec[V], d) - w.num[GAP_T, d]
         if W > 0.0:
-            for i in range(len(w.q)):
-                w.v[i] += w.MG[d, i] * error / W
+            for i in range(w.vec.shape[1]):
+                w.vec[V, i] += w.MG[d, i] * error / W
     if record.on_events or record.every == 1:
         keep(w, record, count, t)
     return FINISHED
@@ -245,5 +264,5 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
 @inline
 def keep_now(w: Any, record: Any, count: Any, t: float, q: Any, v: Any) -> None:
     """Keep a state asked for."""
-    write_row(record.rows[count[ROW]], t, 0.0, q, v, w.impulse)
+    write_row(record.rows[count[ROW]], t, 0.0, q, v, w.num[IMPULSE])
     count[ROW] += 1

@@ -12,7 +12,23 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
-from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, EPS, OPEN
+from lcpstep.stepping.located_work import (
+    CLOSED,
+    CLOSED_NOW,
+    EPS,
+    GAP,
+    GAP_FROM,
+    GAP_TO,
+    GAP_TRY,
+    HALF,
+    OPEN,
+    RATE,
+    RATE_FROM,
+    RATE_NOW,
+    RATE_TO,
+    STATUS,
+    P,
+)
 from lcpstep.stepping.polynomial import NODES, contacts_at, force_at
 
 NOBODY = -1
@@ -24,8 +40,8 @@ ITERATIONS = 60
 @inline
 def gap_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, c: int) -> tuple[float, float]:
     """One gap and its velocity."""
-    contacts_at(m, plan, w, x, z, t, tau, w.g_try, z.u_now)
-    return w.g_try[c], z.u_now[c]
+    contacts_at(m, plan, w, x, z, t, tau, w.num[GAP_TRY], z.num[RATE_NOW])
+    return w.num[GAP_TRY, c], z.num[RATE_NOW, c]
 
 
 @inline
@@ -39,14 +55,13 @@ def hop_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, c: i
     return mean, (u - mean) / tau
 
 
-@inline
 def landing(
     m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int, hop: bool
 ) -> float:
     """Where gap c falls to zero in (a, b]: positive at a, or on its way up, and not positive at b."""
     tau = b
-    if hop and w.half[c] < 0.0:
-        tau = min(b, -w.u[c] / w.half[c])
+    if hop and w.num[HALF, c] < 0.0:
+        tau = min(b, -w.num[RATE, c] / w.num[HALF, c])
     for _ in range(ITERATIONS):
         if hop:
             f, slope = hop_at(m, plan, w, x, z, t, tau, c)
@@ -65,10 +80,9 @@ def landing(
     return tau
 
 
-@inline
 def lowest(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int) -> float:
     """Where the velocity of gap c passes zero upwards in (a, b): regula falsi after Illinois."""
-    f_a, f_b, side, tau = z.u_from[c], z.u_to[c], 0, a
+    f_a, f_b, side, tau = z.num[RATE_FROM, c], z.num[RATE_TO, c], 0, a
     for _ in range(ITERATIONS):
         tau = (a * f_b - b * f_a) / (f_b - f_a)
         if not a < tau < b:
@@ -90,40 +104,39 @@ def lowest(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: flo
 @inline
 def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float) -> tuple[int, float]:
     """Which gap closes first in (0, end], and when; NOBODY and the end if none does."""
-    n_c, found, first = len(w.u), NOBODY, end
+    n_c, found, first = w.num.shape[1], NOBODY, end
     for c in range(n_c):
-        if w.status[c] == OPEN and w.g[c] <= 0.0 and w.u[c] < 0.0:
+        if w.mark[STATUS, c] == OPEN and w.num[GAP, c] <= 0.0 and w.num[RATE, c] < 0.0:
             return c, 0.0
-    assign(z.g_from, w.g)
-    assign(z.u_from, w.u)
+    assign(z.num[GAP_FROM], w.num[GAP])
+    assign(z.num[RATE_FROM], w.num[RATE])
     a = 0.0
     for part in range(1, PARTS + 1):
         b = end * part / PARTS
-        contacts_at(m, plan, w, x, z, t, b, z.g_to, z.u_to)
+        contacts_at(m, plan, w, x, z, t, b, z.num[GAP_TO], z.num[RATE_TO])
         for c in range(n_c):
-            if w.status[c] != OPEN:
+            if w.mark[STATUS, c] != OPEN:
                 continue
-            hop = part == 1 and z.g_from[c] <= 0.0
+            hop = part == 1 and z.num[GAP_FROM, c] <= 0.0
             low = b
-            if z.g_to[c] > 0.0:
-                if hop or not (z.u_from[c] < 0.0 < z.u_to[c]):
+            if z.num[GAP_TO, c] > 0.0:
+                if hop or not (z.num[RATE_FROM, c] < 0.0 < z.num[RATE_TO, c]):
                     continue
                 low = lowest(m, plan, w, x, z, t, a, b, c)
                 g, _ = gap_at(m, plan, w, x, z, t, low, c)
                 if g > 0.0:
                     continue
-            tau = landing(m, plan, w, x, z, t, a, low, c, hop) if not hop or w.u[c] > 0.0 else 0.0
+            tau = landing(m, plan, w, x, z, t, a, low, c, hop) if not hop or w.num[RATE, c] > 0.0 else 0.0
             if tau < first or found == NOBODY:
                 found, first = c, tau
         if found != NOBODY:
             return found, first
-        assign(z.g_from, z.g_to)
-        assign(z.u_from, z.u_to)
+        assign(z.num[GAP_FROM], z.num[GAP_TO])
+        assign(z.num[RATE_FROM], z.num[RATE_TO])
         a = b
     return NOBODY, end
 
 
-@inline
 def first_release(
     m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float, count: Any
 ) -> tuple[int, float]:
@@ -134,9 +147,9 @@ def first_release(
     for probe in range(1, PROBES + 1):
         b = end * probe / PROBES
         force_at(m, plan, w, x, z, t, b, count)
-        assign(z.u_to, w.p)
-        for c in range(len(w.u)):
-            if w.status[c] == CLOSED and z.u_to[c] < 0.0:
+        assign(z.num[RATE_TO], w.num[P])
+        for c in range(w.num.shape[1]):
+            if w.mark[STATUS, c] == CLOSED and z.num[RATE_TO, c] < 0.0:
                 tau = vanishing(m, plan, w, x, z, t, a, b, c, count)
                 if tau < first or found == NOBODY:
                     found, first = c, tau
@@ -146,13 +159,12 @@ def first_release(
     return NOBODY, end
 
 
-@inline
 def vanishing(
     m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: float, c: int, count: Any
 ) -> float:
     """Where the force of contact c vanishes in (a, b]: regula falsi after Illinois."""
     force_at(m, plan, w, x, z, t, a, count)
-    f_a, f_b, side, tau = w.p[c], z.u_to[c], 0, b
+    f_a, f_b, side, tau = w.num[P, c], z.num[RATE_TO, c], 0, b
     if f_a <= 0.0:
         return a
     for _ in range(ITERATIONS):
@@ -160,7 +172,7 @@ def vanishing(
         if not a < tau < b:
             tau = 0.5 * (a + b)
         force_at(m, plan, w, x, z, t, tau, count)
-        f = w.p[c]
+        f = w.num[P, c]
         if f == 0.0 or b - a <= 4.0 * EPS * (t + b):
             break
         if f > 0.0:

@@ -18,7 +18,39 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign, factorise, positive_definite, solve, solve_definite
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.model import ABSENT
-from lcpstep.stepping.located_work import CLOSED, CLOSED_NOW, END, FORCES, HIGH, LOW, REST, SIGMA, WHOLE
+from lcpstep.stepping.located_work import (
+    A_TRY,
+    BIAS,
+    CHOSEN,
+    CLOSED,
+    CLOSED_NOW,
+    END,
+    FORCE,
+    FORCE_NOW,
+    FORCES,
+    FREE,
+    GAP,
+    GAP_T,
+    GAP_T_TRY,
+    GAP_TRY,
+    HALF,
+    HIGH,
+    IMPULSE,
+    LOW,
+    NEXT_FORCE,
+    Q_BASE,
+    Q_TRY,
+    RATE,
+    REST,
+    SIGMA,
+    STATUS,
+    V_TRY,
+    WHOLE,
+    A,
+    Q,
+    V,
+    Z,
+)
 
 DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
 LANDINGS = 6  # Newton iterations onto the surface
@@ -31,10 +63,9 @@ def within(plan: Any, x: Any, t: float) -> float:
     return min(max(t, x[LOW] + plan.margin), x[HIGH] - plan.margin)
 
 
-@inline
 def invert_rest(m: Any, plan: Any, w: Any, rest: float) -> None:
     """A^-1 for the rest of a step, and what contacts need of it."""
-    n, n_c = len(w.q), len(w.u)
+    n, n_c = w.vec.shape[1], w.num.shape[1]
     if n == 1:
         A = m.M[0, 0] + 0.5 * rest * m.C[0, 0] + 0.25 * rest * rest * m.K[0, 0]
         plan.A_inverse[REST, 0, 0] = 1.0 / A
@@ -69,25 +100,26 @@ def accelerate(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
             invert_rest(m, plan, w, rest)
         else:
             place = WHOLE
-    n = len(w.q)
+    n = w.vec.shape[1]
     for i in range(n):
-        w.a_try[i] = 0.5 * (w.force[i] + w.next_force[i])
+        w.vec[A_TRY, i] = 0.5 * (w.vec[FORCE, i] + w.vec[NEXT_FORCE, i])
     if plan.stiff:
         for i in range(n):
             for j in range(n):
-                w.a_try[i] -= m.C[i, j] * w.v[j] + m.K[i, j] * (w.q[j] + 0.5 * rest * w.v[j])
+                w.vec[A_TRY, i] -= m.C[i, j] * w.vec[V, j] + m.K[i, j] * (
+                    w.vec[Q, j] + 0.5 * rest * w.vec[V, j]
+                )
     for i in range(n):
-        w.free[i] = product(plan.A_inverse[place], w.a_try, i)
+        w.vec[FREE, i] = product(plan.A_inverse[place], w.vec[A_TRY], i)
     return place
 
 
-@inline
 def free_acceleration(m: Any, w: Any, t: float, q: Any, v: Any, out: Any) -> bool:
     """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M."""
     if m.mass == ABSENT:
-        total_force(m, t, q, v, w.force)
+        total_force(m, t, q, v, w.vec[FORCE])
         for i in range(len(out)):
-            out[i] = product(m.M_inverse, w.force, i)
+            out[i] = product(m.M_inverse, w.vec[FORCE], i)
         return True
     total_force(m, t, q, v, out)
     mass(m, t, q, v, w.M)
@@ -101,44 +133,42 @@ def free_acceleration(m: Any, w: Any, t: float, q: Any, v: Any, out: Any) -> boo
 def mobility(m: Any, w: Any, c: int) -> None:
     """M^-1 G_c^T at the Jacobian w.G, into w.MG[c]; for a changing mass matrix by the factors in w.M."""
     if m.mass == ABSENT:
-        for i in range(len(w.q)):
+        for i in range(w.vec.shape[1]):
             w.MG[c, i] = product(m.M_inverse, w.G[c], i)
     else:
         assign(w.MG[c], w.G[c])
         solve_definite(w.M, w.MG[c])
 
 
-@inline
 def respond(m: Any, w: Any) -> None:
     """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
-    for c in range(len(w.u)):
+    for c in range(w.num.shape[1]):
         mobility(m, w, c)
-        for d in range(len(w.u)):
+        for d in range(w.num.shape[1]):
             w.W[d, c] = product(w.G, w.MG[c], d)
 
 
 @inline
 def refactor(m: Any, w: Any, t: float) -> bool:
-    """Factors of the mass matrix at the state w.q."""
+    """Factors of the mass matrix at the state w.vec[Q]."""
     if m.mass == ABSENT:
         return True
-    mass(m, t, w.q, w.v, w.M)
+    mass(m, t, w.vec[Q], w.vec[V], w.M)
     return positive_definite(w.M)
 
 
-@inline
 def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
-    """(dG/dt) v + d(g_t)/dt along the motion, into w.bias; by differences where the scene does not give it."""
-    n_c = len(w.u)
+    """(dG/dt) v + d(g_t)/dt along the motion, into w.num[BIAS]; by differences where the scene does not give it."""
+    n_c = w.num.shape[1]
     if m.bias != ABSENT:
-        call(m.bias, t, q, v, m.p, w.bias)
+        call(m.bias, t, q, v, m.p, w.num[BIAS])
         return
     size = 1.0
     for i in range(len(q)):
         size = max(size, abs(v[i]))
     d = DIFFERENCE / size
     for c in range(n_c):
-        w.bias[c] = 0.0
+        w.num[BIAS, c] = 0.0
     for k in range(4):
         shift, weight = (
             (d, 8.0)
@@ -146,94 +176,90 @@ def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
             else ((-d, -8.0) if k == 1 else ((2.0 * d, -1.0) if k == 2 else (-2.0 * d, 1.0)))
         )
         for i in range(len(q)):
-            w.q_try[i] = q[i] + shift * v[i]
-        gap_rates(m, t + shift, w.q_try, v, w.G_try, w.g_t_try)
+            w.vec[Q_TRY, i] = q[i] + shift * v[i]
+        gap_rates(m, t + shift, w.vec[Q_TRY], v, w.G_try, w.num[GAP_T_TRY])
         for c in range(n_c):
-            w.bias[c] += weight * (product(w.G_try, v, c) + w.g_t_try[c]) / (12.0 * d)
+            w.num[BIAS, c] += weight * (product(w.G_try, v, c) + w.num[GAP_T_TRY, c]) / (12.0 * d)
 
 
-@inline
 def measure(m: Any, plan: Any, w: Any, t: float) -> None:
     """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
-    gaps(m, t, w.q, w.v, w.g)
-    gap_rates(m, t, w.q, w.v, w.G, w.g_t)
-    for c in range(len(w.u)):
-        w.u[c] = product(w.G, w.v, c) + w.g_t[c]
-        if w.status[c] == CLOSED:
-            w.g[c] = w.u[c] = 0.0
+    gaps(m, t, w.vec[Q], w.vec[V], w.num[GAP])
+    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+    for c in range(w.num.shape[1]):
+        w.num[RATE, c] = product(w.G, w.vec[V], c) + w.num[GAP_T, c]
+        if w.mark[STATUS, c] == CLOSED:
+            w.num[GAP, c] = w.num[RATE, c] = 0.0
 
 
 @inline
 def shift(w: Any, tau: float) -> None:
     """The state at tau after the base becomes the base: along the quadratics."""
-    for i in range(len(w.q)):
-        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
-        w.v[i] += tau * w.a[i]
-    for c in range(len(w.u)):
-        w.impulse[c] += tau * w.multiplier[c]
-        if w.status[c] == CLOSED:
-            w.g[c] = w.u[c] = 0.0
+    for i in range(w.vec.shape[1]):
+        w.vec[Q, i] += tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
+        w.vec[V, i] += tau * w.vec[A, i]
+    for c in range(w.num.shape[1]):
+        w.num[IMPULSE, c] += tau * w.num[FORCE_NOW, c]
+        if w.mark[STATUS, c] == CLOSED:
+            w.num[GAP, c] = w.num[RATE, c] = 0.0
         else:
-            w.g[c] += tau * (w.u[c] + tau * w.half[c])
-            w.u[c] += 2.0 * tau * w.half[c]
+            w.num[GAP, c] += tau * (w.num[RATE, c] + tau * w.num[HALF, c])
+            w.num[RATE, c] += 2.0 * tau * w.num[HALF, c]
 
 
-@inline
 def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
     for _ in range(LANDINGS):
-        gaps(m, t, w.q, w.v, w.g_try)
+        gaps(m, t, w.vec[Q], w.vec[V], w.num[GAP_TRY])
         worst = 0.0
-        for c in range(len(w.u)):
-            if w.status[c] != CLOSED:
-                w.g_try[c] = min(w.g_try[c], 0.0)
-            worst = max(worst, abs(w.g_try[c]))
+        for c in range(w.num.shape[1]):
+            if w.mark[STATUS, c] != CLOSED:
+                w.num[GAP_TRY, c] = min(w.num[GAP_TRY, c], 0.0)
+            worst = max(worst, abs(w.num[GAP_TRY, c]))
         if worst <= ON_THE_SURFACE * plan.slack:
             return
         if not plan.constant:
-            gap_rates(m, t, w.q, w.v, w.G, w.g_t)
+            gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
             respond(m, w)
-        if not newton_step(w, w.q):
-            for c in range(len(w.u)):
-                if w.g_try[c] != 0.0:
-                    lift(m, plan, w, w.q, c, -w.g_try[c])
+        if not newton_step(w, w.vec[Q]):
+            for c in range(w.num.shape[1]):
+                if w.num[GAP_TRY, c] != 0.0:
+                    lift(m, plan, w, w.vec[Q], c, -w.num[GAP_TRY, c])
 
 
-@inline
 def settle_state(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any) -> None:
     """Q, a state within a piece, onto closed contacts and out of obstacles."""
-    if plan.plain or len(w.u) == 0 or (plan.exact and x[CLOSED_NOW] > 0):
+    if plan.plain or w.num.shape[1] == 0 or (plan.exact and x[CLOSED_NOW] > 0):
         return
-    assign(w.q_base, w.q)
-    assign(w.q, q)
+    assign(w.vec[Q_BASE], w.vec[Q])
+    assign(w.vec[Q], q)
     if refactor(m, w, t):
         put_on_surface(m, plan, w, t)
-    assign(q, w.q)
-    assign(w.q, w.q_base)
+    assign(q, w.vec[Q])
+    assign(w.vec[Q], w.vec[Q_BASE])
 
 
-@inline
 def newton_step(w: Any, x: Any) -> bool:
-    """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.g_try of closed and violated contacts.
+    """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.num[GAP_TRY] of closed and violated contacts.
 
     False if their constraints depend on each other.
     """
     n_k = 0
-    for c in range(len(w.u)):
-        if w.g_try[c] != 0.0 or w.status[c] == CLOSED:
-            w.chosen[n_k] = c
-            w.z[n_k] = -w.g_try[c]
+    for c in range(w.num.shape[1]):
+        if w.num[GAP_TRY, c] != 0.0 or w.mark[STATUS, c] == CLOSED:
+            w.mark[CHOSEN, n_k] = c
+            w.num[Z, n_k] = -w.num[GAP_TRY, c]
             n_k += 1
     W = w.problem[: n_k * n_k].reshape((n_k, n_k))
     for i in range(n_k):
         for j in range(n_k):
-            W[i, j] = w.W[w.chosen[i], w.chosen[j]]
+            W[i, j] = w.W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
     if not factorise(W, w.pivots):
         return False
-    solve(W, w.pivots, w.z[:n_k])
+    solve(W, w.pivots, w.num[Z, :n_k])
     for k in range(n_k):
-        for i in range(len(w.q)):
-            x[i] += w.MG[w.chosen[k], i] * w.z[k]
+        for i in range(w.vec.shape[1]):
+            x[i] += w.MG[w.mark[CHOSEN, k], i] * w.num[Z, k]
     return True
 
 
@@ -244,7 +270,7 @@ def lift(m: Any, plan: Any, w: Any, x: Any, c: int, distance: float) -> None:
         mobility(m, w, c)
     W = product(w.G, w.MG[c], c)
     if W > 0.0:
-        for i in range(len(w.q)):
+        for i in range(w.vec.shape[1]):
             x[i] += w.MG[c, i] * distance / W
 
 
@@ -257,25 +283,25 @@ def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any)
     if plan.plain:
         shift(w, tau)
         return True
-    n, t_next = len(w.q), t + tau
+    n, t_next = w.vec.shape[1], t + tau
     for i in range(n):
-        w.v_try[i] = w.v[i] + tau * w.a[i]
-        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
-    for c in range(len(w.u)):
-        w.impulse[c] += 0.5 * tau * w.multiplier[c]
+        w.vec[V_TRY, i] = w.vec[V, i] + tau * w.vec[A, i]
+        w.vec[Q, i] += tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
+    for c in range(w.num.shape[1]):
+        w.num[IMPULSE, c] += 0.5 * tau * w.num[FORCE_NOW, c]
     if x[CLOSED_NOW] > 0:
         if not refactor(m, w, t_next):
             return False
         put_on_surface(m, plan, w, t_next)
     if m.linear:
         for i in range(n):
-            w.v[i] += 0.5 * tau * (w.free[i] + w.a[i])
+            w.vec[V, i] += 0.5 * tau * (w.vec[FREE, i] + w.vec[A, i])
     else:
-        if not free_acceleration(m, w, t_next, w.q, w.v_try, w.a_try):
+        if not free_acceleration(m, w, t_next, w.vec[Q], w.vec[V_TRY], w.vec[A_TRY]):
             return False
         count[FORCES] += 1
         for i in range(n):
-            w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
-            w.free[i] = w.a_try[i]
+            w.vec[V, i] += 0.5 * tau * (w.vec[A_TRY, i] + w.vec[A, i])
+            w.vec[FREE, i] = w.vec[A_TRY, i]
     measure(m, plan, w, t_next)
     return True
