@@ -70,7 +70,8 @@ def moreau(options: argparse.Namespace) -> Moreau:
 
 def located(options: argparse.Namespace) -> Located:
     """Time-stepping with located impacts, as the options say."""
-    return Located(h=options.h)
+    order = options.order
+    return Located(h=options.h, order=int(order) if order.isdigit() else order)
 
 
 def event_driven(options: argparse.Namespace) -> EventDriven:

@@ -44,6 +44,7 @@ def add(commands: Any) -> None:
     scene_arguments(p)
     p.add_argument("--method", choices=list(METHODS), default="moreau", help="(moreau)")
     stepping_arguments(p)
+    p.add_argument("--order", default="2", help="2, 4 or exact, located only (2)")
     p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
     p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")

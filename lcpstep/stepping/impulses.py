@@ -72,6 +72,7 @@ def log(record: Any, count: Any, t: float, c: int, before: float, after: float, 
     count[EVENT] += 1
 
 
+@inline
 def solve_chosen(w: Any, W: Any, n: int, count: Any) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts."""
     count[LCP_CALLS] += 1
@@ -89,6 +90,7 @@ def solve_chosen(w: Any, W: Any, n: int, count: Any) -> bool:
 # --- contact forces -------------------------------------------------------------------------------------------
 
 
+@inline
 def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, count: Any) -> bool:
     """Forces of the closed contacts from w.num[ALPHA], and the acceleration with them; who needs none opens."""
     n, n_c, n_k = w.vec.shape[1], w.num.shape[1], 0
@@ -166,6 +168,7 @@ def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: fl
     x[EVENTS] += 1
 
 
+@inline
 def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, count: Any) -> bool:
     """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
 
@@ -203,6 +206,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
 # --- impacts --------------------------------------------------------------------------------------------------
 
 
+@inline
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
     """The impact of contact `first`, and of those that fire with it; how many took part, 0 if none was solved."""
     n_s = choose_struck(plan, w, first)

@@ -251,6 +251,7 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                 return code
 
 
+@inline
 def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> None:
     """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends."""
     now = t + x[SIGMA]
@@ -340,6 +341,7 @@ def pressed(w: Any, place: int) -> None:
                 w.num[HALF, c] += 0.5 * w.WA[place, c, d] * force
 
 
+@inline
 def fitted(m: Any, w: Any, t: float, rest: float) -> None:
     """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
     for i in range(w.vec.shape[1]):
@@ -373,6 +375,7 @@ def first_contact(plan: Any, w: Any, rest: float, t_end: float) -> tuple[int, fl
     return found, min(tau, rest)
 
 
+@inline
 def polish(m: Any, plan: Any, w: Any, c: int, t: float, tau: float, rest: float) -> tuple[int, float]:
     """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
     if tau == 0.0:
@@ -511,6 +514,7 @@ def finite(w: Any) -> bool:
 # --- what is kept ---------------------------------------------------------------------------------------------
 
 
+@inline
 def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < before:
@@ -525,6 +529,7 @@ def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: 
         count[NEXT_TIME] += 1
 
 
+@inline
 def keep(w: Any, record: Any, count: Any, t: float) -> None:
     """Keep the current state; states at one time share a row."""
     if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:

@@ -114,6 +114,7 @@ def accelerate(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
     return place
 
 
+@inline
 def free_acceleration(m: Any, w: Any, t: float, q: Any, v: Any, out: Any) -> bool:
     """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M."""
     if m.mass == ABSENT:
@@ -140,6 +141,7 @@ def mobility(m: Any, w: Any, c: int) -> None:
         solve_definite(w.M, w.MG[c])
 
 
+@inline
 def respond(m: Any, w: Any) -> None:
     """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
     for c in range(w.num.shape[1]):
@@ -182,6 +184,7 @@ def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
             w.num[BIAS, c] += weight * (product(w.G_try, v, c) + w.num[GAP_T_TRY, c]) / (12.0 * d)
 
 
+@inline
 def measure(m: Any, plan: Any, w: Any, t: float) -> None:
     """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
     gaps(m, t, w.vec[Q], w.vec[V], w.num[GAP])
@@ -207,6 +210,7 @@ def shift(w: Any, tau: float) -> None:
             w.num[RATE, c] += 2.0 * tau * w.num[HALF, c]
 
 
+@inline
 def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
     for _ in range(LANDINGS):
