@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -50,7 +50,11 @@ SCENES = [
 
 
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("method", [Moreau(1e-3), EventDriven(1e-9, 1e-9)], ids=["moreau", "event-driven"])
+@pytest.mark.parametrize(
+    "method",
+    [Moreau(1e-3), Located(1e-3), Located(1e-2, order=4), EventDriven(1e-9, 1e-9)],
+    ids=["moreau", "located", "order four", "event-driven"],
+)
 def test_plain_python_gives_the_same_motion_with_a_notice(scene, method):
     expected = simulate(scene, method)
     with pytest.warns(
@@ -110,7 +114,7 @@ def test_a_changed_global_is_seen_by_the_next_run(monkeypatch):
 RUN = """
 import numpy as np
 from lagrangian import scenes
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
 import sys
 made = scenes.cam_follower(t_end=0.1), scenes.bouncing_ball(t_end=1.0)
 for scene in made:

@@ -60,6 +60,15 @@ def on_surface(m: Any, plan: Any, w: Any, x: Any) -> bool:
 
 
 @inline
+def acceleration(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out: Any, count: Any) -> bool:
+    """Acceleration with the forces of closed contacts, if there are any; False where a matrix fails."""
+    count[FORCES] += 1
+    if x[CLOSED_NOW] == 0:
+        return free_acceleration(m, w, within(plan, x, t), q, v, out)
+    return constrained(m, plan, w, x, t, q, v, out)
+
+
+@inline
 def biases(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any) -> None:
     """Gap accelerations at v' = 0, into w.num[BIAS]."""
     inner = within(plan, x, t)
@@ -71,13 +80,10 @@ def biases(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any) -> None:
         w.num[BIAS, c] = -m.motion_now[c, 2] if m.motion != ABSENT else 0.0
 
 
-def constrained(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out: Any, count: Any) -> bool:
+def constrained(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out: Any) -> bool:
     """Acceleration with the forces of closed contacts, which go to w.num[P]; False where a matrix fails."""
-    count[FORCES] += 1
     if not free_acceleration(m, w, within(plan, x, t), q, v, out):
         return False
-    if x[CLOSED_NOW] == 0:
-        return True
     gap_rates(m, t, q, v, w.G, w.num[GAP_T])
     biases(m, plan, w, x, t, q, v)
     if not plan.constant:
@@ -129,6 +135,7 @@ def expand(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, length: float, c
     return hermite(m, plan, w, x, z, t, length, count)
 
 
+@inline
 def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
     """Taylor coefficients of y at t."""
     n = w.vec.shape[1]
@@ -165,10 +172,11 @@ def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
     return True
 
 
+@inline
 def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count: Any) -> bool:
     """Runge-Kutta step of length L, and the quintic through both of its ends."""
     n = w.vec.shape[1]
-    good = constrained(m, plan, w, x, t, w.vec[Q], w.vec[V], z.a[0], count)
+    good = acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], z.a[0], count)
     for i in range(n):
         z.vec[Q_END, i] = w.vec[Q, i] + L * w.vec[V, i] / 6.0
         z.vec[V_END, i] = w.vec[V, i] + L * z.a[0, i] / 6.0
@@ -179,13 +187,13 @@ def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count
         for i in range(n):
             z.vec[Q_STAGE, i] = w.vec[Q, i] + share * L * z.vec[V_STAGE, i]
             z.vec[V_STAGE, i] = w.vec[V, i] + share * L * z.a[k - 1, i]
-        good = good and constrained(
+        good = good and acceleration(
             m, plan, w, x, t + share * L, z.vec[Q_STAGE], z.vec[V_STAGE], z.a[k], count
         )
         for i in range(n):
             z.vec[Q_END, i] += weight * z.vec[V_STAGE, i]
             z.vec[V_END, i] += weight * z.a[k, i]
-    good = good and constrained(m, plan, w, x, t + L, z.vec[Q_END], z.vec[V_END], z.a[4], count)
+    good = good and acceleration(m, plan, w, x, t + L, z.vec[Q_END], z.vec[V_END], z.a[4], count)
     z.scale[0] = L
     for i in range(n):
         c_1, c_2 = L * w.vec[V, i], 0.5 * L * L * z.a[0, i]
@@ -231,6 +239,7 @@ def surface_state(m: Any, w: Any, z: Any, t: float) -> None:
             z.vec[V, 0] = m.motion_now[c, 1] / m.G[c, 0]
 
 
+@inline
 def contacts_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, g: Any, u: Any) -> None:
     """Gaps and gap velocities at tau after the base of the piece."""
     state_at(m, plan, w, x, z, t, tau)
@@ -244,4 +253,4 @@ def contacts_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float,
 def force_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, count: Any) -> bool:
     """Forces of the closed contacts at tau after the base of the piece, into w.num[P]."""
     state_at(m, plan, w, x, z, t, tau)
-    return constrained(m, plan, w, x, t + tau, z.vec[Q], z.vec[V], w.vec[A_TRY], count)
+    return acceleration(m, plan, w, x, t + tau, z.vec[Q], z.vec[V], w.vec[A_TRY], count)

@@ -62,8 +62,8 @@ from lcpstep.stepping.located_work import (
 )
 from lcpstep.stepping.polynomial import (
     NODES,
+    acceleration,
     biases,
-    constrained,
     expand,
     force_at,
     on_surface,
@@ -151,6 +151,7 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
                 keep(w, record, count, t + x[SIGMA])
 
 
+@inline
 def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
     """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
     n_c = w.num.shape[1]
@@ -237,7 +238,7 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
         w.num[LAST, c] = x[SIGMA]
         x[EVENTS] += 1
         return FINISHED
-    if not constrained(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
+    if not acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
         return NOT_FINITE
     gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
     biases(m, plan, w, x, t, w.vec[Q], w.vec[V])

@@ -37,7 +37,6 @@ PROBES = 4  # of contact forces
 ITERATIONS = 60
 
 
-@inline
 def gap_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, c: int) -> tuple[float, float]:
     """One gap and its velocity."""
     contacts_at(m, plan, w, x, z, t, tau, w.num[GAP_TRY], z.num[RATE_NOW])
@@ -137,6 +136,7 @@ def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: floa
     return NOBODY, end
 
 
+@inline
 def first_release(
     m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float, count: Any
 ) -> tuple[int, float]:
