@@ -47,7 +47,8 @@ class Located:
         4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
         up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
         contacts; a moving obstacle or frame with one coordinate only.
-    max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step
+    max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step, which
+        loses energy that elastic contacts would keep
 
     Raises
     ------
@@ -65,7 +66,7 @@ class Located:
 
     h: float = 1e-3
     order: int | str = 2
-    max_events: int = 1_000_000
+    max_events: int = 10_000_000
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
