@@ -47,8 +47,8 @@ class Located:
         4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
         up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
         contacts; a moving obstacle or frame with one coordinate only.
-    max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step, which
-        loses energy that elastic contacts would keep
+    max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step,
+        which loses energy that elastic contacts would keep
 
     Raises
     ------
