@@ -232,12 +232,14 @@ class HybridRun:
             ("time", "f8"),
             ("source", kind),
             ("target", kind),
+            ("guard", "i8"),
             ("before", "f8", (n,)),
             ("after", "f8", (n,)),
         ]
         result = np.zeros(len(log), dtype=dtype)
         result["time"] = log[:, 0]
         result["source"], result["target"] = names[log[:, 1].astype(int)], names[log[:, 2].astype(int)]
+        result["guard"] = log[:, 3]
         result["before"] = log[:, loop.SWITCH_LEAD : loop.SWITCH_LEAD + n]
         result["after"] = log[:, loop.SWITCH_LEAD + n :]
         return result.view(np.recarray)

@@ -3,8 +3,8 @@
 A guard along the dense output is a polynomial in the fraction s of the step (of degree 7 for a linear guard), or as
 near to one as the step is cut into parts. In Bernstein form, coefficients without a sign change have no root between
 them, and one sign change is exactly one root; otherwise the interval is halved (de Casteljau). So roots that come in
-pairs inside a step are found, too. Source: T. Sederberg, Computer Aided Geometric Design, chapter 9; G. Farin, Curves and
-Surfaces for CAGD (Morgan Kaufmann 2002), section 5.3.
+pairs inside a step are found, too. Source: T. Sederberg, Computer Aided Geometric Design, chapter 9; G. Farin,
+Curves and Surfaces for CAGD (Morgan Kaufmann 2002), section 5.3.
 """
 
 from __future__ import annotations

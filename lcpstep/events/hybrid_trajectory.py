@@ -35,7 +35,8 @@ class HybridTrajectory:
     x : (n, n_x)   states; after the switch at a time that has one
     mode : (n,)   names of the modes from these times on
     switches : record array (m,)
-        Fields time, source, target (names of the modes left and entered), before, after (states, (n_x,) each).
+        Fields time, source, target (names of the modes left and entered), guard (its place in the table of all
+        guards), before, after (states, (n_x,) each).
     status : Status   DONE, or why the run ended early; `message` says it in words
     counts : Counts   steps, evaluations of the field, switches (`events`)
     scene, method : the question, and how it was answered
