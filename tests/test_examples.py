@@ -35,7 +35,9 @@ def test_a_derived_mechanism_keeps_its_energy():
     assert example("ex04_from_a_lagrangian")["energy_drift"]() < 1e-9
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/tutorial.md", "docs/symbolic.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "docs/tutorial.md", "docs/symbolic.md", "docs/hybrid-systems.md"]
+)
 def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
     pytest.importorskip("sympy")
     monkeypatch.chdir(tmp_path)

@@ -20,7 +20,7 @@ from lagrangian import checks
 from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque
 from lcpstep.analysis.hybrid_variation import monodromy
-from lcpstep.errors import LcpStepError
+from lcpstep.errors import LcpStepError, StudyInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid_many import End, Follower
 from lcpstep.simulate import simulate
@@ -32,7 +32,7 @@ OUTCOMES = ("limit cycle", "wheel lock", "equilibrium", "other")
 CYCLE, LOCK, EQUILIBRIUM, OTHER = range(4)
 LONGEST, SETTLED = 100.0, 10.0  # a motion that does not switch for so long: of the cycle, of basins [s]
 SWITCHES = 14  # after which a motion that goes on is compared with the cycle
-NEAR = 1e-6  # of two switching states that are the same, relative
+NEAR = 1e-4  # of two switching states that are the same, relative; at the tolerances of basins
 NEARLY_LOCKED = 0.99  # slip, in the model that does not reach 1
 FAST, EXACT = EventDriven(rtol=1e-9, atol=1e-9), EventDriven(rtol=1e-12, atol=1e-13)
 
@@ -255,7 +255,10 @@ def bifurcation(scene: HybridScene, torque_max: ArrayLike) -> Bifurcation:
 
 @dataclass(frozen=True, eq=False)
 class Basins:
-    """Where motions go: labels (4, n_slip, n_torque) index `OUTCOMES`; one layer a starting state of the machine."""
+    """Where motions go: labels (4, n_slip, n_torque) index `OUTCOMES`; one layer a starting state of the machine.
+
+    A cell that an interrupted run has not come to holds -1.
+    """
 
     slip: Array
     torque: Array
@@ -272,17 +275,25 @@ class Basins:
 def basins(
     scene: HybridScene, slip: ArrayLike, torque: ArrayLike, progress: Callable[[int], None] | None = None
 ) -> Basins:
-    """Outcome of the motion from every slip, torque and state of the machine."""
+    """Outcome of the motion from every slip, torque and state of the machine.
+
+    Raises
+    ------
+    StudyInterrupted   a KeyboardInterrupt; carries the `Basins` so far
+    """
     s, T = checks.vector("slip", slip), checks.vector("torque", torque)
     corner(scene)
     follow = Follower(scene, FAST, SETTLED, SWITCHES)
-    labels = np.zeros((4, len(s), len(T)), dtype=np.int8)
-    for q in range(4):
-        for i, x in enumerate(s):
-            labels[q, i] = [classify(scene, follow([x, y], f"{q}")) for y in T]
-            if progress is not None:
-                progress(q * len(s) + i + 1)
-    return Basins(np.array(s), np.array(T), labels)
+    result = Basins(np.array(s), np.array(T), np.full((4, len(s), len(T)), -1, dtype=np.int8))
+    try:
+        for q in range(4):
+            for i, x in enumerate(s):
+                result.labels[q, i] = [classify(scene, follow([x, y], f"{q}")) for y in T]
+                if progress is not None:
+                    progress(q * len(s) + i + 1)
+    except KeyboardInterrupt:
+        raise StudyInterrupted(result) from None
+    return result
 
 
 @dataclass(frozen=True)
@@ -320,3 +331,26 @@ def _first_edge(good: Callable[[float], bool], start: float, end: float, width: 
             return edge(good, inside, float(x), width)
         inside = float(x)
     return None
+
+
+def allowed_bias(scene: HybridScene, quantity: str, width: float = 1e-9) -> tuple[float | None, float | None]:
+    """Constant errors e between which the cycle persists when `quantity` is measured as its value plus e.
+
+    Parameters
+    ----------
+    quantity : "slip" or "torque", whose two thresholds act at their values minus e
+
+    Returns
+    -------
+    lowest and highest error; None where no error up to half of the lower threshold ends the cycle
+    """
+    if quantity not in ("slip", "torque"):
+        raise ValueError(f"quantity: expected slip or torque, got {quantity!r}")
+    low, high = (float(scene.parameters[f"{quantity}_{end}"]) for end in ("min", "max"))
+
+    def good(e: float) -> bool:
+        names = {f"{quantity}_min": low - e, f"{quantity}_max": high - e}
+        return has_cycle(with_thresholds(scene, **names))
+
+    most = 0.5 * low
+    return _first_edge(good, 0.0, -most, width), _first_edge(good, 0.0, most, width)

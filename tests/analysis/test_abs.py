@@ -1,5 +1,6 @@
 """The hybrid anti-lock controller: cycle, dead-beat multiplier, basins, bifurcations against exact values."""
 
+import json
 import math
 
 import numpy as np
@@ -14,6 +15,7 @@ from lcpstep.analysis.abs_cycle import (
     LOCK,
     OUTCOMES,
     NoCycle,
+    allowed_bias,
     basins,
     bifurcation,
     edge,
@@ -24,6 +26,8 @@ from lcpstep.analysis.abs_cycle import (
     vanishing,
     with_thresholds,
 )
+from lcpstep.cli import main
+from lcpstep.errors import StudyInterrupted
 
 MODELS = ["slip", "constant"]
 WET = {"road": "wet", "torque_max": 1000.0, "torque_min": 630.0}
@@ -103,6 +107,16 @@ def test_the_allowed_error_of_the_slip_is_the_distance_to_the_falling_isocline()
     assert by_state["3"].down is None
 
 
+def test_a_constant_error_of_the_slip_is_allowed_up_to_the_rising_isocline():
+    scene = hybrid_abs()
+    low, high = allowed_bias(scene, "slip")
+    assert high == pytest.approx(0.08 - isocline(scene, 1000.0, 0.0, 0.16), abs=2e-9)
+    assert -margins(scene, limit_cycle(scene))[0].up == pytest.approx(low, abs=1e-2)
+    assert low < 0.0
+    with pytest.raises(ValueError, match="expected slip or torque"):
+        allowed_bias(scene, "speed")
+
+
 def falling(scene, torque):
     """Slip above which the wheel locks under a torque that is held."""
     return 1.0 if holding_torque(1.0, scene.p) > torque else isocline(scene, torque, 0.162, 1.0)
@@ -167,6 +181,36 @@ def test_the_full_model_stands_still_in_the_end_and_has_no_cycle():
 def test_the_dry_thresholds_lock_the_wheel_on_a_wet_road():
     with pytest.raises(NoCycle, match="wheel locks in state 3"):
         limit_cycle(hybrid_abs(road="wet"))
+
+
+def test_the_command_writes_what_it_prints(capsys, tmp_path):
+    arguments = ["abs", "--grid", "6", "--points", "8", "--out", str(tmp_path), "--json"]
+    assert main(arguments) == 0
+    printed = json.loads(capsys.readouterr().out)
+    saved = json.loads((tmp_path / "abs.json").read_text())
+    assert saved == printed
+    assert saved["vanishes_below"] == pytest.approx(saved["peak"]["torque"], abs=1e-9)
+    assert sum(saved["basins"]["shares"]["0"].values()) == pytest.approx(1.0)
+    assert np.load(tmp_path / "abs-basins.npz")["labels"].shape == (4, 6, 6)
+    assert (tmp_path / "abs.png").stat().st_size > 1000
+    assert main(arguments) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert main(["abs", "--torque-min", "1700"]) == 2
+    assert "torque_min: expected less" in capsys.readouterr().err
+    assert main(["abs", "--road", "wet", "--grid", "0"]) == 0
+    assert "the wheel locks in state 3" in capsys.readouterr().out
+
+
+def test_an_interrupt_of_the_basins_keeps_what_was_computed():
+    def impatient(done):
+        if done == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterrupted) as stopped:
+        basins(hybrid_abs(), [0.1, 0.5], [500.0, 1100.0], impatient)
+    labels = stopped.value.study.labels
+    assert np.all(labels[0] >= 0)
+    assert np.all(labels[2:] == -1)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,102 @@
+"""The hybrid anti-lock controller in one picture: cycle, time series, bifurcation over the torque threshold, basins.
+
+The content is that of the figures of G. Osorio, Complex Behavior in Impacting Systems, chapter 7.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from lagrangian.hybrid import HybridScene
+from lagrangian.scenes.hybrid_abs import holding_torque
+from lcpstep.analysis.abs_cycle import OUTCOMES, Basins, Bifurcation, Cycle, corner, peak
+from lcpstep.events import EventDriven
+from lcpstep.simulate import simulate
+
+COLOURS = ("#4c9a6a", "#c44e52", "#4c72b0", "#999999")  # of the outcomes
+
+
+def overview(
+    scene: HybridScene, cycle: Cycle | None, over: Bifurcation | None, found: Basins | None, title: str
+) -> Any:
+    """What has been computed; panels of what has not stay empty."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(15, 8), layout="constrained")
+    figure.suptitle(title)
+    axes = figure.subplots(2, 4)
+    _plane(axes[0, 0], scene, cycle)
+    _series(axes[0, 1], scene, cycle)
+    _over(axes[0, 2], axes[0, 3], scene, over)
+    for q in range(4):
+        _basin(axes[1, q], scene, cycle, found, q)
+    return figure
+
+
+def _isocline(ax: Any, scene: HybridScene) -> None:
+    slip = np.linspace(0.0, 1.0, 400)
+    ax.plot(slip, [holding_torque(s, scene.p) for s in slip], "k--", lw=0.8, label="isocline T = Psi(slip)")
+
+
+def _orbit(ax: Any, scene: HybridScene, cycle: Cycle, **style: Any) -> None:
+    run = simulate(scene.started(corner(scene), "2", (0.0, cycle.period)), EventDriven())
+    x = run.at(np.linspace(0.0, cycle.period, 2000))
+    ax.plot(x[:, 0], x[:, 1], **style)
+
+
+def _plane(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
+    _isocline(ax, scene)
+    if cycle is not None:
+        _orbit(ax, scene, cycle, color="C0", label="limit cycle")
+        ax.plot(cycle.slip, cycle.torque, "ko", ms=4)
+        for state, s, T in zip(cycle.states, cycle.slip, cycle.torque, strict=True):
+            ax.annotate(f" enters {state}", (s, T), fontsize=8)
+    ax.set(title="state plane", xlabel="slip [-]", ylabel="brake torque [N m]", xlim=(0.0, 1.0))
+    ax.legend(fontsize=7)
+    ax.grid(alpha=0.3)
+
+
+def _series(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
+    if cycle is not None:
+        end = 2.0 * cycle.period
+        t = np.linspace(0.0, end, 2000)
+        x = simulate(scene.started(corner(scene), "2", (0.0, end)), EventDriven()).at(t)
+        ax.plot(t, x[:, 0], "C0-", label="slip [-]")
+        ax.plot(t, x[:, 1] / 1e4, "C3-", label="torque [10 kN m]")
+        ax.legend(fontsize=7)
+    ax.set(title="two periods", xlabel="time [s]")
+    ax.grid(alpha=0.3)
+
+
+def _over(left: Any, right: Any, scene: HybridScene, over: Bifurcation | None) -> None:
+    for ax in (left, right):
+        ax.axvline(peak(scene)[1], color="k", ls="--", lw=0.8, label="max Psi")
+        ax.set_xlabel("T_max [N m]")
+        ax.grid(alpha=0.3)
+    if over is not None:
+        left.plot(over.torque_max, over.period, "C0.-", ms=3)
+        right.plot(over.torque_max, over.slip_low, "C0-", label="smallest slip")
+        right.plot(over.torque_max, over.slip_high, "C3-", label="largest slip")
+    left.set(title="period [s]")
+    right.set(title="amplitude of the slip [-]")
+    right.legend(fontsize=7)
+
+
+def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | None, q: int) -> None:
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    if found is not None:
+        ax.pcolormesh(
+            found.slip, found.torque, np.where(found.labels[q] < 0, np.nan, found.labels[q]).T,
+            cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest", alpha=0.6,
+        )  # fmt: skip
+    _isocline(ax, scene)
+    if cycle is not None:
+        _orbit(ax, scene, cycle, color="k", lw=0.8)
+    ax.set(title=f"from state {q}", xlabel="slip [-]", ylabel="brake torque [N m]")
+    if q == 0:
+        handles = [Patch(color=c, alpha=0.6, label=name) for c, name in zip(COLOURS, OUTCOMES, strict=True)]
+        ax.legend(handles=handles, fontsize=7, loc="lower right")
