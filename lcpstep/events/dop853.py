@@ -14,6 +14,7 @@ import numpy as np
 
 STAGES = 12
 EXTRA_STAGES = 3  # of the dense output
+UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step
 
 
@@ -78,7 +79,7 @@ def error_norm(tab: Any, w: Any, h: float, rtol: float, atol: float) -> float:
             e3 += tab.E3[j] * w.K[j, i]
         err5 += (e5 / scale) ** 2
         err3 += (e3 / scale) ** 2
-    if err5 == 0.0 and err3 == 0.0:
+    if err5 + 0.01 * err3 <= UNDERFLOW:
         return 0.0
     return abs(h) * err5 / math.sqrt((err5 + 0.01 * err3) * m)
 

@@ -28,8 +28,10 @@ N_STATE = 8
 GAP, SPEED, CURVE, MULTIPLIER, RATE, BIAS, IMPULSE, SHIFTED = range(8)  # CURVE: the gap acceleration
 LEFT_GAP, LEFT_SPEED, LEFT_CURVE, LEFT_MULTIPLIER = range(8, 12)  # at the left end of an interval
 STRUCK, SINCE, HELD = range(12, 15)  # time of the last impact, since the one before; no release before HELD
-LCP_B, LCP_Z, SYNCHRONOUS = range(15, 18)  # SYNCHRONOUS: gap and speed are those of Q, V
-N_CONTACT = 18
+LCP_B, LCP_Z, SYNCHRONOUS, CHATTERS = range(
+    15, 19
+)  # SYNCHRONOUS: gap and speed are those of Q, V; CHATTERS: until this time
+N_CONTACT = 19
 # Rows of Several.mode
 CLOSED, WAS_CLOSED, LOADED = range(3)  # lasting contact; so when last told; carries a force
 N_MODE = 3

@@ -61,7 +61,7 @@ def start(scene: Scene) -> eq.Several:
     state = np.zeros((eq.N_STATE, n_q))
     state[[eq.Q0, eq.Q]], state[[eq.V0, eq.V]] = scene.q0, scene.v0
     contact = np.zeros((eq.N_CONTACT, n_c))
-    contact[[eq.STRUCK, eq.HELD]] = -math.inf
+    contact[[eq.STRUCK, eq.HELD, eq.CHATTERS]] = -math.inf
     x = np.zeros(loop.N_NUMBERS)
     x[T0], x[loop.LAST_EVENT] = scene.t_span[0], -math.inf
     x[SCALE] = scene.period if math.isfinite(scene.period) else scene.t_span[1] - scene.t_span[0]
@@ -229,7 +229,7 @@ def _dense(
 
 
 # Kernels that one kind of smooth motion leaves aside
-NEVER_CONSTANT = (loop.step, loop.later, loop.obey, loop.measure_again, loop.interpolate)
+NEVER_CONSTANT = (loop.step, loop.later, loop.obey, loop.lift, loop.measure_again, loop.interpolate)
 NEVER_RUNGE_KUTTA = (loop.fly, loop.polish, loop.synchronise)
 STATUS = {
     common.FINISHED: Status.DONE,

@@ -39,6 +39,7 @@ from lcpstep.events.earliest import (
 )
 from lcpstep.events.equations import (
     ACCELERATION,
+    CHATTERS,
     CLOSED,
     CURVE,
     FREE_ACCELERATION,
@@ -264,7 +265,7 @@ def step(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, co
         s.number[NEXT] = OBEY
         return FINISHED
     s.number[NEXT] = JUMP
-    s.contact[GAP, c] = 0.0
+    lift(s, c)
     if kind != MEETS:
         s.contact[SPEED, c], s.mode[CLOSED, c], s.contact[HELD, c] = 0.0, 1, s.x[T0] + a
     return FINISHED
@@ -472,6 +473,8 @@ def jump(model: Any, plan: Any, s: Any, tools: Any, record: Any, count: Any) -> 
         for c in range(n_c):
             g, u = s.contact[GAP, c], s.contact[SPEED, c]
             if s.mode[CLOSED, c] == 0 and g <= tolerance and u <= noise:
+                if not plan.constant:
+                    lift(s, c)
                 s.contact[GAP, c] = 0.0
                 if u >= -noise:
                     s.mode[CLOSED, c], s.contact[SPEED, c] = 1, 0.0
@@ -499,6 +502,14 @@ def scale(s: Any, row: int, least: float) -> float:
     for j in range(s.state.shape[1]):
         least = max(least, abs(s.state[row, j]))
     return least
+
+
+def lift(s: Any, c: int) -> None:
+    """Put Q onto the surface of contact c, which it misses by no more than the tolerance: hops start from there."""
+    i = len(s.J) + c
+    for j in range(s.state.shape[1]):
+        s.state[Q, j] -= s.MR[i, j] * s.contact[GAP, c] / s.D[i, i]
+    s.contact[GAP, c] = 0.0
 
 
 def tell_impacts(model: Any, s: Any, record: Any, count: Any, t: float) -> None:
@@ -595,7 +606,7 @@ def close_chatter(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record
                     0.0,
                     max(-alpha * T - u, 0.0) / s.D[n_j + c, n_j + c],
                 )
-                s.mode[CLOSED, c], some = 1, True
+                s.mode[CLOSED, c], s.contact[CHATTERS, c], some = 1, t + T, True
     if some:
         hold_contacts(s)
         for m in range(s.number[HELD_ROWS]):
@@ -674,7 +685,8 @@ def tell_modes(s: Any, record: Any, count: Any, t: float) -> bool:
         if s.mode[CLOSED, c] != s.mode[WAS_CLOSED, c]:
             kind = STICK if s.mode[CLOSED, c] == 1 else RELEASE
             some = some or kind == STICK
-            log(record, s, count, t, c, kind, 0.0, s.contact[SPEED, c], 0.0)
+            when = max(t, s.contact[CHATTERS, c]) if kind == STICK else t
+            log(record, s, count, when, c, kind, 0.0, s.contact[SPEED, c], 0.0)
             s.mode[WAS_CLOSED, c] = s.mode[CLOSED, c]
     return some
 
