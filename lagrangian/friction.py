@@ -4,8 +4,9 @@
     in contact         |lambda_T| <= mu lambda_N,   lambda_T = -mu lambda_N sign(u_T) where u_T != 0
     impact (Moreau)    the same law between the impulses p_N, p_T and the averages (u+ + r u-) / (1 + r)
 
-Moreau's law, with one coefficient r for the normal and the tangent of a contact, creates no energy. Newton's law on
-the normal with none on the tangent (`restitution=0.0` here) can.
+Moreau's law, with one coefficient r for the normals and tangents of all contacts that strike together, creates no
+energy. Newton's law on the normal with none on the tangent (`restitution=0.0` here) can, and so can contacts that
+strike together with different r.
 
 Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3;
 J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).

@@ -155,6 +155,8 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: flo
     if n_j > 0:
         gap_rates(c.joints, t, state.q, state.v, c.J_start, c.J_t)
     assign(state.next_v, state.v)
+    for i in range(len(c.p)):
+        c.p[i] = 0.0
     iterate = not model.linear or not c.joints.flat
     if model.linear:
         linear_free_velocity(model, plan, state, t_next)
@@ -164,49 +166,64 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: flo
         position(plan.h, plan.theta, state.q, state.v, state.next_v, state.next_q)
         if not model.linear and not linearise(model, plan, state, t, t_next, False, count):
             return NOT_FINITE
-        if n_j > 0:
-            gap_rates(c.joints, t_next, state.next_q, state.next_v, c.J, c.J_t)
-        if not c.constant:
-            average(c.J, c.J_start, plan.theta, c.D)
-            for k in range(n_k):
-                i = c.ids[k]
-                row = c.H[i] if i < c.first_joint else c.D[i - c.first_joint]
-                compliance(model.linear, plan, state.newton, row, c.X[i])
-            mobilities(c.H, c.X, c.ids, n_k, c.W)
-        rates(c.H, c.H_t, state.v_free, c.ids, n_k, n_a + n_f if n_f > 0 else 0, c.b)
-        if not usable(c.b, c.W, c.ids, n_k):
+        if not finite(state.v_free):
             return NOT_FINITE
-        restitute(
-            state.u,
-            c.sliding,
-            state.v,
-            c.H,
-            model.restitution,
-            c.tangent_restitution,
-            c.ids,
-            c.problem.carrier,
-            n_a,
-            n_f,
-            c.b,
-        )
-        eliminate(c.joint_work, c.W, c.b, c.ids, n_a + n_f, n_k, c.problem.R, c.problem.reduced)
-        if n_a > 0:
-            count[LCP_CALLS] += 1
-            if not solve_contacts(c.problem, n_a, n_f):
-                return LCP_FAILED
-        distribute(c.joint_work, c.problem.solution, c.ids, n_a + n_f, n_k, c.p)
+        if n_k > 0:
+            code = impulses(model, plan, state, c, count, n_a, n_f, n_k, t_next)
+            if code != FINISHED:
+                return code
         change = apply(state.v, state.v_free, c.X, c.p, c.ids, n_f, n_k, state.next_v)
         if not iterate or change <= CONVERGED:
             break
         count[ITERATION] += 1
         if count[ITERATION] >= MAX_ITERATIONS:
             return NEWTON_FAILED
-    for i in range(len(state.p)):
-        state.p[i] = c.p[i]
+    assign(state.p, c.p[: len(state.p)])
     position(plan.h, plan.theta, state.q, state.v, state.next_v, state.next_q)
+    if n_j == 0:
+        return FINISHED
     turning = 0.0 if c.joints.flat else 1.0
     hold = joints_hold(c.J, c.J_t, c.J_start, state.v, state.v_free, state.next_v, turning, c.failed)
     return FINISHED if hold else JOINTS_FAILED
+
+
+@inline
+def impulses(
+    model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, n_f: int, n_k: int, t_next: float
+) -> int:
+    """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
+    if n_k > n_a + n_f:
+        gap_rates(c.joints, t_next, state.next_q, state.next_v, c.J, c.J_t)
+    if not c.constant:
+        average(c.J, c.J_start, plan.theta, c.D)
+        for k in range(n_k):
+            i = c.ids[k]
+            row = c.H[i] if i < c.first_joint else c.D[i - c.first_joint]
+            compliance(model.linear, plan, state.newton, row, c.X[i])
+        mobilities(c.H, c.X, c.ids, n_k, c.W)
+    rates(c.H, c.H_t, state.v_free, c.ids, n_k, n_a + n_f if n_f > 0 else 0, c.b)
+    if not usable(c.b, c.W, c.ids, n_k):
+        return NOT_FINITE
+    restitute(
+        state.u,
+        c.sliding,
+        state.v,
+        c.H,
+        model.restitution,
+        c.tangent_restitution,
+        c.ids,
+        c.problem.carrier,
+        n_a,
+        n_f,
+        c.b,
+    )
+    eliminate(c.joint_work, c.W, c.b, c.ids, n_a + n_f, n_k, c.problem.R, c.problem.reduced)
+    if n_a > 0:
+        count[LCP_CALLS] += 1
+        if not solve_contacts(c.problem, n_a, n_f):
+            return LCP_FAILED
+    distribute(c.joint_work, c.problem.solution, c.ids, n_a + n_f, n_k, c.p)
+    return FINISHED
 
 
 @inline

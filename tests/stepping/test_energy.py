@@ -22,7 +22,7 @@ def energy(m):
 
 
 def test_one_half_keeps_the_energy_of_a_linear_system_to_rounding():
-    steps = 200_000
+    steps = 1_000_000
     E = energy(simulate(chain(steps * 0.01), Moreau(0.01, theta=0.5), keep=1000))
     # rounding enters each step with some units of 1e-16 and adds up like a random walk, or like
     # steps * 1e-16 where it is biased
