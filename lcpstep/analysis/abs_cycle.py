@@ -342,7 +342,8 @@ def allowed_bias(scene: HybridScene, quantity: str, width: float = 1e-9) -> tupl
 
     Returns
     -------
-    lowest and highest error; None where no error up to half of the lower threshold ends the cycle
+    lowest and highest error; None where none ends the cycle down to lambda_max - e = 1 or twice T_max, and up to a
+        lower threshold of zero
     """
     if quantity not in ("slip", "torque"):
         raise ValueError(f"quantity: expected slip or torque, got {quantity!r}")
@@ -352,5 +353,5 @@ def allowed_bias(scene: HybridScene, quantity: str, width: float = 1e-9) -> tupl
         names = {f"{quantity}_min": low - e, f"{quantity}_max": high - e}
         return has_cycle(with_thresholds(scene, **names))
 
-    most = 0.5 * low
-    return _first_edge(good, 0.0, -most, width), _first_edge(good, 0.0, most, width)
+    lowest = high - 1.0 if quantity == "slip" else -high
+    return _first_edge(good, 0.0, lowest, width), _first_edge(good, 0.0, low, width)

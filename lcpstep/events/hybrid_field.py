@@ -144,6 +144,10 @@ def band_and_rate(
         rate += w.g_x[i] * w.F[i]
         size += abs(w.g_x[i] * w.F[i])
         band += abs(w.g_x[i]) * (atol + (rtol + 16.0 * RESOLUTION) * abs(x[i]))
+    band += 16.0 * RESOLUTION * abs(t) * abs(rate)
+    if m.kind[k] >= EXIT_BELOW:  # made of differences itself
+        L1, L2 = approaches(m, w, mode, t, x)
+        band += atol + rtol * (abs(L1) + abs(L2))
     return band, rate, 64.0 * RESOLUTION * size
 
 

@@ -53,6 +53,7 @@ PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value
 REFINEMENTS = 4  # of an event's time by repeated steps
 RESOLUTION = 2.0**-52
+JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
 
 class Flow(NamedTuple):
@@ -252,11 +253,29 @@ def locate(
         g = guard(m, sp, mode, k, t + tau, w.y_new) - x[EVENT_AT]
         change = -g * h / slope if slope > 0.0 else 0.0
         new = min(max(tau + change, 0.0), most)
-        if abs(new - tau) <= RESOLUTION * max(tau, abs(t)) or abs(change) > 0.01 * h:
+        if abs(new - tau) <= RESOLUTION * tau or abs(change) > 0.01 * h:
             break
         tau = new
         step(m, sp, tab, w, mode, t, tau, False)
+    if abs(guard(m, sp, mode, k, t + tau, w.y_new) - x[EVENT_AT]) > JUMP * slope:
+        tau = min(bisect(m, sp, w, mode, k, t, h, at, x[EVENT_AT]), most)
+        step(m, sp, tab, w, mode, t, tau, False)
     return tau
+
+
+def bisect(m: Any, sp: Any, w: Any, mode: int, k: int, t: float, h: float, at: float, level: float) -> float:
+    """The same for a guard that jumps, which Newton's method cannot follow: bisection on the dense output."""
+    low, high = max(at - 1.0 / PARTS, 0.0), min(at + 1.0 / PARTS, 1.0)
+    while high - low > RESOLUTION:
+        middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
+        interpolate(w.F, w.y, middle, w.y_new)
+        if guard(m, sp, mode, k, t + middle * h, w.y_new) < level:
+            low = middle
+        else:
+            high = middle
+    return high * h
 
 
 def keep(memory: Any, w: Any, count: Any, t: float, h: float) -> None:

@@ -1,6 +1,7 @@
 """Systems with modes against closed forms: switching times, Filippov sliding, and what goes wrong by name."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from lagrangian import Guard, HybridScene, HybridSystem, Mode, Surface, scenes
+from lagrangian import Guard, Harmonic, HybridScene, HybridSystem, LinearSystem, Mode, Surface, scenes
 from lcpstep import EventDriven, LcpStepError, Moreau, SimulationError, Status, simulate
 
 METHOD = EventDriven()
@@ -136,6 +137,40 @@ def test_a_pair_of_roots_inside_one_step_is_not_missed(depth, rate, place, tilt)
     )
 
 
+def test_no_switch_is_lost_or_added_in_a_long_run():
+    scene = scenes.bilinear_oscillator(t_end=2e4)
+    times = simulate(scene, METHOD, keep="impacts").switches.time
+    durations = np.diff(times)
+    np.testing.assert_allclose(durations[::2], math.pi / 3.0, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(durations[1::2], math.pi, rtol=0, atol=1e-9)
+
+
+def jump(t, x, p, out):
+    out[0] = 1.0 if x[0] > 0.7 else -1.0
+
+
+def test_a_guard_that_jumps_is_found_where_it_does():
+    run = simulate(
+        moving_ramp({"a": Mode(one, [Guard(jump, "b")]), "b": Mode(one)}, x0=0.0, t_end=2.0), METHOD
+    )
+    assert run.switches.time == pytest.approx([0.7], abs=1e-13)
+
+
+def wall(t, x, p, out):
+    out[0] = x[0] - math.sin(t)
+
+
+def test_sliding_on_a_moving_surface_that_is_left_by_a_touch_is_named():
+    """The fields +-1 can follow sin(t) but for t = 0 and pi, where its speed is theirs."""
+    modes = {"a": Mode(one), "b": Mode(minus_one)}
+    system = HybridSystem(1, modes, [Surface(wall, "a", "b")])
+    run = simulate(HybridScene(system, [-2.0], "a", (0.0, 6.0), period=2.0 * math.pi), METHOD)
+    entered = brentq(lambda t: t - 2.0 - math.sin(t), 2.0, 3.0, xtol=1e-15)
+    assert run.switches.time == pytest.approx([entered], abs=1e-12)
+    assert run.status == Status.NOT_TRANSVERSAL
+    assert run.t[-1] == pytest.approx(math.pi, abs=1e-4)
+
+
 def test_a_time_dependent_guard_and_a_reset():
     def beat(t, x, p, out):
         out[0] = math.sin(7.0 * t)
@@ -261,12 +296,18 @@ def test_a_motion_that_leaves_the_finite_numbers_keeps_what_was_computed():
     assert 0.1 < stopped.value.trajectory.x[-1, 0] <= 0.5
 
 
-def test_the_friction_law_and_the_filippov_form_are_one_motion():
-    t = np.linspace(0.0, 20.0, 201)
-    filippov = simulate(scenes.dry_friction_oscillator(), METHOD).at(t)
-    errors = []
-    for h in (1e-2, 1e-3):
-        run = simulate(scenes.coulomb_oscillator(), Moreau(h=h), keep=t[1:-1])
-        errors.append(np.max(np.abs(run.q[:, 0] - filippov[1:-1, 0])))
+@pytest.mark.parametrize("amplitude", [0.0, 0.3, 2.0])
+def test_the_friction_law_and_the_filippov_form_are_one_motion(amplitude):
+    """x'' + x = -0.1 sign(x') + F sin(t/2), pressed on a floor with 1 N and mu = 0.1, against the Filippov system."""
+    x0 = 1.05 if amplitude == 0.0 else 0.0
+    filippov = scenes.dry_friction_oscillator(x0, amplitude=amplitude, omega=0.5, t_end=40.0)
+    force = Harmonic(constant=[0.0, -1.0], sine=[amplitude, 0.0], omega=0.5)
+    pressed = replace(
+        scenes.coulomb_oscillator(x0, t_end=40.0),
+        system=LinearSystem(M=np.eye(2), K=np.diag([1.0, 0.0]), force=force), exact=None,
+    )  # fmt: skip
+    t = np.linspace(0.0, 40.0, 401)[1:-1]
+    expected = simulate(filippov, METHOD).at(t)[:, 0]
+    errors = [np.max(np.abs(simulate(pressed, Moreau(h=h), keep=t).q[:, 0] - expected)) for h in (1e-2, 1e-3)]
     assert errors[1] < 2e-3
     assert errors[1] < 0.3 * errors[0]
