@@ -43,6 +43,7 @@ INDEPENDENT = 1e-14  # of its own size: what a row must have that the rows befor
 REFINEMENTS = 4
 RESOLUTION = 2.0**-52
 NOISE = 64 * RESOLUTION
+PARTED = 1e3  # tolerances by which joints that say the same may differ
 CONTRADICTION = 1e-8  # relative acceleration that joints may not agree about
 
 
@@ -272,6 +273,22 @@ def contradiction(s: Any, a: Any) -> int:
                 size += abs(s.R[i, j]) * (abs(a[j]) + abs(s.state[FREE_ACCELERATION, j]))
             if abs(product(s.R, a, i) + s.joint[BIAS, i]) > CONTRADICTION * size:
                 return i
+    return -1
+
+
+def parted(s: Any, rtol: float, atol: float) -> int:
+    """The first joint left out that the others have not kept closed, or -1; its gap and row those of the state."""
+    if s.number[HELD_JOINTS] == len(s.J):
+        return -1
+    for i in range(len(s.J)):
+        held = False
+        for m in range(s.number[HELD_JOINTS]):
+            held = held or s.row[m] == i
+        size = 0.0
+        for j in range(s.state.shape[1]):
+            size += abs(s.R[i, j] * s.state[Q, j])
+        if not held and abs(s.joint[GAP, i]) > PARTED * (atol + rtol * size):
+            return i
     return -1
 
 

@@ -72,16 +72,21 @@ from lcpstep.recording import TIME as ROW_TIME
 NOW, NEXT_STEP, EDGE_G, EDGE_U, EDGE_ALPHA, IMPULSE = range(6)
 FROM, TO, END, FOUND, HOP = range(6, 11)  # the interval at hand, after the base; its end; an event within it
 LAST_EVENT, HOLD = 11, 12  # HOLD: no release before this time
-N_NUMBERS = 13
+RESOLVED = 13  # longest step on which the gap has been found smooth, allowed to grow again
+N_NUMBERS = 14
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 
 RESOLUTION = 2.0**-52
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
+TOO_LONG = -1  # an interval that is to be repeated with a shorter step
+GROWTH = 1.25  # of the longest step from one step to the next
 PARTS = 4  # scan intervals of a Runge-Kutta step
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 LONGER = 3.0  # how much longer than its guess a short hop may last
 MAX_STALLED = 1000  # events at one time
+ROUGH = 0.1  # share of its change by which the gap velocity may differ from the trapezoidal rule's
+SMALLEST = 2.0**-20  # of the scan interval: what is still rough then is a jump that nobody has named
 REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
 
 
@@ -144,6 +149,8 @@ def run(
         code = runge_kutta_interval(model, flow, piece, tab, w, count, x)
         if code == FINISHED:
             code = finish_interval(model, flow, piece, tab, w, record, count, x)
+        elif code == TOO_LONG:
+            code = FINISHED
         elif code == NEVER_LEFT:
             settle_again(model, flow, piece, w, record, count, x)
             code = FINISHED
@@ -163,9 +170,10 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
     longest = border - x[NOW]
     x[END] = min(border, x[NOW] + x[NEXT_STEP])
     guess = hop_time(piece, x)
-    h = take_step(model, flow, piece, tab, w, count, x, min(longest, flow.scan, 4.0 * guess))
+    h = take_step(model, flow, piece, tab, w, count, x, min(longest, x[RESOLVED], 4.0 * guess))
     if h < 0.0:
         return int(-h)
+    x[RESOLVED] = min(flow.scan, GROWTH * max(x[RESOLVED], h))
     end = after(piece, h) if h < longest else border
     tau, hop = NONE, False
     if flow.contact and piece.x[MODE] == FREE:
@@ -179,6 +187,9 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
                 at_b = contact_at(model, flow, piece, w, b)
                 if at_b[0] - at_b[0] != 0.0:
                     return NOT_FINITE
+                if rough(flow, b - a, at_a, at_b) and h > SMALLEST * flow.scan:
+                    x[RESOLVED] = 0.5 * h
+                    return TOO_LONG
                 tau = first_contact(model, flow, piece, w, a, at_a, b, at_b)
                 if tau == NONE and at_a[0] <= 0.0 and at_b[0] < 0.0:
                     x[HOLD] = x[NOW] + b
@@ -190,6 +201,21 @@ def runge_kutta_interval(model: Any, flow: Any, piece: Any, tab: Any, w: Any, co
             tau = refine_contact(model, flow, piece, tab, w, tau)
     x[FROM], x[TO], x[END], x[FOUND], x[HOP] = 0.0, h, end, tau, 1.0 if hop else 0.0
     return FINISHED
+
+
+def rough(
+    flow: Any, length: float, at_a: tuple[float, float, float], at_b: tuple[float, float, float]
+) -> bool:
+    """Whether the gap may do more within an interval than is seen at its ends: gap, velocity, acceleration there.
+
+    The system's own motion bounds the step by the tolerance; a gap can turn faster: a shaken obstacle, a washboard.
+    """
+    change = at_b[1] - at_a[1] - 0.5 * length * (at_a[2] + at_b[2])
+    if change - change != 0.0:
+        return False  # what is not finite is another's to find
+    unseen = length * abs(change)
+    smooth = abs(change) <= ROUGH * 0.5 * length * (abs(at_a[2]) + abs(at_b[2]))
+    return not (smooth or unseen <= flow.atol or unseen <= ROUGH * min(at_a[0], at_b[0]))
 
 
 def hop_time(piece: Any, x: Any) -> float:

@@ -31,7 +31,6 @@ PORTION = 4096  # steps between two looks at the outside world
 MOST_ROWS = 2**22  # numbers in a buffer of kept states
 TRIALS = 17  # of the callbacks within an interval that failed
 QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
-PER_SPAN, PER_FORCING = 50, 16
 
 
 def plan(scene: Scene, m: Model, joints: Model, rtol: float, atol: float, max_events: int) -> loop.Plan:
@@ -42,7 +41,7 @@ def plan(scene: Scene, m: Model, joints: Model, rtol: float, atol: float, max_ev
     nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
     return loop.Plan(
         constant=constant,
-        scan=min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING),
+        scan=common.scan_interval(scene, 0.0),
         nodes=0.5 * (1.0 + nodes),
         weights=0.5 * weights,
         rtol=rtol,

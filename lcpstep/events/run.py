@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene
+from lagrangian import LinearContacts, LinearSystem, Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.model import culprit
 from lcpstep.recording import Kept, Recorder, States
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
+SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
 TRIALS = 17  # of the callbacks within an interval that failed
 
 # Why a loop returned
@@ -147,6 +148,36 @@ def scan_interval(scene: Scene, rate: float) -> float:
 
     rate : fastest rate of the free motion [rad/s], 0 where it is not known
     """
-    candidates = [(scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING]
-    candidates.append(2.0 * math.pi / PER_PERIOD / rate if rate > 0.0 else math.inf)
-    return min(candidates)
+    scan = min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING)
+    if rate > 0.0:
+        scan = min(scan, 2.0 * math.pi / PER_PERIOD / rate)
+    turn = fastest_turn(scene)
+    # A period that is given says how finely to look, unless what moves is much faster.
+    if turn < (2.0 * scan if math.isfinite(scene.period) else math.inf):
+        scan = min(scan, turn / PER_FORCING)
+    return scan
+
+
+def fastest_turn(scene: Scene) -> float:
+    """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
+
+    2 pi max |s'| / max |s''| of samples taken in windows of time, which need not be dense for that.
+    """
+    t0, t1 = scene.t_span
+    length = min(scene.period, t1 - t0)
+    contacts, system, fastest = scene.contacts, scene.system, 0.0
+    q, v, p = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
+    moving = []
+    if isinstance(contacts, LinearContacts) and contacts.motion is not None:
+        moving.append((contacts.motion, scene.n_c))
+    if isinstance(system, LinearSystem) and system.frame is not None:
+        moving.append((system.frame, scene.n_q))
+    for f, n in moving:
+        rates = np.zeros((SAMPLES, n, 3))
+        for k in range(SAMPLES):
+            f(t0 + length * (k + (k * GOLDEN) % 1.0) / SAMPLES, q, v, p, rates[k])
+        windows = np.abs(rates[:, :, 1:]).reshape(WINDOWS, -1, n, 2).max(axis=1)
+        speed, acceleration = windows[..., 0], windows[..., 1]
+        turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
+        fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
+    return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf

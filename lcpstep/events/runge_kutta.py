@@ -59,6 +59,7 @@ class RungeKutta(Run):
         self.x = np.zeros(loop.N_NUMBERS)
         self.x[loop.NOW] = scene.t_span[0]
         self.x[loop.HOLD] = self.x[loop.LAST_EVENT] = -math.inf
+        self.x[loop.RESOLVED] = self.flow.scan
         self.x[loop.NEXT_STEP] = 0.1 * self.flow.scan
 
     @property

@@ -41,6 +41,7 @@ from lcpstep.events.equations import (
     ACCELERATION,
     CHATTERS,
     CLOSED,
+    CULPRIT,
     CURVE,
     FREE_ACCELERATION,
     GAP,
@@ -70,6 +71,7 @@ from lcpstep.events.equations import (
     hold_again,
     hold_contacts,
     measure,
+    parted,
     project,
     right_hand_side,
     solve_held,
@@ -410,6 +412,9 @@ def pass_end(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any
     """Go on beyond the end of a step without an event, with the same rows held."""
     if not measure_on(model, joints, s, s.x[T0]):
         return NOT_FINITE
+    s.number[CULPRIT] = parted(s, plan.rtol, plan.atol)
+    if s.number[CULPRIT] >= 0:
+        return JOINTS_DISAGREE
     a = s.state[ACCELERATION]
     assign(a, s.state[FREE_ACCELERATION])
     if s.number[HELD_ROWS] > 0:
