@@ -10,6 +10,7 @@ from typing import Any
 
 from lcpstep.dynamics import product
 
+CANCELLED = 0.1  # of these terms: as in `theta`, the size by which a change of it is judged
 ROUNDING = 1e-13  # of the terms that a velocity is the sum of: what is left of it is no motion
 NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
@@ -119,7 +120,7 @@ def apply(v: Any, v_free: Any, X: Any, p: Any, ids: Any, n_f: int, n_k: int, v_n
         if n_f > 0 and abs(total) <= ROUNDING * terms:
             total = 0.0
         change = max(change, abs(total - v_next[i]))
-        size = max(size, abs(total), abs(v[i]))
+        size = max(size, abs(total), abs(v[i]), CANCELLED * terms)
         v_next[i] = total
     return change / size if change > 0.0 else 0.0
 

@@ -35,6 +35,7 @@ IMPACT, STICK, RELEASE = 0, 2, 3
 MAX_ITERATIONS = 25  # of Newton, per step
 LATE = 1e-9  # of a step: what rounding may take from the last one's end
 CONVERGED = 1e-12  # change of the velocity, relative to it
+CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
 
 
 class Plan(NamedTuple):
@@ -297,11 +298,13 @@ def apply_impulses(plan: Any, state: Any, n_a: int) -> tuple[float, float]:
     change = size = 0.0
     for i in range(len(state.v_free)):
         v = state.v_free[i]
+        terms = abs(v)
         for k in range(n_a):
             c = state.active[k]
             v += plan.A_g[i, c] * state.p[c]
+            terms += abs(plan.A_g[i, c] * state.p[c])
         change = max(change, abs(v - state.next_v[i]))
-        size = max(size, abs(v), abs(state.v[i]))
+        size = max(size, abs(v), abs(state.v[i]), CANCELLED * terms)
         state.next_v[i] = v
     return change, size
 
