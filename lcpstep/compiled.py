@@ -31,12 +31,17 @@ Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
 OPTIONS = {"error_model": "numpy", "_nrt": False}
+ALL_ONES = 0xFF  # the bytes of a not-a-number
 FINGERPRINT = 12  # digits of it in a name
 UNKNOWN = "<unknown>"  # a value of which nobody can tell whether it has changed
 
 
 def call(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
-    """Evaluate a callback from within a kernel; f is a function here, an address once compiled."""
+    """Evaluate a callback from within a kernel; f is a function here, an address once compiled.
+
+    `out` is not-a-number before: a callback that fails or leaves an entry out does not hand on what stood there.
+    """
+    out.fill(np.nan)
     f(t, q, v, p, out)
 
 
@@ -230,7 +235,9 @@ def _intrinsics() -> dict[FunctionType, Any]:
     """`call` and its kin as machine code: a jump to an address, with the arguments that a CFunc takes."""
     from llvmlite import ir
     from numba import types
+    from numba.core.cgutils import memset
     from numba.extending import intrinsic
+    from numba.np.arrayobj import make_array
 
     def jump(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         kinds = [context.get_value_type(kind) for kind in signature.args[1:]]
@@ -240,6 +247,11 @@ def _intrinsics() -> dict[FunctionType, Any]:
     @intrinsic
     def call_address(typingctx: Any, f: Any, t: Any, q: Any, v: Any, p: Any, out: Any) -> Any:
         def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            target = make_array(signature.args[-1])(context, builder, args[-1])
+            size = builder.mul(target.nitems, target.itemsize)
+            memset(
+                builder, target.data, size, ALL_ONES
+            )  # not-a-number; machine code cannot pass an exception on
             jump(context, builder, signature, args)
             return context.get_dummy_value()
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 import qpsolvers
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
+from lagrangian import Contacts, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
 from lcpstep import (
     EventDriven,
     LcpStepError,
+    Located,
     MissingSolver,
     Moreau,
     SimulationError,
@@ -114,6 +115,7 @@ METHODS = [
     pytest.param(Moreau(1e-2), id="moreau"),
     pytest.param(Moreau(1e-2, theta=0.0), id="moreau, explicit"),
     pytest.param(EventDriven(), id="event-driven"),
+    pytest.param(Located(1e-2), id="located"),
 ]
 
 
@@ -149,7 +151,7 @@ def test_the_state_in_the_message_is_that_of_the_time_in_the_message(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_jacobian_that_only_steers_is_named_too(method):
-    if isinstance(method, EventDriven) or method.theta == 0.0:
+    if not isinstance(method, Moreau) or method.theta == 0.0:
         return  # it is not asked for
     with pytest.raises(SimulationError, match=r"system\.force_q: "):
         run(System(1, 1.0, weight, bad_force_q, zero), FLOOR, method)
@@ -173,6 +175,33 @@ def test_a_callback_that_raises_in_plain_python_does_not_lose_the_motion(method)
     assert 0.25 <= caught.value.trajectory.t[-1] <= 0.31
 
 
+def breaks_compiled(t, q, v, p, out):
+    if t > 0.3:
+        raise ValueError("the spring broke")
+    out[0] = -8.0
+
+
+def forgets(t, q, v, p, out):
+    out[0] = 0.0
+    if t <= 0.3:
+        out[1] = -8.0
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("method", METHODS)
+def test_a_compiled_callback_that_raises_is_not_passed_over(method):
+    with pytest.raises(SimulationError, match="spring broke") as caught:
+        run(System(1, 1.0, breaks_compiled), FLOOR, method)
+    assert 0.25 <= caught.value.trajectory.t[-1] <= 0.31
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_entry_that_a_callback_leaves_out_later_is_noticed(method):
+    scene = Scene(System(2, np.eye(2), forgets), [0.0, 1.0], [0.0, 0.0], (0.0, 1.0))
+    with pytest.raises(SimulationError, match=r"system\.force: .*not filled"):
+        simulate(scene, method)
+
+
 def root_of_time(t, q, v, p, out):
     out[0] = -8.0 * math.sqrt(0.3 - t)
 
@@ -181,6 +210,21 @@ def root_of_time(t, q, v, p, out):
 def test_a_function_outside_of_its_domain_is_named(method):
     with pytest.raises(SimulationError, match=r"system\.force: "):
         run(LinearSystem(M=1.0, force=root_of_time), FLOOR, method)
+
+
+def drifting_apart(t, q, v, p, out):
+    """Two joints that agree at t = 0 up to the second derivative."""
+    out[0, 0], out[0, 1], out[0, 2] = math.sin(t) - t, math.cos(t) - 1.0, -math.sin(t)
+    out[1, 0], out[1, 1], out[1, 2] = 0.0, 0.0, 0.0
+
+
+@pytest.mark.parametrize("method", [Moreau(1e-2), EventDriven()])
+def test_joints_that_come_to_contradict_each_other_end_the_run(method):
+    joints = LinearJoints([[1.0], [1.0]], motion=drifting_apart)
+    m = simulate(Scene(LinearSystem(M=1.0), 0.0, 0.0, (0.0, 1.0), joints=joints), method)
+    assert m.status is Status.JOINTS_FAILED
+    assert "contradict" in m.message
+    assert m.t[-1] < 0.1
 
 
 # --- interrupts
@@ -248,6 +292,20 @@ def test_an_error_of_the_progress_callback_is_not_swallowed():
 def test_the_step_is_positive(h):
     with pytest.raises(ValueError, match=r"^h: "):
         Moreau(h)
+
+
+@pytest.mark.parametrize("method", [Moreau(1e-18), Located(1e-18)])
+def test_a_step_below_the_resolution_of_time_is_refused(method):
+    with pytest.raises(LcpStepError, match=r"h: steps of 1e-18 s are lost"):
+        run(FALLING, FLOOR, method)
+
+
+@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2)])
+def test_a_span_much_shorter_than_a_step_takes_one(method):
+    m = simulate(Scene(FALLING, 1.0, -1.0, (0.0, 1e-13), FLOOR), method)
+    assert m.counts.steps == 1
+    assert m.t[-1] == 1e-13
+    np.testing.assert_allclose(m.q[-1] - 1.0, -1e-13, rtol=1e-2)
 
 
 @pytest.mark.parametrize("theta", [-0.1, 1.1, math.nan, "half", None])

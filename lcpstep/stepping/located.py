@@ -21,11 +21,13 @@ from lcpstep.recording import Kept, Record, Recorder
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
 from lcpstep.stepping import polynomial_loop
+from lcpstep.stepping.steps import check_resolved
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 16384  # steps between two looks at the outside world
+TRIALS = 17  # of the callbacks within a step that failed
 WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
 SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 ORDERS = (2, 4, "exact")
@@ -76,6 +78,7 @@ class Located:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        check_resolved(self.h, scene.t_span)
         require(scene, "Located", joints=False, friction=False)
         if self.order == "exact":
             require_linear(scene)
@@ -189,7 +192,7 @@ class _Run:
             status = STATUS[code]
             if status == Status.DONE and whole > 0:
                 status = self.portions(t_start, 0, whole, progress)
-            if status == Status.DONE and abs(steps - whole) > WHOLE:
+            if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
                 t_last = t_start + whole * h
                 self.prepare(t_end - t_last)
                 status = self.portions(t_last, whole, whole + 1, progress)
@@ -252,12 +255,16 @@ class _Run:
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
             impulse = np.vstack([impulse, impulse_now])
+        bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
+        if len(bad):  # the step that failed has left its numbers behind
+            t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
+        last = (float(t[-1]), q[-1], v[-1]) if len(bad) and len(t) else (self.now, q_now, v_now)
         if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
         count = self.count
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            impacts=self.recorder.events(), status=status, message=self.message(status, *last),
             counts=Counts(
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
@@ -276,18 +283,17 @@ class _Run:
 
         return at
 
-    def message(self, status: Status) -> str:
-        """How the run ended, in words."""
-        q, v = self.work.vec[work.Q], self.work.vec[work.V]
+    def message(self, status: Status, t: float, q: Array, v: Array) -> str:
+        """How the run ended with its last finite state, in words."""
         if status == Status.DONE:
             return "reached the end of the span"
-        where = f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
+        where = f"at t = {t:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
             closed = np.flatnonzero(self.work.mark[work.STATUS]).tolist()
             return f"no solution was found for the impact or the forces of closed contacts ({closed}) {where}"
-        return f"{culprit(self.scene, (self.now, self.now + self.plan.h), q, v)} {where}"
+        return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
 
 
 STATUS = {

@@ -24,6 +24,7 @@ from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
+from lcpstep.stepping.steps import check_resolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -72,6 +73,7 @@ class Moreau:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        check_resolved(self.h, scene.t_span)
         if self.lcp != "lemke" and self.beyond_contacts(scene):
             raise LcpStepError(
                 f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '
@@ -181,7 +183,7 @@ class _Run:
                 status = self.portions(
                     plan(self.model, exact, self.method.theta, self.slack), t_start, 0, whole, progress
                 )
-            if status == Status.DONE and abs(steps - whole) > WHOLE:
+            if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
                 t_last = t_start + whole * h
                 rest = plan(self.model, t_end - t_last, self.method.theta, self.slack)
                 status = self.portions(rest, t_last, whole, whole + 1, progress)

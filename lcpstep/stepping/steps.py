@@ -1,0 +1,18 @@
+"""Steps that are lost in the rounding of the times they are added to are refused: such a run would never end."""
+
+from __future__ import annotations
+
+from lcpstep.errors import LcpStepError
+
+RESOLUTION = 2.0**-52
+
+
+def check_resolved(h: float, span: tuple[float, float]) -> None:
+    """LcpStepError if times of the span cannot tell one step from the next."""
+    start, end = span
+    least = 4.0 * RESOLUTION * max(abs(start), abs(end))
+    if h < least and h < end - start:
+        raise LcpStepError(
+            f"h: steps of {h:g} s are lost in the rounding of times up to {max(abs(start), abs(end)):g} s; "
+            f"expected at least {least:.2g} s"
+        )
