@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from dataclasses import replace as changed
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from lcpstep.analysis.hybrid_variation import monodromy
 from lcpstep.errors import LcpStepError, StudyInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid_many import End, Follower
+from lcpstep.events.hybrid_trajectory import HybridTrajectory
 from lcpstep.simulate import simulate
 from lcpstep.trajectory import Status
 
@@ -355,3 +357,29 @@ def allowed_bias(scene: HybridScene, quantity: str, width: float = 1e-9) -> tupl
 
     lowest = high - 1.0 if quantity == "slip" else -high
     return _first_edge(good, 0.0, lowest, width), _first_edge(good, 0.0, low, width)
+
+
+def stopping(run: HybridTrajectory) -> dict[str, Any]:
+    """How a stop of the full model went: its end, time [s], distance [m], last speed [m/s], and every switch.
+
+    `locked` is the time [s] at which the wheel locks first, or None.
+    """
+    stands = [float(s.time) for s in run.switches if s.target == "standing"]
+    locked = [float(s.time) for s in run.switches if s.target.endswith("locked")]
+    end = stands[0] if stands else float(run.t[-1])
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    distance = 0.0
+    for a, b in pairwise(run.pieces.t[run.pieces.t <= end]):
+        distance += 0.5 * (b - a) * float(weights @ run.at(0.5 * (a + b) + 0.5 * (b - a) * nodes)[:, 2])
+    return {
+        "parameters": dict(run.scene.parameters),
+        "end": "stands" if stands else f"still in state {run.mode[-1]}",
+        "time": end,
+        "distance": distance,
+        "speed": float(run.x[-1, 2]),
+        "locked": locked[0] if locked else None,
+        "switches": [
+            {"time": float(s.time), "state": str(s.target), "slip": float(s.after[0]), "torque": float(s.after[1]),
+             "speed": float(s.after[2])} for s in run.switches
+        ],
+    }  # fmt: skip

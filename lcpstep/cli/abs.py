@@ -24,15 +24,20 @@ from lcpstep.analysis.abs_cycle import (
     limit_cycle,
     margins,
     peak,
+    stopping,
     vanishing,
     with_thresholds,
 )
-from lcpstep.cli.common import DONE, INTERRUPTED
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED
 from lcpstep.errors import StudyInterrupted
+from lcpstep.events import EventDriven
+from lcpstep.simulate import simulate
+from lcpstep.trajectory import Status
 
 THRESHOLDS = ("torque_max", "torque_min", "slip_max", "slip_min")
 FILES = ("abs.json", "abs-basins.npz", "abs.png")
 HIGHEST = 3.0  # torque thresholds looked at, in units of the cycle's own
+MOST_TIME = 60.0  # of one stop [s]
 FINE = 1e-9  # width of an edge [N m]
 
 
@@ -49,8 +54,8 @@ def add(commands: Any) -> None:
     )
     p.add_argument("--road", choices=list(ROADS), default="dry", help="(dry)")
     p.add_argument(
-        "--model", choices=[name for name in MODELS if name != "full"], default="slip",
-        help="omega = v (1 - slip)/r (slip, the default), or constant",
+        "--model", choices=MODELS, default="slip",
+        help="omega = v (1 - slip)/r (slip, the default), or constant; full: the speed is a state, one stop is run",
     )  # fmt: skip
     for name, value, unit in zip(
         THRESHOLDS, (1600.0, 1000.0, 0.35, 0.08), ("N m", "N m", "-", "-"), strict=True
@@ -77,6 +82,8 @@ def add(commands: Any) -> None:
 def run_abs(options: argparse.Namespace) -> int:
     """`lcpstep abs`."""
     scene = _scene(options)
+    if options.model == "full":
+        return _run_stop(scene, options)
     cycle, result = _study(scene)
     _save(options, result)
     over = bifurcation(scene, _thresholds(result, options.points)) if cycle is not None else None
@@ -105,6 +112,29 @@ def run_abs(options: argparse.Namespace) -> int:
     return status
 
 
+def _run_stop(scene: HybridScene, options: argparse.Namespace) -> int:
+    """Braking with the speed as a state, until the car stands or MOST_TIME has passed."""
+    run = simulate(scene, EventDriven())
+    stop = stopping(run)
+    _save(options, stop)
+    if options.out is not None and not options.no_picture:
+        from lcpstep.plot.abs_cycle import stopping as draw
+
+        draw(run, f"hybrid anti-lock controller, {options.road} road, full model").savefig(
+            options.out / FILES[2], dpi=150
+        )
+    if options.json:
+        print(json.dumps(stop, indent=1))
+    else:
+        print(f"{options.road} road, full model: {run.status.name}, {stop['end']} after {stop['time']:.9f} s, "
+              f"{stop['distance']:.6f} m, at {stop['speed']:.6g} m/s; the wheel "
+              + ("never locks" if stop["locked"] is None else f"locks at {stop['locked']:.9f} s"))  # fmt: skip
+        for line in stop["switches"]:
+            print(f"  {line['time']:.9f} s: enters {line['state']}, slip {line['slip']:.9f}, "
+                  f"torque {line['torque']:.6f} N m, speed {line['speed']:.6f} m/s")  # fmt: skip
+    return DONE if run.status == Status.DONE else FAILED
+
+
 def _scene(options: argparse.Namespace) -> HybridScene:
     if options.grid < 0 or options.grid == 1:
         raise ValueError(f"--grid: expected at least 2 cells, or 0 for no basins, got {options.grid}")
@@ -126,6 +156,7 @@ def _scene(options: argparse.Namespace) -> HybridScene:
         rate=options.rate,
         speed=options.speed,
         crossing=options.crossing,
+        t_end=MOST_TIME,
         **values,
     )
 

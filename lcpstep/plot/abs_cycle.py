@@ -13,6 +13,7 @@ from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import holding_torque
 from lcpstep.analysis.abs_cycle import OUTCOMES, Basins, Bifurcation, Cycle, corner, peak
 from lcpstep.events import EventDriven
+from lcpstep.events.hybrid_trajectory import HybridTrajectory
 from lcpstep.simulate import simulate
 
 COLOURS = ("#4c9a6a", "#c44e52", "#4c72b0", "#999999")  # of the outcomes
@@ -100,3 +101,24 @@ def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | Non
     if q == 0:
         handles = [Patch(color=c, alpha=0.6, label=name) for c, name in zip(COLOURS, OUTCOMES, strict=True)]
         ax.legend(handles=handles, fontsize=7, loc="lower right")
+
+
+def stopping(run: HybridTrajectory, title: str) -> Any:
+    """Slip, torque and the speeds of car and wheel over one stop."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 7), layout="constrained")
+    slip, torque, speed = figure.subplots(3, 1, sharex=True)
+    t = np.linspace(run.pieces.t[0], run.switches.time[-1] if len(run.switches) else run.pieces.t[-1], 4000)
+    x = run.at(t)
+    slip.plot(t, x[:, 0], lw=1.0)
+    torque.plot(t, x[:, 1], "C3-", lw=1.0)
+    speed.plot(t, x[:, 2], "k-", lw=1.2, label="car")
+    speed.plot(t, x[:, 2] * (1.0 - x[:, 0]), "C0-", lw=0.8, label="rim of the wheel")
+    speed.legend()
+    for ax, label in zip((slip, torque, speed), ("slip [-]", "torque [N m]", "speed [m/s]"), strict=True):
+        ax.set_ylabel(label)
+        ax.grid(alpha=0.3)
+    speed.set_xlabel("time [s]")
+    slip.set_title(title)
+    return figure

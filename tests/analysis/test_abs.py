@@ -201,6 +201,23 @@ def test_the_command_writes_what_it_prints(capsys, tmp_path):
     assert "the wheel locks in state 3" in capsys.readouterr().out
 
 
+def test_the_command_runs_a_stop_of_the_full_model(capsys, tmp_path):
+    assert main(["abs", "--model", "full", "--out", str(tmp_path), "--json"]) == 0
+    stop = json.loads(capsys.readouterr().out)
+    assert stop["end"] == "stands"
+    assert (tmp_path / "abs.png").stat().st_size > 1000
+    # v dv = a dx: between the decelerations of the smallest and largest friction used
+    assert (30.0**2 - 1.0) / (2.0 * 9.81 * 1.01) < stop["distance"] < (30.0**2 - 1.0) / (2.0 * 9.81 * 0.59)
+    # at constant speed the cycle goes on; as the speed falls the slip outruns the controller, and stays locked
+    locked = [s for s in stop["switches"] if s["state"] == "3 locked"]
+    assert stop["locked"] == locked[0]["time"]
+    last = locked[0]["time"] + (locked[0]["speed"] - 1.0) / (9.81 * (1.11 * (1.0 - math.exp(-23.99)) - 0.52))
+    assert stop["time"] == pytest.approx(last, abs=1e-9)
+    run = simulate(hybrid_abs(model="full", t_end=8.0), EventDriven())
+    t = np.linspace(0.0, stop["time"], 200_001)
+    assert stop["distance"] == pytest.approx(np.trapezoid(run.at(t)[:, 2], t), abs=1e-6)
+
+
 def test_an_interrupt_of_the_basins_keeps_what_was_computed():
     def impatient(done):
         if done == 3:

@@ -10,7 +10,16 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from lagrangian import Guard, Harmonic, HybridScene, HybridSystem, LinearSystem, Mode, Surface, scenes
-from lcpstep import EventDriven, LcpStepError, Moreau, SimulationError, Status, simulate
+from lcpstep import (
+    EventDriven,
+    LcpStepError,
+    Moreau,
+    SimulationError,
+    SimulationInterrupted,
+    Status,
+    simulate,
+)
+from lcpstep.model import UncompiledCallback
 
 METHOD = EventDriven()
 KNOWN = [
@@ -311,3 +320,43 @@ def test_the_friction_law_and_the_filippov_form_are_one_motion(amplitude):
     errors = [np.max(np.abs(simulate(pressed, Moreau(h=h), keep=t).q[:, 0] - expected)) for h in (1e-2, 1e-3)]
     assert errors[1] < 2e-3
     assert errors[1] < 0.3 * errors[0]
+
+
+SEEN = []
+
+
+def test_functions_that_cannot_be_compiled_run_in_plain_python_with_a_notice():
+    def remembered(t, x, p, out):
+        SEEN.append(t)
+        out[0] = x[0] - 1.0
+
+    def on(guard):
+        return moving_ramp({"a": Mode(one, [Guard(guard, "b")]), "b": Mode(minus_one)}, t_end=3.0)
+
+    def compiled(t, x, p, out):
+        out[0] = x[0] - 1.0
+
+    fast = simulate(on(compiled), METHOD)
+    with pytest.warns(UncompiledCallback, match="runs in plain Python"):
+        run = simulate(on(remembered), METHOD)
+    np.testing.assert_allclose(run.t, fast.t, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(run.switches.time, fast.switches.time, rtol=0, atol=1e-14)
+    assert SEEN
+
+
+def test_an_interrupted_run_keeps_what_was_computed():
+    def impatient(t):
+        if t > 100.0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(SimulationInterrupted) as stopped:
+        simulate(scenes.bilinear_oscillator(t_end=1e5), METHOD, progress=impatient)
+    part = stopped.value.trajectory
+    assert part.status == Status.INTERRUPTED
+    assert 100.0 < part.t[-1] < 1e5
+    assert len(part.switches) >= 2.0 * 100.0 / (math.pi + math.pi / 3.0) - 1.0
+    times = [10.0, 20.0, 30.0]
+    kept = simulate(scenes.bilinear_oscillator(t_end=40.0), METHOD, keep=times)
+    np.testing.assert_array_equal(kept.t, times)
+    np.testing.assert_allclose(kept.x, part.at(times), rtol=0, atol=1e-9)
+    assert list(kept.mode) == list(part.mode_at(times))
