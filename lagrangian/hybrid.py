@@ -89,7 +89,7 @@ class Surface:
     value : function filling out (1,)   H
     below, above : names of the modes for H < 0 and H > 0
     sliding : name of the mode of sliding
-    guards : guards that leave the sliding mode, besides its end
+    guards : guards that leave the sliding mode, besides its end; other surfaces are not watched while sliding
     """
 
     value: Function
