@@ -51,7 +51,8 @@ def call_solver(f: Any, W: Any, b: Any, z: Any, work: Any) -> int:
 
 
 def call_first_order(f: Any, t: float, x: Any, p: Any, out: Any) -> None:
-    """Evaluate a function of a first-order system from within a kernel; f is an address once compiled."""
+    """Evaluate a function of a first-order system from within a kernel; otherwise as `call`."""
+    out.fill(np.nan)
     f(t, x, p, out)
 
 
@@ -244,6 +245,11 @@ def _intrinsics() -> dict[FunctionType, Any]:
         c_function = ir.FunctionType(context.get_value_type(signature.return_type), kinds)
         return builder.call(builder.inttoptr(args[0], c_function.as_pointer()), args[1:])
 
+    def blank(context: Any, builder: Any, signature: Any, args: Any) -> None:
+        """Not-a-number into `out`: machine code does not pass an exception on."""
+        target = make_array(signature.args[-1])(context, builder, args[-1])
+        memset(builder, target.data, builder.mul(target.nitems, target.itemsize), ALL_ONES)
+
     @intrinsic
     def call_address(typingctx: Any, f: Any, t: Any, q: Any, v: Any, p: Any, out: Any) -> Any:
         def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -260,6 +266,7 @@ def _intrinsics() -> dict[FunctionType, Any]:
     @intrinsic
     def call_first_order_address(typingctx: Any, f: Any, t: Any, x: Any, p: Any, out: Any) -> Any:
         def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            blank(context, builder, signature, args)
             jump(context, builder, signature, args)
             return context.get_dummy_value()
 

@@ -75,6 +75,10 @@ def test_simulate_saves_the_motion(capsys, tmp_path):
     [
         (["simulate", "bouncing-bal"], "did you mean 'bouncing-ball'"),
         (["simulate", "bouncing-ball", "--h", "0"], "h: expected a positive number"),
+        (
+            ["simulate", "bouncing-ball", "--t-end", "0.1", "--picture", "no/such/folder/x.png"],
+            "No such file",
+        ),
         (["simulate", "bouncing-ball", "--h", "nan"], "h: expected a finite number"),
         (["simulate", "bouncing-ball", "--theta", "1.5"], "theta: expected a value in [0, 1]"),
         (["simulate", "bouncing-ball", "--lcp", "lemkes"], "did you mean 'lemke'"),
@@ -89,6 +93,13 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
     status, _, err = run(capsys, *arguments)
     assert status == USAGE
     assert said in err
+
+
+def test_a_motion_without_impacts_has_a_picture(capsys, tmp_path):
+    picture = tmp_path / "flight.png"
+    status, _, err = run(capsys, "simulate", "bouncing-ball", "--t-end", "0.1", "--picture", picture)
+    assert (status, err) == (0, "")
+    assert picture.stat().st_size > 0
 
 
 def test_a_run_that_ends_early_is_a_failure(capsys, monkeypatch):

@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SimulationError as error:
         print(f"lcpstep: {error}", file=sys.stderr)
         return FAILED
-    except (LcpStepError, ValueError, FileExistsError) as error:
+    except (LcpStepError, ValueError, OSError) as error:  # OSError: a file or folder that cannot be written
         print(f"lcpstep: {error}", file=sys.stderr)
         return USAGE
 

@@ -261,7 +261,7 @@ class HybridRun:
         return {
             Status.DONE: "ran to the end of the span",
             Status.INTERRUPTED: f"interrupted at {t}",
-            Status.NOT_FINITE: f"after {t} the field of mode {mode!r} or the state is not finite",
+            Status.NOT_FINITE: f"after {t} the field of mode {mode!r}, a guard of it or the state is not finite",
             Status.TOO_MANY_EVENTS: f"{self.count[loop.EVENTS]} switches up to {t}: more than max_events allows",
             Status.STEP_TOO_SMALL: f"at {t} in mode {mode!r} the tolerance cannot be met by any step",
         }[status]

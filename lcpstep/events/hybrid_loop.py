@@ -35,6 +35,7 @@ from lcpstep.events.hybrid_field import (
 from lcpstep.events.hybrid_roots import CHECKS, DEGREE, NONE, convert, first_rise, largest, taylor
 
 # Why a loop returned
+UNKNOWN = -2  # in place of a guard
 FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, ENDLESS, NOT_TRANSVERSAL = range(7)
 # Places in the arrays of counters and of numbers
 STEP, ROW, SWITCH, FORCES, MODE, EVENTS, STALLED, BEGUN, CULPRIT = range(9)
@@ -177,10 +178,21 @@ def sample(
         scan.sample[j] = guard(m, sp, mode, k, t + s * h, memory.states[j])
 
 
+def finite(values: Any) -> bool:
+    """Whether no entry is nan or infinite."""
+    total = 0.0
+    for value in values:
+        total += value - value
+    return total == 0.0
+
+
 def find(
     m: Any, sp: Any, scan: Any, memory: Any, w: Any, mode: int, t: float, h: float, x: Any
 ) -> tuple[int, float, float, float]:
-    """The first guard that acts within the step: guard, fraction of the step, its slope and curvature there."""
+    """The first guard that acts within the step: guard, fraction of the step, its slope and curvature there.
+
+    The guard is -1 where none acts, UNKNOWN where one is not finite.
+    """
     first, end, parts = m.first[mode], m.first[mode + 1], 1
     found, at, slope, curvature = -1, 2.0, 0.0, 0.0
     part = 0
@@ -192,9 +204,12 @@ def find(
         for k in range(first, end):
             sample(m, sp, scan, memory, mode, k, t, h, a, b)
             error = convert(scan)
-            if not error <= RESOLVED * largest(scan) + memory.band[k] and parts < PARTS:
+            known = finite(scan.sample)
+            if not (known and error <= RESOLVED * largest(scan) + memory.band[k]) and parts < PARTS:
                 fine = False
                 break
+            if not known:
+                return UNKNOWN, a, 0.0, 0.0
             s, armed = first_action(m, scan, memory, k)
             if s != NONE and a + (b - a) * s < at:
                 found, at = k, a + (b - a) * s
@@ -333,6 +348,8 @@ def advance(m: Any, flow: Any, sp: Any, scan: Any, memory: Any, tab: Any, w: Any
     x[NEXT] = h * factor(error)
     complete(m, sp, tab, w, mode, t, h)
     k, at, slope, curvature = find(m, sp, scan, memory, w, mode, t, h, x)
+    if k == UNKNOWN:
+        return NOT_FINITE
     tau = h
     if k >= 0:
         memory.armed[k] = x[WAS_ARMED] > 0.0

@@ -82,7 +82,8 @@ def overview(run: Trajectory) -> Any:
     position.plot(t, q, lw=1.0)
     velocity.plot(t, v, lw=1.0)
     jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
-    impulse.stem(jumps.time, jumps.impulse, basefmt="k-", markerfmt=".")
+    if len(jumps):
+        impulse.stem(jumps.time, jumps.impulse, basefmt="k-", markerfmt=".")
     for ax, label in zip((position, velocity, impulse), ("q [m]", "v [m/s]", "impulse [N s]"), strict=True):
         ax.set_ylabel(label)
         ax.grid(alpha=0.3)

@@ -305,6 +305,33 @@ def test_a_motion_that_leaves_the_finite_numbers_keeps_what_was_computed():
     assert 0.1 < stopped.value.trajectory.x[-1, 0] <= 0.5
 
 
+def falls(t, x, p, out):
+    out[0], out[1] = x[1], -9.81
+
+
+def unknown_below(t, x, p, out):
+    out[0] = x[0] if t < 0.3 else math.nan
+
+
+def fails_below(t, x, p, out):
+    if t > 0.3:
+        raise ValueError("the sensor broke")
+    out[0] = x[0]
+
+
+def rebound(t, x, p, out):
+    out[0], out[1] = 0.0, -0.5 * x[1]
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("below", [unknown_below, fails_below])
+def test_a_guard_that_goes_wrong_is_not_taken_for_one_that_stays_away(below):
+    ball = HybridSystem(2, {"fly": Mode(falls, [Guard(below, "fly", -1, rebound)])})
+    with pytest.raises(SimulationError, match=r"guard|sensor") as caught:
+        simulate(HybridScene(ball, x0=[1.0, 0.0], mode="fly", t_span=(0.0, 1.0)), EventDriven())
+    assert caught.value.trajectory.t[-1] <= 0.31
+
+
 @pytest.mark.parametrize("amplitude", [0.0, 0.3, 2.0])
 def test_the_friction_law_and_the_filippov_form_are_one_motion(amplitude):
     """x'' + x = -0.1 sign(x') + F sin(t/2), pressed on a floor with 1 N and mu = 0.1, against the Filippov system."""
