@@ -161,8 +161,10 @@ def scan_interval(scene: Scene, rate: float) -> float:
 def fastest_turn(scene: Scene) -> float:
     """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
 
-    2 pi max |s'| / max |s''| of samples taken in windows of time, which need not be dense for that.
+    2 pi max |s'| / max |s''| of samples, which need not be dense for that; what has no period may speed up, and is
+    looked at in windows of time.
     """
+    windows = 1 if math.isfinite(scene.period) else WINDOWS
     t0, t1 = scene.t_span
     length = min(scene.period, t1 - t0)
     contacts, system, fastest = scene.contacts, scene.system, 0.0
@@ -176,8 +178,8 @@ def fastest_turn(scene: Scene) -> float:
         rates = np.zeros((SAMPLES, n, 3))
         for k in range(SAMPLES):
             f(t0 + length * (k + (k * GOLDEN) % 1.0) / SAMPLES, q, v, p, rates[k])
-        windows = np.abs(rates[:, :, 1:]).reshape(WINDOWS, -1, n, 2).max(axis=1)
-        speed, acceleration = windows[..., 0], windows[..., 1]
+        largest = np.abs(rates[:, :, 1:]).reshape(windows, -1, n, 2).max(axis=1)
+        speed, acceleration = largest[..., 0], largest[..., 1]
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
     return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, simulate
+from lcpstep.events.run import PER_FORCING, scan_interval
 
 GRAVITY, RESTITUTION = 9.81, 0.5
 
@@ -76,3 +77,14 @@ def test_a_gap_that_turns_fast_along_the_motion_is_seen():
     assert (q[:, 1] - 0.001 * np.sin(100.0 * q[:, 0])).min() > -1e-9
     energy = 0.5 * (v**2).sum(axis=1) + GRAVITY * q[:, 1]
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+
+
+def test_a_cam_is_not_looked_at_more_finely_than_its_period_asks_for():
+    cam = scenes.cam_follower(rpm=660.0, t_end=1.0)
+    assert scan_interval(cam, 0.0) == cam.period / PER_FORCING
+
+
+def test_a_gear_of_many_teeth_in_a_period_is_looked_at_more_finely():
+    floor = LinearContacts(1.0, motion=shaken)
+    gear = Scene(LinearSystem(1.0), 1.0, 0.0, (0.0, 9.0), floor, p=[1e-3, 200.0 * math.pi], period=1.0)
+    assert scan_interval(gear, 0.0) == pytest.approx(0.01 / PER_FORCING, rel=1e-2)
