@@ -32,6 +32,7 @@ from lcpstep.events.equations import (
     NOISE,
     RATE,
     RESOLUTION,
+    SOUGHT,
     SPEED,
     Q,
     V,
@@ -90,11 +91,19 @@ def remember(s: Any) -> None:
             s.contact[LEFT_GAP + k, c] = s.contact[GAP + k, c]
 
 
+def seek(s: Any, level: float) -> None:
+    """Make `root` look for a root of the gap (level GAP), the velocity, the acceleration or the multiplier.
+
+    Numba compiles a function anew for every whole number that it is called with, but not for every float.
+    """
+    s.number[SOUGHT] = int(level)
+
+
 def root(
-    model: Any, joints: Any, s: Any, w: Any, dy: Any, level: int, c: int,
-    a: float, f_a: float, b: float, f_b: float,
-) -> float:  # fmt: skip
-    """Root between a and b of a contact's gap (level GAP), velocity, acceleration or multiplier; f_a f_b <= 0."""
+    model: Any, joints: Any, s: Any, w: Any, dy: Any, c: int, a: float, f_a: float, b: float, f_b: float
+) -> float:
+    """Root between a and b of what `seek` has chosen, for contact c; f_a f_b <= 0."""
+    level = s.number[SOUGHT]
     if f_a == 0.0:
         return a
     x, f_x = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
@@ -129,7 +138,8 @@ def first_contact(
     """
     middle, at_middle = b, right
     if left[2] * right[2] < 0.0 and (left[1] < 0.0 or right[1] > 0.0 or right[0] <= 0.0):
-        middle = root(model, joints, s, w, dy, CURVE, c, a, left[2], b, right[2])
+        seek(s, float(CURVE))
+        middle = root(model, joints, s, w, dy, c, a, left[2], b, right[2])
         observe(model, joints, s, w, dy, middle)
         at_middle = (s.contact[GAP, c], s.contact[SPEED, c], s.contact[CURVE, c])
     found = first_in_half(model, joints, s, w, dy, c, a, middle, left, at_middle)
@@ -145,16 +155,19 @@ def first_in_half(
     if left[1] * right[1] < 0.0:
         if left[1] > 0.0 and right[0] > 0.0:
             return NONE
-        middle = root(model, joints, s, w, dy, SPEED, c, a, left[1], b, right[1])
+        seek(s, float(SPEED))
+        middle = root(model, joints, s, w, dy, c, a, left[1], b, right[1])
         observe(model, joints, s, w, dy, middle)
         g = s.contact[GAP, c]
+        seek(s, float(GAP))
         if left[1] < 0.0 and left[0] > 0.0 and g <= 0.0:
-            return root(model, joints, s, w, dy, GAP, c, a, left[0], middle, g)
+            return root(model, joints, s, w, dy, c, a, left[0], middle, g)
         if left[1] > 0.0:
-            return middle if g <= 0.0 else root(model, joints, s, w, dy, GAP, c, middle, g, b, right[0])
+            return middle if g <= 0.0 else root(model, joints, s, w, dy, c, middle, g, b, right[0])
         return NONE
     if left[0] > 0.0 and right[0] <= 0.0:
-        return root(model, joints, s, w, dy, GAP, c, a, left[0], b, right[0])
+        seek(s, float(GAP))
+        return root(model, joints, s, w, dy, c, a, left[0], b, right[0])
     return NONE
 
 
@@ -174,7 +187,8 @@ def first_event(model: Any, joints: Any, s: Any, w: Any, dy: Any, a: float, b: f
             left, right = s.contact[LEFT_MULTIPLIER, c], seen[MULTIPLIER, c]
             if right < -noise and s.contact[HELD, c] < s.x[T0] + b:
                 kind = OPENS
-                tau = a if left <= 0.0 else root(model, joints, s, w, dy, MULTIPLIER, c, a, left, b, right)
+                seek(s, float(MULTIPLIER))
+                tau = a if left <= 0.0 else root(model, joints, s, w, dy, c, a, left, b, right)
         else:
             left_end = (s.contact[LEFT_GAP, c], s.contact[LEFT_SPEED, c], s.contact[LEFT_CURVE, c])
             right_end = (seen[GAP, c], seen[SPEED, c], seen[CURVE, c])

@@ -36,8 +36,8 @@ N_CONTACT = 19
 CLOSED, WAS_CLOSED, LOADED = range(3)  # lasting contact; so when last told; carries a force
 N_MODE = 3
 # Places in Several.number
-HELD_ROWS, HELD_JOINTS, CULPRIT, MEMBERS, NEXT = range(5)  # MEMBERS: contacts of the last problem
-N_NUMBER = 5
+HELD_ROWS, HELD_JOINTS, CULPRIT, MEMBERS, NEXT, SOUGHT = range(6)  # MEMBERS: contacts of the last problem
+N_NUMBER = 6
 
 INDEPENDENT = 1e-14  # of its own size: what a row must have that the rows before it have not
 REFINEMENTS = 4
@@ -131,18 +131,11 @@ def inverse_mass(model: Any, s: Any, x: Any) -> None:
             x[i] += model.M_inverse[i, j] * s.y[j]
 
 
-def delassus(model: Any, s: Any, i: int, first: int) -> None:
-    """Row i of M^-1 R^T, and its products with the rows held from number `first` on, or with all rows (-1)."""
+def delassus(model: Any, s: Any, i: int) -> None:
+    """Row i of M^-1 R^T."""
     MR = s.MR[i]
     assign(MR, s.R[i])
     inverse_mass(model, s, MR)
-    if first < 0:
-        for j in range(i + 1):
-            s.D[i, j] = s.D[j, i] = product(s.R, MR, j)
-    else:
-        for k in range(first + 1):
-            j = s.row[k]
-            s.D[i, j] = s.D[j, i] = product(s.R, MR, j)
 
 
 def measure(model: Any, joints: Any, s: Any, t: float) -> bool:
@@ -161,7 +154,9 @@ def measure(model: Any, joints: Any, s: Any, t: float) -> bool:
     biases(joints, s, s.J, s.joint, side, q, v)
     constraint_rows(model, joints, s, t, q, v)
     for i in range(n_j + n_c):
-        delassus(model, s, i, -1)
+        delassus(model, s, i)
+        for j in range(i + 1):
+            s.D[i, j] = s.D[j, i] = product(s.R, s.MR[i], j)
     for i in range(n_j):
         s.joint[SPEED, i] = product(s.R, v, i) + s.joint[RATE, i]
     for i in range(n_c):
@@ -171,39 +166,37 @@ def measure(model: Any, joints: Any, s: Any, t: float) -> bool:
     return True
 
 
-def hold(s: Any, k: int, i: int) -> int:
-    """Add row i to the k rows held, unless it depends on them; returns their number. Factor by Cholesky."""
-    pivot = s.D[i, i]
+def hold(s: Any, i: int) -> None:
+    """Add row i to the rows held, unless it depends on them. Factor by Cholesky."""
+    k, pivot = s.number[HELD_ROWS], s.D[i, i]
     for m in range(k):
         total = s.D[i, s.row[m]]
         for n in range(m):
             total -= s.L[k, n] * s.L[m, n]
         s.L[k, m] = total / s.L[m, m]
         pivot -= s.L[k, m] * s.L[k, m]
-    if not pivot > INDEPENDENT * s.D[i, i]:
-        return k
-    s.L[k, k] = math.sqrt(pivot)
-    s.row[k] = i
-    return k + 1
+    if pivot > INDEPENDENT * s.D[i, i]:
+        s.L[k, k] = math.sqrt(pivot)
+        s.row[k] = i
+        s.number[HELD_ROWS] = k + 1
 
 
-def hold_joints(s: Any) -> int:
-    """Hold the independent joints; returns their number."""
-    k = 0
+def hold_joints(s: Any) -> None:
+    """Hold the independent joints, and nothing else."""
+    s.number[HELD_ROWS] = 0
     for i in range(len(s.J)):
-        k = hold(s, k, i)
-    s.number[HELD_JOINTS] = s.number[HELD_ROWS] = k
-    return k
+        hold(s, i)
+    s.number[HELD_JOINTS] = s.number[HELD_ROWS]
 
 
 def hold_contacts(s: Any) -> None:
     """Hold the joints and the closed contacts, those that carry a force first."""
-    k, n_j = hold_joints(s), len(s.J)
+    n_j = len(s.J)
+    hold_joints(s)
     for loaded in (1, 0):
         for c in range(len(s.G)):
             if s.mode[CLOSED, c] == 1 and s.mode[LOADED, c] == loaded:
-                k = hold(s, k, n_j + c)
-    s.number[HELD_ROWS] = k
+                hold(s, n_j + c)
 
 
 def solve_held(s: Any, k: int, x: Any) -> None:
@@ -314,11 +307,17 @@ def hold_again(model: Any, joints: Any, s: Any, t: float, q: Any, v: Any) -> boo
     biases(model, s, s.G, s.contact, t, q, v)
     biases(joints, s, s.J, s.joint, t, q, v)
     constraint_rows(model, joints, s, t, q, v)
-    k = 0
-    for m in range(s.number[HELD_ROWS]):
-        delassus(model, s, s.row[m], m)
-        k = hold(s, k, s.row[m])
-        if k != m + 1:
+    count = s.number[HELD_ROWS]
+    s.number[HELD_ROWS] = 0
+    for m in range(count):
+        i = s.row[m]
+        delassus(model, s, i)
+        for k in range(m + 1):
+            j = s.row[k]
+            s.D[i, j] = s.D[j, i] = product(s.R, s.MR[i], j)
+        hold(s, i)
+        if s.number[HELD_ROWS] != m + 1:
+            s.number[HELD_ROWS] = count
             return False
     return True
 

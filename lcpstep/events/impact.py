@@ -58,9 +58,9 @@ LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has di
 CHECKED = 1e-10  # relative violation that an answer found without the solver may have
 
 
-def contact_matrix(s: Any, k: int, W: Any) -> None:
-    """W of the k member contacts; the joints must be the rows held."""
-    n_j, k_j = len(s.J), s.number[HELD_JOINTS]
+def contact_matrix(s: Any, W: Any) -> None:
+    """W of the member contacts; the joints must be the rows held."""
+    n_j, k_j, k = len(s.J), s.number[HELD_JOINTS], s.number[MEMBERS]
     for a in range(k):
         i = n_j + s.member[a]
         for m in range(k_j):  # the rows of the Cholesky factor that follow the joints'
@@ -75,18 +75,18 @@ def contact_matrix(s: Any, k: int, W: Any) -> None:
             W[a, b] = W[b, a] = total
 
 
-def solve_contacts(s: Any, lcp: Any, solver: Any, k: int) -> bool:
+def solve_contacts(s: Any, lcp: Any, solver: Any) -> bool:
     """Solve the members' problem with b in LCP_B; z, at least zero, into LCP_Z, and who carries a force.
 
     Where the solver fails (W has lost too many digits), all that could are said to carry one, with z = 0: an
     answer to be checked.
     """
-    s.number[MEMBERS] = k
+    k = s.number[MEMBERS]
     z, b = s.contact[LCP_Z], s.contact[LCP_B]
     W = s.W[: k * k].reshape((k, k))
     for a in range(k):
         z[a] = 0.0
-    contact_matrix(s, k, W)
+    contact_matrix(s, W)
     solved = bool(call_solver(solver, W, b[:k], z[:k], lcp) == SOLVED)
     for a in range(k):
         z[a] = z[a] if solved else 0.0
@@ -99,44 +99,45 @@ def strike(model: Any, s: Any, lcp: Any, solver: Any, tracked: bool) -> int:
 
     Velocities and contact speeds are those after it; see `apply` for `tracked`. NO_SOLUTION where none exists.
     """
-    k, n_c = 0, len(s.G)
     speed = speed_noise(s)
-    for c in range(n_c):
+    s.number[MEMBERS] = 0
+    for c in range(len(s.G)):
         s.mode[LOADED, c] = 0
         u = 0.0 if s.mode[CLOSED, c] == 1 else s.contact[SPEED, c]
         if s.mode[CLOSED, c] == 1 or (s.contact[GAP, c] == 0.0 and u <= speed):
-            s.member[k] = c
-            s.contact[LCP_B, k] = (1.0 + model.restitution[c]) * min(u, 0.0)
-            k += 1
+            s.member[s.number[MEMBERS]] = c
+            s.contact[LCP_B, s.number[MEMBERS]] = (1.0 + model.restitution[c]) * min(u, 0.0)
+            s.number[MEMBERS] += 1
     hold_joints(s)
-    solved = solve_contacts(s, lcp, solver, k)
-    largest = impulses(model, s, k)
-    for a in range(k):
+    solved = solve_contacts(s, lcp, solver)
+    largest = impulses(model, s)
+    for a in range(s.number[MEMBERS]):
         if s.contact[LCP_Z, a] < 0.0:
             if not solved and s.contact[LCP_Z, a] < -CHECKED * largest:
                 return NO_SOLUTION
-            s.contact[LCP_Z, a] = 0.0
-    if not solved and not separates(s, k):
+            s.contact[LCP_Z, a] = s.change[s.number[HELD_JOINTS] + a] = 0.0
+    if not solved and not separates(s):
         return NO_SOLUTION
-    apply(s, s.number[HELD_ROWS], tracked)
+    apply(s, tracked)
     return DONE
 
 
-def impulses(model: Any, s: Any, k: int) -> float:
-    """Impulses of the k members, of which LCP_Z is a guess, and of the joints into `change`; returns the largest.
+def impulses(model: Any, s: Any) -> float:
+    """Impulses of the members, of which LCP_Z is a guess, and of the joints into `change`; returns the largest.
 
     They give the loaded members the speeds of the law; corrected with the residual of M (v+ - v-) = R^T p itself.
     """
-    n_j, n = len(s.J), s.state.shape[1]
-    k_j, dv = hold_joints(s), s.state[WORK]
+    n_j, n, k, dv = len(s.J), s.state.shape[1], s.number[MEMBERS], s.state[WORK]
+    hold_joints(s)
+    k_j = s.number[HELD_JOINTS]
     for m in range(len(s.change)):
         s.change[m] = s.held[m] = 0.0
     for a in range(k):
         s.held[n_j + s.member[a]] = s.contact[LCP_Z, a]  # by row, not by place in the list of rows held
-    h = k_j
     for a in range(k):
         if s.mode[LOADED, s.member[a]] == 1:
-            h = hold(s, h, n_j + s.member[a])
+            hold(s, n_j + s.member[a])
+    h = s.number[HELD_ROWS]
     before = math.inf
     for _ in range(REFINEMENTS if k + k_j > 1 else 0):  # one impulse alone loses no digits
         for j in range(n):
@@ -173,9 +174,9 @@ def impulses(model: Any, s: Any, k: int) -> float:
     return largest
 
 
-def separates(s: Any, k: int) -> bool:
+def separates(s: Any) -> bool:
     """Whether every member has at least the speed of the law after the impulses in LCP_Z."""
-    for a in range(k):
+    for a in range(s.number[MEMBERS]):
         u, size, i = s.contact[LCP_B, a], abs(s.contact[LCP_B, a]), len(s.J) + s.member[a]
         for m in range(s.number[HELD_ROWS]):
             u += s.D[i, s.row[m]] * s.change[m]
@@ -185,13 +186,13 @@ def separates(s: Any, k: int) -> bool:
     return True
 
 
-def apply(s: Any, k: int, tracked: bool) -> None:
-    """Apply the impulses `change` on the first k of the rows listed.
+def apply(s: Any, tracked: bool) -> None:
+    """Apply the impulses `change` on the rows held.
 
     `tracked`: the contacts' speeds are carried along, not computed from V, so that small ones keep their digits.
     """
     n_j, n_c, v = len(s.J), len(s.G), s.state[V]
-    for m in range(k):
+    for m in range(s.number[HELD_ROWS]):
         i, p = s.row[m], s.change[m]
         if p != 0.0:
             for j in range(len(v)):
@@ -250,19 +251,19 @@ def contact_forces(model: Any, s: Any, lcp: Any, solver: Any, t: float) -> int:
         s.number[CULPRIT] = contradiction(s, a)
         if s.number[CULPRIT] >= 0:
             return CONTRADICTION
-    k = 0
+    s.number[MEMBERS] = 0
     for c in range(n_c):
         s.mode[LOADED, c] = 0
         s.contact[CURVE, c] = product(s.R, a, n_j + c) + s.contact[BIAS, c]
         s.contact[MULTIPLIER, c] = 0.0
         if s.mode[CLOSED, c] == 1:
-            s.member[k], s.contact[LCP_B, k] = c, s.contact[CURVE, c]
-            k += 1
+            s.member[s.number[MEMBERS]], s.contact[LCP_B, s.number[MEMBERS]] = c, s.contact[CURVE, c]
+            s.number[MEMBERS] += 1
     solved = True
-    if k > 0:
-        solved = solve_contacts(s, lcp, solver, k)
+    if s.number[MEMBERS] > 0:
+        solved = solve_contacts(s, lcp, solver)
         if solved:
-            open_contacts(s, k, t)
+            open_contacts(s, t)
         assign(a, s.state[FREE_ACCELERATION])
         hold_contacts(s)
         constrain(model, s, a)
@@ -286,9 +287,10 @@ def presses(s: Any) -> bool:
     return True
 
 
-def open_contacts(s: Any, k: int, t: float) -> None:
+def open_contacts(s: Any, t: float) -> None:
     """Of the members, mark those that carry a force, and open those that accelerate away from the surface."""
-    n_j, W = len(s.J), s.W[: k * k].reshape((k, k))
+    n_j, k = len(s.J), s.number[MEMBERS]
+    W = s.W[: k * k].reshape((k, k))
     for m in range(k):
         c, alpha = s.member[m], s.contact[LCP_B, m]
         size = abs(s.contact[BIAS, c])

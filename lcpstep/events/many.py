@@ -228,7 +228,15 @@ def _dense(
 
 
 # Kernels that one kind of smooth motion leaves aside
-NEVER_CONSTANT = (loop.step, loop.later, loop.obey, loop.lift, loop.measure_again, loop.interpolate)
+NEVER_CONSTANT = (
+    loop.step,
+    loop.complete,
+    loop.later,
+    loop.obey,
+    loop.lift,
+    loop.measure_again,
+    loop.interpolate,
+)
 NEVER_RUNGE_KUTTA = (loop.fly, loop.polish, loop.synchronise)
 STATUS = {
     common.FINISHED: Status.DONE,

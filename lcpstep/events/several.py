@@ -119,10 +119,9 @@ from lcpstep.recording import TIME as ROW_TIME
 # Why the loop returned, beside the reasons of `integrator`
 NO_IMPULSES, NO_FORCES, JOINTS_DISAGREE = range(10, 13)
 # Numbers of Several.x after those of a piece
-NEXT_STEP, LAST_EVENT, BARE = range(
-    N_PIECE, N_PIECE + 3
-)  # BARE: 1 while the acceleration is that without contacts
-N_NUMBERS = N_PIECE + 3
+# BARE: 1 while the acceleration is that without contacts; FOUND: event in the step at hand, looked for up to SEEN
+NEXT_STEP, LAST_EVENT, BARE, FOUND, SEEN = range(N_PIECE, N_PIECE + 5)
+N_NUMBERS = N_PIECE + 5
 MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 START = 64 * RESOLUTION  # an initial gap this small, relative to the state, is closed
@@ -164,7 +163,9 @@ def run(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, cou
         if not measure(model, joints, s, s.x[T0]):
             return NOT_FINITE
         for c in range(len(s.G)):
-            s.contact[GAP, c] = 0.0 if s.contact[GAP, c] <= START * scale(s, Q, 1.0) else s.contact[GAP, c]
+            s.contact[GAP, c] = (
+                0.0 if s.contact[GAP, c] <= START * scale(s.state[Q], 1.0) else s.contact[GAP, c]
+            )
     # What follows what is said here, and not where it is called: numba optimises callees anew in every caller.
     while code == FINISHED and (s.number[NEXT] != MOVE or (s.x[T0] < plan.t_end and count[STEP] < goal)):
         if s.number[NEXT] == JUMP:
@@ -188,7 +189,9 @@ def run(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, cou
         elif plan.constant:
             fly(plan, s, tools, record, count)
         else:
-            code = step(model, joints, plan, s, tools, record, count)
+            code = step(model, joints, plan, s, tools, count)
+            if code == FINISHED:
+                code = complete(model, joints, plan, s, tools, record, count)
     return code
 
 
@@ -230,15 +233,14 @@ def fly(plan: Any, s: Any, tools: Any, record: Any, count: Any) -> None:
     s.number[NEXT] = JUMP
 
 
-def step(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, count: Any) -> int:
-    """One DOP853 step, up to the first event within it."""
-    t, border = s.x[T0], min(plan.t_end, s.x[HIGH])
-    longest = border - t
+def step(model: Any, joints: Any, plan: Any, s: Any, tools: Any, count: Any) -> int:
+    """One DOP853 step, and the first event within it; `complete` takes it over."""
     remember(s)
+    longest = min(plan.t_end, s.x[HIGH]) - s.x[T0]
     h = take_step(model, joints, plan, s, tools, count, min(longest, plan.scan, 4.0 * shortest_hop(s)))
     if h < 0.0:
         return int(-h)
-    tau, a, c, kind = NONE, 0.0, 0, MEETS
+    tau, a = NONE, 0.0
     w, dy, seen = tools.w, tools.dy, tools.seen
     for part in range(1, PARTS + 1):
         if tau == NONE and len(s.G) > 0:
@@ -250,17 +252,23 @@ def step(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, co
                 for k in range(4):
                     s.contact[LEFT_GAP + k, i] = seen[k, i]
             a = b
-    t_next = border if h >= longest else after(s, h)
-    if tau != NONE:
-        c, kind = int(seen[4, 0]), int(seen[4, 1])
-        if kind == OPENS and not look_ahead(model, joints, plan, s, tools, c, tau, a):
-            return NO_FORCES
-        if tau > 0.0:
-            tau = shorten(model, joints, s, tools, c, tau, kind)
-        t_next = min(after(s, tau), border)
-    take_over(model, joints, plan, s, tools, record, count, t_next, h if tau == NONE else tau)
+    s.x[FOUND], s.x[SEEN] = tau, a
+    return FINISHED
+
+
+def complete(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, count: Any) -> int:
+    """Take over the step that has just been made, which ends early if an event was found in it."""
+    border, h, tau, end = min(plan.t_end, s.x[HIGH]), s.x[LENGTH], s.x[FOUND], s.x[SEEN]
     if tau == NONE:
+        t_next = border if h >= border - s.x[T0] else after(s, h)
+        take_over(model, joints, plan, s, tools, record, count, t_next, h)
         return pass_end(model, joints, plan, s, tools, record, count)
+    c, kind = int(tools.seen[4, 0]), int(tools.seen[4, 1])
+    if kind == OPENS and not look_ahead(model, joints, plan, s, tools, c, tau, end):
+        return NO_FORCES
+    if tau > 0.0:
+        tau = shorten(model, joints, s, tools, c, tau, kind)
+    take_over(model, joints, plan, s, tools, record, count, min(after(s, tau), border), tau)
     if not measure_on(model, joints, s, s.x[T0]):
         return NOT_FINITE
     if kind == OPENS:
@@ -269,7 +277,7 @@ def step(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record: Any, co
     s.number[NEXT] = JUMP
     lift(s, c)
     if kind != MEETS:
-        s.contact[SPEED, c], s.mode[CLOSED, c], s.contact[HELD, c] = 0.0, 1, s.x[T0] + a
+        s.contact[SPEED, c], s.mode[CLOSED, c], s.contact[HELD, c] = 0.0, 1, s.x[T0] + end
     return FINISHED
 
 
@@ -499,13 +507,13 @@ def jump(model: Any, plan: Any, s: Any, tools: Any, record: Any, count: Any) -> 
 
 def touching(plan: Any, s: Any) -> float:
     """Gaps that are closed: zero where they are followed exactly, else below the tolerance."""
-    return 0.0 if plan.constant else plan.atol + plan.rtol * scale(s, Q, 1.0)
+    return 0.0 if plan.constant else plan.atol + plan.rtol * scale(s.state[Q], 1.0)
 
 
-def scale(s: Any, row: int, least: float) -> float:
-    """Largest entry of a row of the state, or `least`."""
-    for j in range(s.state.shape[1]):
-        least = max(least, abs(s.state[row, j]))
+def scale(x: Any, least: float) -> float:
+    """Largest entry of x, or `least`."""
+    for j in range(len(x)):
+        least = max(least, abs(x[j]))
     return least
 
 
@@ -525,7 +533,7 @@ def tell_impacts(model: Any, s: Any, record: Any, count: Any, t: float) -> None:
         before = s.contact[LEFT_SPEED, c]
         if p > 0.0:
             u = -model.restitution[c] * before
-            log(record, s, count, t, c, IMPACT, before, u, p)
+            log(record, s, count, t, c, float(IMPACT), before, u, p)
             s.contact[SINCE, c], s.contact[STRUCK, c] = t - s.contact[STRUCK, c], t
         else:
             u = s.contact[SPEED, c]
@@ -606,7 +614,7 @@ def close_chatter(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record
                     count,
                     t + T,
                     c,
-                    ACCUMULATION,
+                    float(ACCUMULATION),
                     -u,
                     0.0,
                     max(-alpha * T - u, 0.0) / s.D[n_j + c, n_j + c],
@@ -618,7 +626,7 @@ def close_chatter(model: Any, joints: Any, plan: Any, s: Any, tools: Any, record
             i = s.row[m]
             s.change[m] = 0.0 if i < n_j else -s.contact[SPEED, i - n_j]
         solve_held(s, s.number[HELD_ROWS], s.change)
-        apply(s, s.number[HELD_ROWS], plan.constant)
+        apply(s, plan.constant)
         for c in range(n_c):
             if s.mode[CLOSED, c] == 1:
                 s.contact[SPEED, c] = 0.0
@@ -648,8 +656,8 @@ def chatter_left(model: Any, joints: Any, plan: Any, s: Any, tools: Any, c: int)
     u, alpha, r = s.contact[SPEED, c], s.contact[CURVE, c], model.restitution[c]
     if r == 1.0:
         return -1.0
-    speed = scale(s, V, 0.0)
-    tolerance = plan.atol + plan.rtol * scale(s, Q, 0.0)
+    speed = scale(s.state[V], 0.0)
+    tolerance = plan.atol + plan.rtol * scale(s.state[Q], 0.0)
     if alpha == 0.0 or abs(alpha) * s.contact[SINCE, c] <= NOISE * (u + speed):  # an inelastic collapse
         slow = u <= plan.atol + plan.rtol * speed and u * s.contact[SINCE, c] <= tolerance
         return 0.0 if slow else -1.0
@@ -691,7 +699,7 @@ def tell_modes(s: Any, record: Any, count: Any, t: float) -> bool:
             kind = STICK if s.mode[CLOSED, c] == 1 else RELEASE
             some = some or kind == STICK
             when = max(t, s.contact[CHATTERS, c]) if kind == STICK else t
-            log(record, s, count, when, c, kind, 0.0, s.contact[SPEED, c], 0.0)
+            log(record, s, count, when, c, float(kind), 0.0, s.contact[SPEED, c], 0.0)
             s.mode[WAS_CLOSED, c] = s.mode[CLOSED, c]
     return some
 
@@ -700,10 +708,10 @@ def tell_modes(s: Any, record: Any, count: Any, t: float) -> bool:
 
 
 def log(
-    record: Any, s: Any, count: Any, t: float, c: int, kind: int, before: float, after_: float, p: float
+    record: Any, s: Any, count: Any, t: float, c: int, kind: float, before: float, after_: float, p: float
 ) -> None:
     """Note an event; those that pass without the time going on are counted."""
-    write_event(record.events[count[EVENT]], t, c, before, after_, p, kind)
+    write_event(record.events[count[EVENT]], t, c, before, after_, p, int(kind))
     stalled = abs(s.x[T0] - s.x[LAST_EVENT]) <= 4.0 * RESOLUTION * abs(s.x[T0])
     count[STALLED] = count[STALLED] + 1 if stalled else 0
     s.x[LAST_EVENT] = s.x[T0]
