@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.model import culprit
 from lcpstep.recording import Kept, Recorder, States
@@ -21,6 +21,7 @@ PORTION = 4096  # steps between two looks at the outside world
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
 SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
+SLOPE = 1e-7  # of the time looked at: step of a difference
 TRIALS = 17  # of the callbacks within an interval that failed
 
 # Why a loop returned
@@ -169,9 +170,11 @@ def fastest_turn(scene: Scene) -> float:
     length = min(scene.period, t1 - t0)
     contacts, system, fastest = scene.contacts, scene.system, 0.0
     q, v, p = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
-    moving = []
+    moving: list[tuple[Callable[..., None], int]] = []
     if isinstance(contacts, LinearContacts) and contacts.motion is not None:
         moving.append((contacts.motion, scene.n_c))
+    if isinstance(contacts, Contacts) and contacts.gap_t is not None:
+        moving.append((_with_slope(contacts.gap_t, SLOPE * length), scene.n_c))
     if isinstance(system, LinearSystem) and system.frame is not None:
         moving.append((system.frame, scene.n_q))
     for f, n in moving:
@@ -183,3 +186,15 @@ def fastest_turn(scene: Scene) -> float:
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
     return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf
+
+
+def _with_slope(gap_t: Callable[..., None], step: float) -> Callable[..., None]:
+    """The speed of a gap and its slope in time, where the motion of an obstacle has them."""
+
+    def f(t: float, q: Array, v: Array, p: Array, out: Array) -> None:
+        now, then = np.zeros(len(out)), np.zeros(len(out))
+        gap_t(t, q, v, p, now)
+        gap_t(t + step, q, v, p, then)
+        out[:, 1], out[:, 2] = now, (then - now) / step
+
+    return f

@@ -88,3 +88,24 @@ def test_a_gear_of_many_teeth_in_a_period_is_looked_at_more_finely():
     floor = LinearContacts(1.0, motion=shaken)
     gear = Scene(LinearSystem(1.0), 1.0, 0.0, (0.0, 9.0), floor, p=[1e-3, 200.0 * math.pi], period=1.0)
     assert scan_interval(gear, 0.0) == pytest.approx(0.01 / PER_FORCING, rel=1e-2)
+
+
+def shaken_gap(t, q, v, p, out):
+    out[0], out[1] = q[0] - p[0] * math.sin(p[1] * t), q[0] + 5.0
+
+
+def shaken_rate(t, q, v, p, out):
+    out[0], out[1] = -p[0] * p[1] * math.cos(p[1] * t), 0.0
+
+
+def upwards(t, q, v, p, out):
+    out[0, 0], out[1, 0] = 1.0, 1.0
+
+
+def test_a_shaken_floor_of_several_general_contacts_is_not_flown_through():
+    floor = Contacts(2, shaken_gap, upwards, shaken_rate, restitution=RESTITUTION)
+    scene = Scene(System(1, 1.0, fall), 1.0, 0.0, (0.0, 10.0), floor, p=[0.01, 100.0])
+    run = simulate(scene, EventDriven())
+    t = np.linspace(0.0, 10.0, 20_001)
+    assert (run.at(t)[0][:, 0] - 0.01 * np.sin(100.0 * t)).min() > -1e-8  # the bias is differenced
+    np.testing.assert_allclose(run.impacts.time[:4], impacts(0.01, 100.0, 4), atol=1e-9)
