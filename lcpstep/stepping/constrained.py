@@ -183,7 +183,9 @@ def step(model: Any, plan: Any, state: Any, c: Any, count: Any, n_a: int, t: flo
     if n_j == 0:
         return FINISHED
     turning = 0.0 if c.joints.flat else 1.0
-    hold = joints_hold(c.J, c.J_t, c.J_start, state.v, state.v_free, state.next_v, turning, c.failed)
+    hold = joints_hold(
+        c.J, c.J_t, c.J_start, state.v, state.v_free, state.next_v, c.X, c.p, turning, c.failed
+    )
     return FINISHED if hold else JOINTS_FAILED
 
 

@@ -126,11 +126,21 @@ def apply(v: Any, v_free: Any, X: Any, p: Any, ids: Any, n_f: int, n_k: int, v_n
 
 
 def joints_hold(
-    J: Any, J_t: Any, J_start: Any, v: Any, v_free: Any, v_next: Any, turning: float, failed: Any
+    J: Any,
+    J_t: Any,
+    J_start: Any,
+    v: Any,
+    v_free: Any,
+    v_next: Any,
+    X: Any,
+    p: Any,
+    turning: float,
+    failed: Any,
 ) -> bool:
     """Whether the joints' rates are zero after the step; marks those for which they are not.
 
-    Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted.
+    Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted. What
+    the impulses p change a velocity by, X^T p, counts to its size: with unequal masses it is much more than the rest.
     """
     hold = True
     for j in range(len(J_t)):
@@ -138,6 +148,8 @@ def joints_hold(
         for i in range(len(v)):
             rate += J[j, i] * v_next[i]
             speed = max(abs(v_next[i]), abs(v[i]), abs(v_free[i]))
+            for k in range(len(p)):
+                speed = max(speed, abs(X[k, i] * p[k]))
             size += abs(J[j, i]) * speed
             turned += abs(J[j, i] - J_start[j, i]) * speed
         failed[j] = 0 if abs(rate) <= CONTRADICTION * size + turning * turned else 1

@@ -313,3 +313,15 @@ def test_a_callback_that_breaks_in_a_scene_with_joints_is_named():
     with pytest.raises(SimulationError, match=r"system\.force") as caught:
         simulate(scene, Moreau(1e-2))
     assert np.all(np.isfinite(caught.value.trajectory.q))
+
+
+@pytest.mark.parametrize("ratio", [1e4, 1e6])
+def test_a_heavy_body_held_by_a_light_one_stays(ratio):
+    scene = Scene(
+        LinearSystem(np.diag([ratio, 1.0]), force=[ratio, 0.0]), q0=[0, 0], v0=[0, 0], t_span=(0.0, 0.1),
+        joints=LinearJoints([[1.0, -1.0], [0.0, 1.0]]),
+    )  # fmt: skip
+    m = simulate(scene, Moreau(h=1e-2))
+    assert m.status.name == "DONE"
+    np.testing.assert_allclose(m.q, 0.0, atol=1e-10)
+    np.testing.assert_allclose(m.joint_impulse[-1], [-ratio * 1e-2, -ratio * 1e-2], rtol=1e-6)
