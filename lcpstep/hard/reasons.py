@@ -9,11 +9,6 @@ REASONS: dict[tuple[str, str, str], str] = {
     (EVENT, "bowl", "gap"): "the steps end on the wall; between them the gap is that of the dense output",
     (LOCATED, "bouncing-ball", "steps"): "rounding of 5e5 steps",
     (LOCATED, "jumping-table", ""): "a jump of the obstacle's velocity is not treated as an event",
-    (
-        LOCATED,
-        "elastic-gas",
-        "",
-    ): "leaves the exact motion at one place, whatever h: impacts that nearly coincide",
     (LOCATED, "heavy-on-light", ""): "the direct solution loses log10(R) digits",
     (LOCATED, "bowl", "gap"): "between the ends of steps the gap is that of the interpolation",
     (

@@ -62,6 +62,7 @@ from lcpstep.stepping.located_work import (
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
 COLLAPSE = 1e-9  # of a step: impacts as close as this,
+SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 IN_A_ROW = 8  # so many of them in a row, are an inelastic collapse
 
 
@@ -235,15 +236,22 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
 
 @inline
 def choose_struck(plan: Any, w: Any, first: int) -> int:
-    """Contacts that fire now; their number."""
+    """Contacts that fire now; their number.
+
+    Those that close with one speed land together, those that touched before are pushed together. Others whose gaps
+    happen to be zero at the same time are struck one after another, as they would be a little apart.
+    """
     w.mark[CHOSEN, 0] = first
+    u, n_s = w.num[RATE, first], 1
+    touched = w.mark[GROUNDED, first] == 1 and w.num[LAST, first] < 0.0
     w.num[GAP, first], w.mark[GROUNDED, first] = 0.0, 1
-    n_s = 1
     for c in range(w.num.shape[1]):
         if c != first and w.mark[STATUS, c] == OPEN and w.num[RATE, c] < 0.0 and w.num[GAP, c] <= plan.slack:
-            w.mark[CHOSEN, n_s] = c
-            w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
-            n_s += 1
+            pushed = touched and w.mark[GROUNDED, c] == 1 and w.num[LAST, c] < 0.0
+            if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u):
+                w.mark[CHOSEN, n_s] = c
+                w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+                n_s += 1
     return n_s
 
 

@@ -49,12 +49,13 @@ class Located:
         4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
         up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
         contacts; a moving obstacle or frame with one coordinate only.
-    max_events : bound on the impacts within one step; beyond it one plastic impact of all contacts ends the step,
-        which loses energy that elastic contacts would keep
+    max_events : bound on the number of events of a run, which ends with the status TOO_MANY_EVENTS there
+    max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
+        which loses energy that elastic contacts would keep; the run's message says how many steps that were
 
     Raises
     ------
-    ValueError   h or the bound is not positive
+    ValueError   h or a bound is not positive
 
     Notes
     -----
@@ -69,12 +70,14 @@ class Located:
     h: float = 1e-3
     order: int | str = 2
     max_events: int = 10_000_000
+    max_per_step: int = 10_000_000
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         if self.order not in ORDERS or isinstance(self.order, (bool, float)):
             raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
         object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
+        object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
@@ -113,7 +116,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     return work.Plan(
         h=h, stiff=stiff, steady=steady,
         plain=bool(m.linear and m.flat and m.motion == ABSENT), constant=bool(m.linear and m.flat),
-        small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), max_events=method.max_events,
+        small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
         exact=method.order == "exact", longest=longest(scene, m, method),
         corners=np.array(scene.corners), period=scene.period,
@@ -227,6 +230,7 @@ class _Run:
     def steps(self, b: Record, t0: float, first: int, goal: int) -> int:
         """Steps up to `goal`, by the kernel of the method's order."""
         m, p, w, x, count = self.model, self.plan, self.work, self.x, self.count
+        count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
         if self.method.order == 2:
             run = compiled(loop.run) if self.fast else loop.run
             return int(run(m, p, w, x, b, count, t0, first, goal))
@@ -285,11 +289,17 @@ class _Run:
 
     def message(self, status: Status, t: float, q: Array, v: Array) -> str:
         """How the run ended with its last finite state, in words."""
-        if status == Status.DONE:
+        cut = int(self.count[work.CUT])
+        if status == Status.DONE and cut == 0:
             return "reached the end of the span"
+        if status == Status.DONE:
+            bound = f"max_per_step = {self.method.max_per_step} events"
+            return f"reached the end of the span; {cut} times one plastic impact ended a step after {bound}"
         where = f"at t = {t:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
+        if status == Status.TOO_MANY_EVENTS:
+            return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.LCP_FAILED:
             closed = np.flatnonzero(self.work.mark[work.STATUS]).tolist()
             return f"no solution was found for the impact or the forces of closed contacts ({closed}) {where}"
@@ -301,6 +311,7 @@ STATUS = {
     work.BUFFER_FULL: Status.DONE,
     work.NOT_FINITE: Status.NOT_FINITE,
     work.LCP_FAILED: Status.LCP_FAILED,
+    work.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
 }
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 # Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED = range(4)
-# Places in the array of counters
-STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME = range(6)
-N_COUNTERS = 6
+FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS = range(5)
+# Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact
+STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT = range(8)
+N_COUNTERS = 8
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before
@@ -86,7 +86,7 @@ class Plan(NamedTuple):
     constant: bool  # M and the gap Jacobian are constant
     small: bool  # few coordinates: matrices for the rest of a step are made anew
     slack: float  # gaps up to here count as zero
-    max_events: int  # in one step
+    per_step: int  # events in one step
     many: int  # impacts of a contact in one step after which hops are taken as one if they end within it
     exact: bool  # pieces are Taylor polynomials; else, where pieces are polynomials, Runge-Kutta
     longest: float  # piece of motion

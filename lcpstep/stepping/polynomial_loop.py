@@ -28,10 +28,12 @@ from lcpstep.stepping.located_work import (
     CHOSEN,
     CLOSED,
     CLOSED_NOW,
+    CUT,
     END,
     EPS,
     EVENT,
     EVENTS,
+    EVENTS_LEFT,
     FINISHED,
     FREE,
     GAP,
@@ -53,6 +55,7 @@ from lcpstep.stepping.located_work import (
     SIGMA,
     STATUS,
     STEP,
+    TOO_MANY_EVENTS,
     UNDER_WAY,
     WHOLE,
     A,
@@ -116,6 +119,8 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
     while True:
         if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
+        if count[EVENT] > count[EVENTS_LEFT]:
+            return TOO_MANY_EVENTS
         now = t + x[SIGMA]
         if x[SIGMA] >= x[END]:
             if x[END] >= plan.h:
@@ -129,8 +134,9 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
         length = min(x[END] - x[SIGMA], plan.longest)
         if not load(m, plan, w, x, record, now, count):
             return LCP_FAILED if finite(w) else NOT_FINITE
-        if x[EVENTS] > plan.max_events:
+        if x[EVENTS] > plan.per_step:
             x[EVENTS] = 0.0
+            count[CUT] += 1
             if not settle_rest(m, plan, w, x, record, now, count):
                 return LCP_FAILED
         if not expand(m, plan, w, x, z, now, length, count):

@@ -199,3 +199,5 @@ def test_far_fewer_steps_than_moreau_for_the_same_error():
 def test_bad_parameters_are_named(h, bound):
     with pytest.raises(ValueError, match=r"^(h|max_events): expected"):
         Located(h, max_events=bound)
+    with pytest.raises(ValueError, match=r"^(h|max_per_step): expected"):
+        Located(h, max_per_step=bound)

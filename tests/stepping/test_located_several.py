@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import Kind, Located, Moreau, simulate
 from tests.models import no_damping
 from tests.stepping.test_general_systems import CURVED, GIVEN, LINEAR
@@ -44,6 +44,48 @@ def test_two_blocks_and_a_wall_count_the_digits_of_pi(ratio, impacts):
     assert len(m.impacts) == impacts
     energy = m.v**2 @ [1.0, ratio] / ratio
     assert np.max(np.abs(energy - 1)) < 1e-8
+
+
+def test_gas_in_which_many_beads_meet_at_one_time_and_place_is_exact():
+    # with these numbers three and more beads pass through one another at t = 0.1657 s
+    scene = scenes.elastic_gas(100, t_end=0.5)
+    for h in (0.01, 0.3):
+        m = simulate(scene, Located(h))
+        q, v = scene.exact(m.t)
+        np.testing.assert_allclose(m.q, q, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(m.v[-1], v[-1], rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("h", [0.25, 1.0, 0.1])
+def test_beads_on_a_lattice_pass_through_one_another_also_at_the_end_of_a_step(h):
+    # many beads with unlike speeds meet at one time, often at a multiple of h
+    place, speed = np.arange(1, 8) / 8, np.array([3.0, 1.0, 2.0, 0.0, -2.0, -1.0, -3.0])
+    G = np.vstack([np.eye(7)[0], np.diff(np.eye(7), axis=0), -np.eye(7)[-1]])
+    scene = Scene(
+        system=LinearSystem(M=np.eye(7)), contacts=LinearContacts(G=G, offset=[*np.zeros(7), 1.0], restitution=1.0),
+        q0=place, v0=speed, t_span=(0.0, 3.0),
+    )  # fmt: skip
+    m = simulate(scene, Located(h))
+    exact = np.sort(np.abs((place + speed * m.t[:, None] + 1) % 2 - 1), axis=1)
+    np.testing.assert_allclose(m.q, exact, rtol=0, atol=1e-12)
+
+
+def test_a_level_bar_lands_on_both_ends_at_once():
+    # restitution 0.5: in sequence the bar would leave turning
+    contacts = LinearContacts(G=[[1.0, -0.5], [1.0, 0.5]], restitution=0.5)
+    system = LinearSystem(M=np.diag([1.0, 1 / 12]), force=Harmonic(constant=[-9.81, 0.0]))
+    scene = Scene(system=system, contacts=contacts, q0=[1.0, 0.0], v0=[0.0, 0.0], t_span=(0.0, 2.0))
+    m = simulate(scene, Located(0.01))
+    np.testing.assert_allclose(m.q[:, 1], 0.0, rtol=0, atol=1e-14)
+    assert np.all(m.v[-1] == 0.0)
+
+
+def test_blocks_of_mass_ratio_a_million_million_collide_three_million_times_without_loss():
+    # one step: the Delassus matrix of the blocks rounds the inverse of the heavy mass at the fourth digit
+    scene = scenes.galperin(6)
+    m = simulate(scene, Located(20.0), keep=[20.0])
+    assert len(m.impacts) == 3141592
+    assert abs(m.v[-1, 0] ** 2 + 1e12 * m.v[-1, 1] ** 2 - 1e12) < 1e-10 * 1e12
 
 
 def test_touching_balls_are_struck_together_and_others_in_sequence():
@@ -155,10 +197,29 @@ def test_sliding_in_a_moving_hollow_converges_with_order_two():
     assert slope(levels, errors) >= 1.8
 
 
-def test_the_bound_on_events_ends_a_step_without_penetration():
+@pytest.mark.parametrize("order", [2, "exact"])
+def test_the_bound_on_events_ends_a_run_with_all_that_came_before(order):
     scene, _ = tonks(20, 0.5)
-    m = simulate(scene, Located(0.05, max_events=5))
+    whole = simulate(scene, Located(0.05, order))
+    bound = len(whole.impacts) // 2
+    m = simulate(scene, Located(0.05, order, max_events=bound))
+    assert m.status.name == "TOO_MANY_EVENTS"
+    assert f"max_events = {bound}" in m.message
+    assert bound < len(m.impacts) <= bound + 2
+    np.testing.assert_array_equal(m.impacts.time, whole.impacts.time[: len(m.impacts)])
+    assert m.impacts.time[-1] <= m.t[-1] < whole.impacts.time[len(m.impacts)] + 1e-12
+    enough = simulate(scene, Located(0.05, order, max_events=len(whole.impacts)))
+    assert enough.status.name == "DONE"
+    assert "plastic" not in enough.message
+
+
+def test_the_bound_on_events_of_a_step_ends_it_without_penetration_and_is_told():
+    scene, _ = tonks(20, 0.5)
+    m = simulate(scene, Located(0.05, max_per_step=5))
     assert m.status.name == "DONE"
+    in_step, _ = np.histogram(m.impacts.time, 0.05 * np.arange(11))
+    assert f"{np.sum(in_step > 5)} times one plastic impact" in m.message
+    assert "max_per_step = 5" in m.message
     assert np.min(m.q @ scene.contacts.G.T + scene.contacts.offset) > -1e-12
     assert np.max(np.diff(np.sum(m.v**2, axis=1))) <= 1e-12
 
