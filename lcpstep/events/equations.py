@@ -39,8 +39,8 @@ N_MODE = 3
 HELD_ROWS, HELD_JOINTS, CULPRIT, MEMBERS, NEXT, SOUGHT = range(6)  # MEMBERS: contacts of the last problem
 N_NUMBER = 6
 
-INDEPENDENT = 1e-14  # of its own size: what a row must have that the rows before it have not
-REFINEMENTS = 4
+DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
+REFINEMENTS = 6
 RESOLUTION = 2.0**-52
 NOISE = 64 * RESOLUTION
 PARTED = 1e3  # tolerances by which joints that say the same may differ
@@ -70,6 +70,7 @@ class Several(NamedTuple):
     W: Any  # (n_c^2,)
     member: Any  # (n_c,) contacts of the problem at hand
     kept: Any  # (n_j + n_c,) rows held, while others are tried
+    doubt: Any  # (n_j + n_c,) relative error of the diagonal of L, in units of rounding
 
 
 def constraint_rows(model: Any, joints: Any, s: Any, t: float, q: Any, v: Any) -> None:
@@ -167,17 +168,21 @@ def measure(model: Any, joints: Any, s: Any, t: float) -> bool:
 
 
 def hold(s: Any, i: int) -> None:
-    """Add row i to the rows held, unless it depends on them. Factor by Cholesky."""
-    k, pivot = s.number[HELD_ROWS], s.D[i, i]
+    """Add row i to the rows held, unless it depends on them as far as rounding lets tell. Factor by Cholesky."""
+    k, pivot, doubt = s.number[HELD_ROWS], s.D[i, i], s.D[i, i]
     for m in range(k):
         total = s.D[i, s.row[m]]
+        size = abs(total)
         for n in range(m):
             total -= s.L[k, n] * s.L[m, n]
-        s.L[k, m] = total / s.L[m, m]
-        pivot -= s.L[k, m] * s.L[k, m]
-    if pivot > INDEPENDENT * s.D[i, i]:
+            size += abs(s.L[k, n] * s.L[m, n])
+        x = total / s.L[m, m]
+        s.L[k, m] = x
+        pivot -= x * x
+        doubt += 2.0 * abs(x) * (size / s.L[m, m] + abs(x) * s.doubt[m])
+    if pivot > DEPENDENT * doubt:
         s.L[k, k] = math.sqrt(pivot)
-        s.row[k] = i
+        s.row[k], s.doubt[k] = i, 0.5 * doubt / pivot
         s.number[HELD_ROWS] = k + 1
 
 
@@ -225,17 +230,16 @@ def constrain(model: Any, s: Any, a: Any) -> None:
     k, n = s.number[HELD_ROWS], len(a)
     for m in range(k):
         s.held[m] = 0.0
-    before = math.inf
     for _ in range(REFINEMENTS):
-        error = 0.0
+        largest = correction = 0.0
         for m in range(k):
             i = s.row[m]
             s.change[m] = -bias_of(s, i) - product(s.R, a, i)
-            error = max(error, abs(s.change[m]))
-        if error == 0.0 or not error < 0.5 * before:
-            break
-        before = error
         solve_held(s, k, s.change)
+        for m in range(k):
+            largest, correction = max(largest, abs(s.held[m])), max(correction, abs(s.change[m]))
+        if correction <= 4.0 * RESOLUTION * largest:
+            break
         for m in range(k):
             s.held[m] += s.change[m]
         for j in range(n):

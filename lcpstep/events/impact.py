@@ -264,6 +264,7 @@ def contact_forces(model: Any, s: Any, lcp: Any, solver: Any, t: float) -> int:
         solved = solve_contacts(s, lcp, solver)
         if solved:
             open_contacts(s, t)
+            unload(s)
         assign(a, s.state[FREE_ACCELERATION])
         hold_contacts(s)
         constrain(model, s, a)
@@ -300,9 +301,39 @@ def open_contacts(s: Any, t: float) -> None:
             alpha += W[m, b] * s.contact[LCP_Z, b]
             size += abs(W[m, b] * s.contact[LCP_Z, b])
         if s.contact[LCP_Z, m] > 0.0:
-            s.mode[LOADED, c] = 1
+            s.mode[LOADED, c], s.contact[MULTIPLIER, c] = 1, s.contact[LCP_Z, m]
         elif alpha > NOISE * size and not s.contact[HELD, c] > t:
             s.mode[CLOSED, c] = 0
+
+
+def unload(s: Any) -> None:
+    """Shift forces between loaded contacts that depend on each other until the rest of the loaded are independent.
+
+    No force becomes negative on the way (Caratheodory): so the rows that will be held carry forces that push.
+    """
+    n_j, force = len(s.J), s.contact[MULTIPLIER]
+    shifting = True
+    while shifting:  # each round takes the load from one contact
+        shifting = False
+        hold_joints(s)
+        for c in range(len(s.G)):
+            k = s.number[HELD_ROWS]
+            if s.mode[LOADED, c] == 1 and not shifting:
+                hold(s, n_j + c)
+                if s.number[HELD_ROWS] == k:
+                    shifting = True
+                    for m in range(k):
+                        s.change[m] = s.D[s.row[m], n_j + c]
+                    solve_held(s, k, s.change)
+                    share, leaves = force[c], c
+                    for m in range(s.number[HELD_JOINTS], k):
+                        d = s.row[m] - n_j
+                        if force[d] + share * s.change[m] < 0.0:
+                            share, leaves = force[d] / -s.change[m], d
+                    for m in range(s.number[HELD_JOINTS], k):
+                        force[s.row[m] - n_j] += share * s.change[m]
+                    force[c] -= share
+                    force[leaves], s.mode[LOADED, leaves] = 0.0, 0
 
 
 def note(s: Any, a: Any) -> None:

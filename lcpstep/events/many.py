@@ -72,6 +72,7 @@ def start(scene: Scene) -> eq.Several:
         D=squares[0], L=squares[1], row=np.zeros(n_r, np.int64), held=np.zeros(n_r), change=np.zeros(n_r),
         mode=np.zeros((eq.N_MODE, n_c), np.int64), number=np.zeros(eq.N_NUMBER, np.int64),
         W=np.zeros(n_c * n_c), member=np.zeros(n_c, np.int64), kept=np.zeros(n_r, np.int64),
+        doubt=np.zeros(n_r),
     )  # fmt: skip
 
 

@@ -92,15 +92,16 @@ def test_a_column_comes_to_rest_exactly_and_carries_what_lies_above(n, r):
     np.testing.assert_allclose(settled.impulse[1], beads.weights_above(np.ones(n), GRAVITY), rtol=1e-12)
 
 
+@pytest.mark.parametrize("load", [0.1, 0.3, -0.47])
 @pytest.mark.parametrize("n", [2, 3, 10, 100])
-def test_a_block_on_many_feet_rests(n):
-    m = simulate(piles.block_on_feet(n=n, load=0.3), EventDriven())
+def test_a_block_on_many_feet_rests(n, load):
+    m = simulate(piles.block_on_feet(n=n, load=load), EventDriven())
     feet = np.linspace(-0.5, 0.5, n)
     assert np.abs(m.q).max() < 1e-15
     assert np.abs(m.v).max() < 1e-15
     assert m.impulse.min() >= 0.0
     assert m.impulse[-1].sum() == pytest.approx(GRAVITY, rel=1e-13)
-    assert m.impulse[-1] @ feet == pytest.approx(0.3 * GRAVITY, rel=1e-13)
+    assert m.impulse[-1] @ feet == pytest.approx(load * GRAVITY, rel=1e-12)
 
 
 def test_a_stack_of_blocks_rests():
@@ -110,7 +111,7 @@ def test_a_stack_of_blocks_rests():
     np.testing.assert_allclose(pairs, 0.5 * GRAVITY * np.arange(10, 0, -1)[:, None].repeat(2, 1), rtol=1e-12)
 
 
-@pytest.mark.parametrize(("ratio", "bound"), [(1e3, 1e-14), (1e9, 1e-14), (1e12, 1e-11)])
+@pytest.mark.parametrize(("ratio", "bound"), [(1e3, 1e-14), (1e9, 1e-14), (1e12, 1e-14)])
 def test_a_heavy_block_on_a_light_one_rests(ratio, bound):
     m = simulate(piles.heavy_on_light(ratio=ratio), EventDriven())
     assert np.abs(m.v).max() < 1e-14
