@@ -18,9 +18,9 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, require
 from lcpstep.recording import Kept, Record, Recorder
+from lcpstep.stepping import adaptive, polynomial_loop
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping import polynomial_loop
 from lcpstep.stepping.steps import check_resolved
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
@@ -53,9 +53,14 @@ class Located:
     max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
         which loses energy that elastic contacts would keep; the run's message says how many steps that were
 
+    tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
+        tolerance * (1 + size of the motion) over the span, in the scene's units; with order 2 only. A tolerance that
+        cannot be met ends the run with the status STEP_TOO_SMALL
+
     Raises
     ------
-    ValueError   h or a bound is not positive
+    ValueError   h, a bound or the tolerance is not positive
+    LcpStepError   a tolerance is given with an order other than 2
 
     Notes
     -----
@@ -71,6 +76,7 @@ class Located:
     order: int | str = 2
     max_events: int = 10_000_000
     max_per_step: int = 10_000_000
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
@@ -78,6 +84,12 @@ class Located:
             raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
         object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
         object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))
+        if self.tolerance is not None:
+            object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
+            if self.order != 2:
+                raise LcpStepError(
+                    f"tolerance: steps are adapted with order=2 only, got order={self.order!r}"
+                )
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
@@ -193,9 +205,15 @@ class _Run:
             self.prepare((t_end - t_start) / whole if whole and abs(steps - whole) <= WHOLE else h)
             code = begin(self.model, self.plan, self.work, self.x, self.recorder.buffers, self.count, t_start)
             status = STATUS[code]
-            if status == Status.DONE and whole > 0:
+            if status == Status.DONE and self.method.tolerance is not None:
+                status = self.adapted(self.method.tolerance, progress)
+            elif status == Status.DONE and whole > 0:
                 status = self.portions(t_start, 0, whole, progress)
-            if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
+            if (
+                status == Status.DONE
+                and self.method.tolerance is None
+                and (whole == 0 or abs(steps - whole) > WHOLE)
+            ):
                 t_last = t_start + whole * h
                 self.prepare(t_end - t_last)
                 status = self.portions(t_last, whole, whole + 1, progress)
@@ -208,8 +226,21 @@ class _Run:
 
     def prepare(self, h: float) -> None:
         """Constants for steps of size h."""
-        self.plan = plan(self.scene, self.model, self.method, h)
-        respond(self.model, self.plan, self.work)
+        self.use(plan(self.scene, self.model, self.method, h))
+
+    def use(self, p: work.Plan) -> None:
+        """Take these constants for the steps to come."""
+        self.plan = p
+        respond(self.model, p, self.work)
+
+    def adapted(self, tolerance: float, progress: Callable[[float], None]) -> Status:
+        """The whole run in steps of any size that meet the tolerance."""
+        self.t0 = self.scene.t_span[0]
+        try:
+            return adaptive.advance(self, tolerance, progress)
+        except Exception as error:  # a callback in plain Python; compiled code raises nothing
+            message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
+            raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
 
     def portions(self, t0: float, first: int, last: int, progress: Callable[[float], None]) -> Status:
         """Steps first .. last - 1 of the run, all of one size."""
@@ -300,6 +331,8 @@ class _Run:
             return f"interrupted {where}"
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
+        if status == Status.STEP_TOO_SMALL:
+            return f"the tolerance {self.method.tolerance:g} cannot be met by any step {where}; expected a larger one"
         if status == Status.LCP_FAILED:
             closed = np.flatnonzero(self.work.mark[work.STATUS]).tolist()
             return f"no solution was found for the impact or the forces of closed contacts ({closed}) {where}"

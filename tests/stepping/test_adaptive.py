@@ -1,0 +1,69 @@
+"""Steps chosen by a tolerance: errors follow it, steps concentrate where the motion needs them."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from lagrangian import scenes
+from lcpstep import EventDriven, LcpStepError, Located, Status, simulate
+from tests.known import ball_height
+
+TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)
+
+
+def oscillator():
+    return dataclasses.replace(scenes.impact_oscillator(), t_span=(0.0, 10.0))
+
+
+def test_errors_follow_the_tolerance_through_impacts():
+    at = np.linspace(0.0, 10.0, 57)
+    true = simulate(oscillator(), EventDriven(), keep=at)
+    errors = []
+    for tolerance in TOLERANCES:
+        m = simulate(oscillator(), Located(0.5, tolerance=tolerance), keep=at)
+        errors.append(np.max(np.abs(m.q - true.q)))
+        assert np.array_equal(m.t, at)
+        assert np.array_equal(m.impacts.contact, true.impacts.contact)
+        assert errors[-1] <= tolerance * (1.0 + np.max(np.abs(true.q)))
+    assert 0.8 < np.polyfit(np.log(TOLERANCES), np.log(errors), 1)[0] < 1.2
+
+
+def test_the_log_of_a_chattering_ball_is_complete():
+    scene = scenes.bouncing_ball(t_end=5.0)
+    fixed, m = simulate(scene, Located(1e-3)), simulate(scene, Located(0.1, tolerance=1e-6))
+    assert m.status == Status.DONE
+    assert m.t[-1] == 5.0
+    assert np.all(np.diff(m.t) > 0.0)
+    assert m.counts.events == len(m.impacts)
+    n = 20
+    assert np.array_equal(m.impacts.kind[:n], fixed.impacts.kind[:n])
+    assert np.allclose(m.impacts.time[:n], fixed.impacts.time[:n], rtol=0.0, atol=1e-9)
+    m = simulate(scene, Located(0.1, tolerance=1e-6), keep=np.linspace(0.0, 5.0, 31))
+    assert np.max(np.abs(m.q[:, 0] - ball_height(1.0, 9.81, 0.8)(m.t))) < 1e-6
+
+
+def test_steps_are_short_where_the_motion_is_fast_and_kept_states_are_a_choice():
+    m = simulate(oscillator(), Located(0.5, tolerance=1e-4))
+    steps = np.diff(m.t)
+    assert steps.max() <= 0.25
+    assert steps.min() < 0.05 * steps.max()
+    third = simulate(oscillator(), Located(0.5, tolerance=1e-4), keep=3)
+    assert np.array_equal(third.q[:50], m.q[:150:3])
+    assert np.array_equal(third.impacts, m.impacts)
+
+
+def test_a_tolerance_that_cannot_be_met_ends_the_run():
+    m = simulate(oscillator(), Located(0.5, tolerance=1e-17))
+    assert m.status == Status.STEP_TOO_SMALL
+    assert "tolerance" in m.message
+    assert "t = " in m.message
+    assert m.t[-1] < 10.0
+
+
+def test_bad_input_is_named():
+    for bad in (0.0, -1.0, np.nan):
+        with pytest.raises(ValueError, match="tolerance"):
+            Located(0.1, tolerance=bad)
+    with pytest.raises(LcpStepError, match="order"):
+        Located(0.1, order=4, tolerance=1e-6)
