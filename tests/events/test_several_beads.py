@@ -19,7 +19,10 @@ def kinetic(m):
     return 0.5 * np.einsum("ti,ij,tj->t", m.v, M, m.v)
 
 
-@pytest.mark.parametrize(("n", "t_end", "impacts"), [(12, 2000.0, 100_000), (100, 40.0, 130_000)])
+@pytest.mark.parametrize(
+    ("n", "t_end", "impacts"),
+    [pytest.param(12, 2000.0, 100_000, marks=pytest.mark.slow), (100, 40.0, 130_000)],
+)
 def test_an_elastic_gas_is_free_flight_sorted(n, t_end, impacts):
     rng = np.random.default_rng(n)
     q0, v0 = np.sort(rng.random(n)), rng.uniform(-1.0, 1.0, n)
