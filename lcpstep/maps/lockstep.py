@@ -18,7 +18,8 @@ from lcpstep.compiled import compiled, inline
 from lcpstep.dynamics import external_force, obstacle
 from lcpstep.maps.follow import INSIDE, Task
 from lcpstep.model import model
-from lcpstep.stepping.moreau import RESTING, WHOLE, Moreau, plan
+from lcpstep.stepping.moreau import Moreau, plan
+from lcpstep.stepping.steps import RESTING, WHOLE
 from lcpstep.stepping.theta import Plan
 from lcpstep.trajectory import Status
 

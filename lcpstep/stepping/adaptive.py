@@ -18,14 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping.steps import RESOLUTION
+from lcpstep.stepping.steps import RESOLUTION, WHOLE
 from lcpstep.trajectory import Status
 
 LEVELS = 30  # halvings of the longest step
 SAFE = 0.1  # of what is allowed: twice the step, eight times the error, may then be accepted
 LEAST_SHARE = 1e-3  # of the span, in steps with events: they are few, and releases are not smooth
 LOOK = 256  # steps between two looks at the outside world
-WHOLE = 1e-9
 
 
 class State:

@@ -18,17 +18,16 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, require
 from lcpstep.recording import Kept, Record, Recorder
-from lcpstep.stepping import adaptive, polynomial_loop
+from lcpstep.stepping import adaptive, interpolation, polynomial_loop
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping.steps import check_resolved
+from lcpstep.stepping.steps import WHOLE, check_resolved
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 16384  # steps between two looks at the outside world
 TRIALS = 17  # of the callbacks within a step that failed
-WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
 SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 ORDERS = (2, 4, "exact")
 # Impacts in one step after which the rest of a chattering sequence, if it ends within the step, is taken as one: the
@@ -304,7 +303,7 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=_interpolation(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
+            dense=interpolation.parabolic(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
         )  # fmt: skip
 
     def again(self) -> Callable[[Array], tuple[Array, Array]]:
@@ -346,22 +345,3 @@ STATUS = {
     work.LCP_FAILED: Status.LCP_FAILED,
     work.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
 }
-
-
-def _interpolation(t: Array, q: Array, v: Array, every_step: bool) -> Callable[[Array], tuple[Array, Array]]:
-    """States between kept ones: the parabola through both positions that leaves with the first velocity."""
-
-    def at(times: Array) -> tuple[Array, Array]:
-        i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
-        if len(t) == 1:
-            return q[i], v[i]
-        last, length = times == t[-1], (t[i + 1] - t[i])[:, None]
-        tau = (times - t[i])[:, None]
-        if not every_step and np.any((tau != 0.0) & ~last[:, None]):
-            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-        half = (q[i + 1] - q[i] - length * v[i]) / length**2
-        q_at, v_at = q[i] + tau * (v[i] + tau * half), v[i] + 2.0 * tau * half
-        q_at[last], v_at[last] = q[-1], v[-1]
-        return q_at, v_at
-
-    return at

@@ -19,18 +19,16 @@ from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import Model, culprit, model, models
 from lcpstep.recording import Kept, Recorder
-from lcpstep.stepping import constrained, sparse
+from lcpstep.stepping import constrained, interpolation, sparse
 from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
-from lcpstep.stepping.steps import check_resolved
+from lcpstep.stepping.steps import RESTING, WHOLE, check_resolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 65536  # steps between two looks at the outside world
-RESTING = 1e-13  # of the size of the scene: a gap this small is closed
-WHOLE = 1e-9  # a span this close to a whole number of steps is taken as one
 
 
 @dataclass(frozen=True)
@@ -274,7 +272,7 @@ class _Run:
                 steps=int(count[loop.STEP]), lcp_calls=int(count[loop.LCP_CALLS]),
                 force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],
             ),
-            dense=_interpolation(t, q, v, self.kept.all),
+            dense=interpolation.linear(t, q, v, self.kept.all),
             joint_impulse=joint, friction_impulse=friction,
         )  # fmt: skip
 
@@ -306,19 +304,3 @@ STATUS = {
     constrained.JOINTS_FAILED: Status.JOINTS_FAILED,
     constrained.PROJECTION_FAILED: Status.PROJECTION_FAILED,
 }
-
-
-def _interpolation(t: Array, q: Array, v: Array, every_step: bool) -> Callable[[Array], tuple[Array, Array]]:
-    """States between kept ones: linear within a step, as the method itself moves."""
-
-    def at(times: Array) -> tuple[Array, Array]:
-        i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
-        if len(t) == 1:
-            return q[i], v[i]
-        share = (times - t[i]) / (t[i + 1] - t[i])
-        if not every_step and np.any((share != 0.0) & (share != 1.0)):
-            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-        share = share[:, None]
-        return (1.0 - share) * q[i] + share * q[i + 1], (1.0 - share) * v[i] + share * v[i + 1]
-
-    return at

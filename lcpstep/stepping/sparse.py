@@ -27,6 +27,8 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.saddle import Point, Problem, Saddle
 from lcpstep.model import culprit, with_addresses
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
+from lcpstep.stepping import interpolation
+from lcpstep.stepping.steps import RESTING, WHOLE
 from lcpstep.stepping.theta import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
@@ -136,8 +138,6 @@ class Run:
             raise LcpStepError(
                 f"lcp: scenes with sparse matrices have a solver of their own and take no {method.lcp!r}"
             )
-        from lcpstep.stepping.moreau import RESTING
-
         self.method, self.scene, self.kept = method, scene, kept
         self.equations = Equations(scene)
         sizes = (scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
@@ -153,8 +153,6 @@ class Run:
 
     def pieces(self) -> list[tuple[float, float, int]]:
         """Start, h and number of the steps of one size: whole ones, then a shorter one where h does not divide."""
-        from lcpstep.stepping.moreau import WHOLE
-
         (t_start, t_end), h = self.scene.t_span, self.method.h
         steps = (t_end - t_start) / h
         whole = round(steps)
@@ -291,8 +289,6 @@ class Run:
 
     def trajectory(self, status: Status) -> Trajectory:
         """Everything computed so far."""
-        from lcpstep.stepping.moreau import WHOLE, _interpolation
-
         if len(self.kept.times) == 0 and self.t > self.last_kept:
             self.keep(self.t, self.q, self.v)
         self.empty()
@@ -306,7 +302,7 @@ class Run:
             counts=Counts(
                 steps=self.steps, lcp_calls=self.problems, force_evaluations=self.forces, events=self.all_events
             ),
-            dense=_interpolation(t, kept.q, kept.v, self.kept.all),
+            dense=interpolation.linear(t, kept.q, kept.v, self.kept.all),
         )  # fmt: skip
 
     def message(self, status: Status) -> str:

@@ -1,10 +1,15 @@
-"""Steps that are lost in the rounding of the times they are added to are refused: such a run would never end."""
+"""What all fixed steps agree on: when a span is a whole number of them, and which are too short.
+
+Steps that are lost in the rounding of the times they are added to are refused: such a run would never end.
+"""
 
 from __future__ import annotations
 
 from lcpstep.errors import LcpStepError
 
 RESOLUTION = 2.0**-52
+WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
+RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 
 
 def check_resolved(h: float, span: tuple[float, float]) -> None:
