@@ -265,14 +265,16 @@ class _Pieces:
     def check_degree(self, scene: Scene) -> None:
         """The gap velocity must be continuous at the corner."""
         t = (float(np.asarray(scene.corners)[self.corner])) + self.turn * scene.period
-        q, v = np.asarray(scene.q0, dtype=float), np.asarray(scene.v0, dtype=float)
+        q, v, p = (np.asarray(x, dtype=float) for x in (scene.q0, scene.v0, scene.p))
         early, late = (scene.gap(t + s * SIDE * scene.period, q, v)[1][0] for s in (-1.0, 1.0))
         jump = abs(late - early)
-        if isinstance(getattr(scene.system, "frame", None), Callable):  # type: ignore[arg-type]
-            now = np.zeros((2, scene.n_q, 3))
-            for out, s in zip(now, (-1.0, 1.0), strict=True):
-                scene.system.frame(t + s * SIDE * scene.period, q, v, np.array(scene.p), out)  # type: ignore
-            jump = max(jump, float(np.max(np.abs(now[1, :, 1] - now[0, :, 1]))))
+        frame = getattr(scene.system, "frame", None)
+        if frame is not None:
+            before, after = (
+                checks.evaluate("frame", frame, (t + s * SIDE * scene.period, q, v, p), (scene.n_q, 3))
+                for s in (-1.0, 1.0)
+            )
+            jump = max(jump, float(np.max(np.abs(after[:, 1] - before[:, 1]))))
         if jump > JUMP * max(1.0, abs(early)):
             raise NotDifferentiable(
                 f"corner {self.corner} is of degree one: the velocity jumps by {jump:.3g} there, where only the "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep import EventDriven
+from lcpstep import EventDriven, simulate
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify, diagram
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.corners import CornerImpact, agreement, corner_impact, estimate, local_map
 from lcpstep.cli.common import DONE, scene_arguments, scene_of
 from lcpstep.errors import LcpStepError
-from lcpstep.maps import StroboscopicMap, iterate
+from lcpstep.maps import StroboscopicMap
 
 Array = NDArray[np.float64]
 TRANSIENT = 300  # periods until the orbit to start from has settled
@@ -70,11 +71,7 @@ def run_corner(options: argparse.Namespace) -> int:
 
     start = make(options.start)
     x = np.concatenate([np.asarray(start.q0), np.asarray(start.v0)])
-    if options.phase == 0.0:
-        x = iterate(StroboscopicMap(start, EventDriven()), x, TRANSIENT)[-1]
-    else:
-        first = StroboscopicMap(start, EventDriven())
-        x = _settled(first, x, options.phase)
+    x = _settled(start, x, options.phase)
     orbit = corner_impact(
         make, options.near, x, corner=options.corner, n=options.periods, phase=options.phase
     )
@@ -93,15 +90,10 @@ def run_corner(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _settled(P: StroboscopicMap, x: Array, phase: float) -> Array:
-    """The state on the section at another phase, after the transient."""
-    from dataclasses import replace
-
-    from lcpstep import simulate
-
-    end = (TRANSIENT + phase) * P.scene.period
-    n = P.scene.n_q
-    run = simulate(replace(P.scene, q0=x[:n], v0=x[n:], t_span=(0.0, end)), P.method, keep=[end])
+def _settled(scene: Scene, x: Array, phase: float) -> Array:
+    """The state on the section at the phase, after the transient."""
+    n, end = scene.n_q, (TRANSIENT + phase) * scene.period
+    run = simulate(replace(scene, q0=x[:n], v0=x[n:], t_span=(0.0, end)), EventDriven(), keep=[end])
     return np.concatenate([run.q[-1], run.v[-1]])
 
 
