@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
@@ -34,7 +35,9 @@ WINDOWS = {  # rpm of the cam-follower, as in the thesis
     "114-200": (114.0, 200.0),
     "198-200": (198.0, 200.0),
     "357.5-361.5": (357.5, 361.5),
+    "660-670": (660.0, 670.0),
     "660-760": (660.0, 760.0),
+    "690-735": (690.0, 735.0),
 }
 
 
@@ -118,6 +121,14 @@ def _box(box: ArrayLike | None, d: int, start: str) -> Array:
     return result
 
 
+def _name(make: Callable[..., Scene]) -> str:
+    """The same in every process, so that an interrupted run knows its own parts again."""
+    if isinstance(make, partial):
+        fixed = ", ".join(f"{key}={value!r}" for key, value in sorted(make.keywords.items()))
+        return f"{_name(make.func)}({fixed})"
+    return f"{getattr(make, '__module__', '')}.{getattr(make, '__qualname__', make)}"
+
+
 @dataclass(frozen=True, eq=False)
 class _Study:
     """What every part of the sweep knows; called with the indices of the values of the part."""
@@ -166,9 +177,8 @@ class _Study:
         """What the result depends on."""
         names = ("start", "runs", "seed", "drop", "keep", "phase", "most")
         return provenance(first, self.method) | {
-            "make": f"{getattr(self.make, '__module__', '')}.{getattr(self.make, '__qualname__', self.make)}",
-            "parameter": self.parameter, "values": self.values.tolist(), "x0": self.x0.tolist(),
-            "box": self.box.tolist(), **{name: getattr(self, name) for name in names},
+            "make": _name(self.make), "parameter": self.parameter, "values": self.values.tolist(),
+            "x0": self.x0.tolist(), "box": self.box.tolist(), **{name: getattr(self, name) for name in names},
         }  # fmt: skip
 
     def dataset(self, first: Scene, parts: list[Arrays]) -> Any:

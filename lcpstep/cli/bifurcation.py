@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lagrangian.scenes import CATALOGUE
+from lcpstep import Moreau, dataset
+from lcpstep.analysis.agreement import Summary, agreement, summary, tolerance_of_stepping
 from lcpstep.analysis.bifurcation import STARTS, WINDOWS, bifurcation
 from lcpstep.cli.attractor import box
 from lcpstep.cli.common import DONE
@@ -24,6 +27,9 @@ from lcpstep.cli.studies import (
 )
 from lcpstep.errors import UnknownName
 from lcpstep.plot import diagrams
+from lcpstep.simulate import Method
+
+AGREEMENT = "agreement.nc"
 
 
 def add(commands: Any) -> None:
@@ -49,6 +55,10 @@ def add(commands: Any) -> None:
     )
     p.add_argument("--drop", type=int, default=500, help="periods dropped (500)")
     p.add_argument("--keep", type=int, default=60, help="periods recorded (60)")
+    p.add_argument(
+        "--compare", type=float, nargs="+", metavar="H",
+        help="also by time-stepping with these steps [s]: overlaid, and how far each diagram is from the first",
+    )  # fmt: skip
     p.set_defaults(run=stopped(run_bifurcation))
 
 
@@ -63,20 +73,61 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     known = CATALOGUE[options.scene].parameters
     if options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
+    steps = [Moreau(h=h, theta=options.theta, lcp=options.lcp) for h in options.compare or ()]
     names = files(options, "bifurcation")
+    if steps:
+        dataset.check_new(options.out / AGREEMENT, options.overwrite)
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != options.parameter}
     make = partial(CATALOGUE[options.scene].make, **fixed)
-    with parts_bar(f"{options.parameter} {low:g} .. {high:g}") as progress:
-        data = bifurcation(
-            make, options.parameter, np.linspace(low, high, options.points),
-            method=method_of(options), start=options.start, runs=options.runs, seed=options.seed,
-            box=box(options) if options.start == "random" else None, drop=options.drop, keep=options.keep,
-            phase=options.phase, jobs=options.jobs, out=options.out / PARTS, progress=progress,
-        )  # fmt: skip
-    finish(options, data, diagrams.bifurcation(data), names)
+    values = np.linspace(low, high, options.points)
+    data = _diagram(options, make, values, method_of(options), options.out / PARTS)
+    figure = diagrams.bifurcation(data) if not steps else _compared(options, make, data, steps)
+    finish(options, data, figure, names)
     failed = int((data["status"] != 0).sum())
     print(f"{data.sizes[options.parameter]} values, {failed} runs ended early")
     return DONE
+
+
+def _diagram(options: argparse.Namespace, make: Any, values: Any, method: Method, out: Path) -> Any:
+    """The diagram by one method, its unfinished parts in `out`."""
+    with parts_bar(f"{options.parameter} {values[0]:g} .. {values[-1]:g}") as progress:
+        return bifurcation(
+            make, options.parameter, values, method=method, start=options.start, runs=options.runs,
+            seed=options.seed, box=box(options) if options.start == "random" else None, drop=options.drop,
+            keep=options.keep, phase=options.phase, jobs=options.jobs, out=out, progress=progress,
+        )  # fmt: skip
+
+
+def _compared(options: argparse.Namespace, make: Any, data: Any, steps: list[Moreau]) -> Any:
+    """Figure of the diagram with those of time-stepping; their distances in a file and in a table."""
+    import xarray
+
+    values = data[options.parameter].values
+    periods = np.array([make(**{options.parameter: float(x)}).period for x in values])
+    others, apart = {}, {}
+    for method in steps:
+        name = f"h = {method.h:g} s"
+        others[name] = _diagram(options, make, values, method, options.out / PARTS / name.replace(" ", ""))
+        apart[name] = agreement(others[name], data, tolerance_of_stepping(method.h, periods))
+    joined = xarray.concat(
+        [apart[name].merge(others[name]) for name in others], "h", combine_attrs="drop_conflicts"
+    ).assign_coords(h=("h", [method.h for method in steps], {"units": "s"}))
+    print(f"wrote {dataset.save(joined, options.out / AGREEMENT, overwrite=options.overwrite)}")
+    _print_table(steps, [summary(x) for x in apart.values()])
+    return diagrams.overlaid(data, others, apart)
+
+
+def _print_table(steps: list[Moreau], found: list[Summary]) -> None:
+    print(
+        "distance from the diagram by the first method: medians over the window; share of values with the same motion"
+    )
+    print(f"{'h [s]':>8}  {'phase [periods]':>16}  {'state [relative]':>16}  same O(n, m)")
+    for method, row in zip(steps, found, strict=True):
+        print(f"{method.h:8g}  {row.phase:16.3g}  {row.state:16.3g}  {row.same:12.1%}")
+    row = found[0]
+    print(
+        f"{'floor':>8}  {row.phase_floor:16.3g}  {row.state_floor:16.3g}  between the halves of its own record"
+    )
 
 
 def _range(options: argparse.Namespace) -> tuple[float, float]:

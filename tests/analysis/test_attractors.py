@@ -96,22 +96,6 @@ def test_time_stepping_finds_the_same_attractor_from_finer_steps():
     assert found.found[0].share >= 0.8
 
 
-def test_a_diagram_of_time_stepping_approaches_the_event_driven_one():
-    speeds = np.linspace(690.0, 735.0, 10)  # O(1, 1), stable throughout
-    settings = {"drop": 200, "keep": 20}
-    exact = bifurcation(cam_follower, "rpm", speeds, **settings)
-    assert np.all(exact["impacts"] == 1)
-    errors = []
-    for steps in (500, 2000, 8000):
-        stepped = bifurcation(
-            cam_follower, "rpm", speeds, method=Moreau(h=60.0 / 735.0 / steps), x0=[1.33, -66.0], **settings
-        )
-        phase = stepped["impact_phase"].isel(impact=0).mean("period")
-        errors.append(float(np.abs(phase - exact["impact_phase"].isel(impact=0).mean("period")).mean()))
-    assert errors[2] < errors[1] < errors[0]
-    assert errors[2] < 0.02
-
-
 def test_forward_and_backward_diagrams_show_hysteresis():
     # The unstable branch of O(1, 1) beyond its nonsmooth fold at 673.23 rpm separates it from chaos
     speeds = np.linspace(665.0, 700.0, 8)

@@ -46,6 +46,23 @@ def test_bifurcation_draws_a_window_and_leaves_no_parts(capsys, tmp_path):
     assert run(capsys, *arguments, "--overwrite")[0] == DONE
 
 
+def test_bifurcation_compares_two_methods_in_a_picture_a_file_and_a_table(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "bifurcation", "cam-follower", "--window", "690-735", "--points", 4, "--drop", 100, "--keep", 10,
+        "--compare", 1e-3, 1e-4, "--out", tmp_path,
+    )  # fmt: skip
+    assert status == DONE
+    assert "same O(n, m)" in out
+    names = sorted(file.name for file in tmp_path.iterdir())
+    assert names == ["agreement.nc", "bifurcation.nc", "bifurcation.png"]
+    with xarray.open_dataset(tmp_path / "agreement.nc") as data:
+        assert data["h"].values.tolist() == [1e-3, 1e-4]
+        assert data["phase_distance"].shape == (2, 4)
+        coarse, fine = data["state_distance"].median("rpm").values
+        assert fine < coarse
+    assert (tmp_path / "bifurcation.png").stat().st_size > 1000
+
+
 def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
     status, out, _ = run(
         capsys, "basin", "cam-follower", "--rpm", 358.5, "--grid", 40, 30, "--sample", 100, "--out", tmp_path
