@@ -62,6 +62,12 @@ def inline(f: F) -> F:
     return f
 
 
+def brief(f: F) -> F:
+    """Mark a kernel that ends sooner than the interpreter's lock is released and taken again: it keeps the lock."""
+    f.brief = True  # type: ignore[attr-defined]
+    return f
+
+
 def jit_disabled() -> bool:
     """Whether the environment asks for plain Python (`NUMBA_DISABLE_JIT=1`)."""
     return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
@@ -75,6 +81,20 @@ def compiled(f: Callable[..., Any], without: Iterable[Callable[..., Any]] = ()) 
     if jit_disabled():
         return f
     return _entry(cast(FunctionType, f), frozenset(cast(Iterable[FunctionType], without)))
+
+
+def entry_point(f: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
+    """Machine code of kernel f for arguments of these types; those of a call are not compared with them.
+
+    That takes longer than solving for two unknowns. But arrays of another dtype, dimension or layout would be
+    misread: only for callers that have checked theirs.
+    """
+    if jit_disabled():
+        return f
+    from numba import typeof
+
+    dispatcher: Any = compiled(f)
+    return cast(Callable[..., Any], dispatcher.compile(tuple(map(typeof, arguments))))
 
 
 def address(f: Callback, ndim: int) -> int:
@@ -116,7 +136,7 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     import numba
 
     copy = _with_compiled_callees(f, without)
-    dispatcher = numba.njit(nogil=True, **OPTIONS)(copy)
+    dispatcher = numba.njit(nogil=not hasattr(f, "brief"), **OPTIONS)(copy)
     if _keep_on_disk(dispatcher, f) and not dispatcher._cache._cache_file._load_index():
         LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__name__)
     return dispatcher

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import threading
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from lcpstep.compiled import compiled
+from lcpstep.compiled import brief, compiled, entry_point
 from lcpstep.lcp.enumeration import enumerate_bases
 from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.judge import judge
@@ -32,40 +33,51 @@ from lcpstep.lcp.workspace import (
 
 NOT_FINITE = -1
 STATUS = tuple(Status)
+NAME_OF_SOLVED = Status.SOLVED
+new = tuple.__new__  # naming the fields of a Solution takes as long as solving for two unknowns
 LARGEST_KEPT = 100  # unknowns up to which work arrays are kept: 250 kB at most
 LARGEST_ENUMERATION = 20  # unknowns; a million bases
 
 
 class _Kept(threading.local):
-    """What problems of one size need, kept from call to call; every thread has its own."""
+    """Work arrays by number of unknowns, kept from call to call; every thread has its own."""
 
     def __init__(self) -> None:
-        self.tools: dict[int, tuple[Callable[..., Any], Any]] = {}
+        self.blocks: dict[int, Any] = {}
 
 
 _kept = _Kept()
 
 
-def tools_for(n: int) -> tuple[Callable[..., Any], Any]:
-    """The compiled `pivot_once`, and a block for the work arrays of n unknowns."""
-    found = compiled(pivot_once), np.zeros(length_needed(n))
+def block_for(n: int) -> Any:
+    """A block for the work arrays of n unknowns."""
+    block = np.zeros(length_needed(n))
     if n <= LARGEST_KEPT:
-        _kept.tools[n] = found
-    return found
+        _kept.blocks[n] = block
+    return block
+
+
+@functools.cache
+def machine_code() -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """The compiled `close_once` and `pivot_once`."""
+    vector, matrix = np.zeros(1), np.zeros((1, 1))
+    arrays = matrix, vector, vector, vector, vector
+    return entry_point(close_once, *arrays, 0.0), entry_point(pivot_once, *arrays, 0.0, 0)
+
+
+@brief
+def close_once(W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float) -> float:
+    """Residual of the closed form for one or two unknowns, infinite for one that is not finite; fills z and w."""
+    return solve_closed(W, b, z, w, block, tolerance)
 
 
 def pivot_once(
     W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float, max_pivots: int
 ) -> tuple[int, int, float]:
     """`solve_dense` on work arrays carved from a block: status, iterations, residual; fills z and w."""
-    n = b.shape[0]
     if not all_finite(W, b):
         return NOT_FINITE, 0, np.inf
-    if n <= 2:  # before the work arrays are made
-        residual = solve_closed(W, b, z, w, block[:n], tolerance)
-        if residual <= tolerance:
-            return SOLVED, 0, residual
-    work = carve(block, n)
+    work = carve(block, b.shape[0])
     return finish(solve_dense(W, b, z, tolerance, max_pivots, work), w, work)
 
 
@@ -105,11 +117,19 @@ def all_finite(W: Any, b: Any) -> bool:
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Principal and Lemke's pivoting; where they end in a ray, the search for a proof of infeasibility."""
     n = len(b)
-    pivot, block = _kept.tools.get(n) or tools_for(n)
-    w, limit = np.empty(n), ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
+    block = _kept.blocks.get(n)
+    if block is None:
+        block = block_for(n)
+    close, pivot = machine_code()
+    w = np.empty(n)
+    if n <= 2:
+        residual = close(W, b, z, w, block, tol)
+        if residual <= tol:
+            return new(Solution, (z, w, NAME_OF_SOLVED, 0, residual, "lemke", None))
+    limit = ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
     status, iterations, residual = pivot(W, b, z, w, block, tol, limit)
     if status == SOLVED:
-        return Solution(z, w, STATUS[SOLVED], iterations, residual, "lemke")
+        return new(Solution, (z, w, NAME_OF_SOLVED, iterations, residual, "lemke", None))
     if status == NOT_FINITE:
         check_finite(W, b)
     certificate: Any = None
@@ -130,7 +150,7 @@ def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) 
     if n > LARGEST_ENUMERATION:
         raise ValueError(f"W is too large to enumerate: 2^{n} bases; at most {LARGEST_ENUMERATION} unknowns")
     limit = 2**n if max_iterations is None else max_iterations
-    w, block = np.empty(n), tools_for(n)[1]
+    w, block = np.empty(n), np.zeros(length_needed(n))
     status, iterations, residual = compiled(enumerate_once)(W, b, z, w, block, tol, limit)
     if status == NOT_FINITE:
         check_finite(W, b)
