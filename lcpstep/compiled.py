@@ -32,6 +32,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
 OPTIONS = {"error_model": "numpy", "_nrt": False}
 ALL_ONES = 0xFF  # the bytes of a not-a-number
+SOLVERS: dict[Any, int] = {}  # addresses by kernel and kinds of its work space
 FINGERPRINT = 12  # digits of it in a name
 UNKNOWN = "<unknown>"  # a value of which nobody can tell whether it has changed
 
@@ -113,8 +114,14 @@ def first_order_address(f: Callback) -> int:
 
 
 def solver_address(f: Callable[..., int], work: Any) -> int:
-    """Address of a complementarity solver f(W, b, z, work) -> status compiled to machine code."""
-    return _address(f, 0, np.zeros((1, 1)), np.zeros(1), np.zeros(1), work)
+    """Address of a complementarity solver f(W, b, z, work) -> status compiled to machine code.
+
+    Looked up by the kinds of the arrays in `work`: the solvers are the library's own, and do not change in a process.
+    """
+    kinds = (f, *((a.dtype, a.ndim) if isinstance(a, np.ndarray) else type(a) for a in work))
+    if kinds not in SOLVERS:
+        SOLVERS[kinds] = _address(f, 0, np.zeros((1, 1)), np.zeros(1), np.zeros(1), work)
+    return SOLVERS[kinds]
 
 
 def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:

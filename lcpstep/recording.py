@@ -72,7 +72,7 @@ class Record(NamedTuple):
 def write_row(row: Any, t: float, mode: float, q: Any, v: Any, impulse: Any) -> None:
     """Kernel: one kept state; the impulses summed up to it start anew."""
     n = len(q)
-    row[TIME], row[MODE] = t, mode
+    row[TIME], row[MODE], row[LENGTH] = t, mode, 0.0
     for i in range(n):
         row[LEAD + i], row[LEAD + n + i] = q[i], v[i]
     for c in range(len(impulse)):
@@ -114,8 +114,9 @@ class Recorder:
             every=kept.every,
             on_events=kept.on_events,
             times=kept.times,
-            rows=np.zeros((rows, LEAD + 2 * n_q + n_c)),
-            events=np.zeros((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ()))),
+            # Not filled with zeros, which would take longer than a short run: what is read has been written.
+            rows=np.empty((rows, LEAD + 2 * n_q + n_c)),
+            events=np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ()))),
             dense=np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q)))),
         )
         b = self.buffers

@@ -39,7 +39,7 @@ def numbers(scene: Scene, m: Model, o: Oscillator, method: Any) -> Array:
         flight.OMEGA: o.Omega, flight.FC: m.cosine[0] / mass, flight.FS: m.sine[0] / mass,
         flight.RTOL: method.rtol, flight.ATOL: method.atol, flight.PERIOD: scene.period,
         flight.SCALE: scene.period if math.isfinite(scene.period) else scene.t_span[1] - t0,
-        flight.SCAN: scan_interval(scene, max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))),
+        flight.SCAN: scan_interval(scene, m, max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))),
         flight.T_END: scene.t_span[1], flight.NOW: t0, flight.LOW: math.inf, flight.HIGH: -math.inf,
         flight.HOLD: -math.inf, flight.LAST_EVENT: -math.inf,
     }.items():  # fmt: skip

@@ -41,7 +41,7 @@ def plan(scene: Scene, m: Model, joints: Model, rtol: float, atol: float, max_ev
     nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
     return loop.Plan(
         constant=constant,
-        scan=common.scan_interval(scene, 0.0),
+        scan=common.scan_interval(scene, m, 0.0),
         nodes=0.5 * (1.0 + nodes),
         weights=0.5 * weights,
         rtol=rtol,

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
+from lagrangian import Scene
+from lcpstep.compiled import call, compiled
 from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.model import culprit
+from lcpstep.model import ABSENT, Model, culprit
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -144,7 +145,7 @@ def between(complete: bool, s: States, evaluate: Callable[[Array, Any], tuple[Ar
     return at
 
 
-def scan_interval(scene: Scene, rate: float) -> float:
+def scan_interval(scene: Scene, m: Model, rate: float) -> float:
     """Longest interval on which the gap acceleration may be taken to change its sign only once.
 
     rate : fastest rate of the free motion [rad/s], 0 where it is not known
@@ -152,14 +153,14 @@ def scan_interval(scene: Scene, rate: float) -> float:
     scan = min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING)
     if rate > 0.0:
         scan = min(scan, 2.0 * math.pi / PER_PERIOD / rate)
-    turn = fastest_turn(scene)
+    turn = fastest_turn(scene, m)
     # A period that is given says how finely to look, unless what moves is much faster.
     if turn < (2.0 * scan if math.isfinite(scene.period) else math.inf):
         scan = min(scan, turn / PER_FORCING)
     return scan
 
 
-def fastest_turn(scene: Scene) -> float:
+def fastest_turn(scene: Scene, m: Model) -> float:
     """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
 
     2 pi max |s'| / max |s''| of samples, which need not be dense for that; what has no period may speed up, and is
@@ -167,34 +168,32 @@ def fastest_turn(scene: Scene) -> float:
     """
     windows = 1 if math.isfinite(scene.period) else WINDOWS
     t0, t1 = scene.t_span
-    length = min(scene.period, t1 - t0)
-    contacts, system, fastest = scene.contacts, scene.system, 0.0
-    q, v, p = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
-    moving: list[tuple[Callable[..., None], int]] = []
-    if isinstance(contacts, LinearContacts) and contacts.motion is not None:
-        moving.append((contacts.motion, scene.n_c))
-    if isinstance(contacts, Contacts) and contacts.gap_t is not None:
-        moving.append((_with_slope(contacts.gap_t, SLOPE * length), scene.n_c))
-    if isinstance(system, LinearSystem) and system.frame is not None:
-        moving.append((system.frame, scene.n_q))
-    for f, n in moving:
-        rates = np.zeros((SAMPLES, n, 3))
-        for k in range(SAMPLES):
-            f(t0 + length * (k + (k * GOLDEN) % 1.0) / SAMPLES, q, v, p, rates[k])
-        largest = np.abs(rates[:, :, 1:]).reshape(windows, -1, n, 2).max(axis=1)
+    length, k = min(scene.period, t1 - t0), np.arange(SAMPLES)
+    times, fastest = t0 + length * (k + k * GOLDEN % 1.0) / SAMPLES, 0.0
+    for rates in _rates(scene, m, times, SLOPE * length):
+        largest = np.abs(rates).reshape(windows, -1, rates.shape[1], 2).max(axis=1)
         speed, acceleration = largest[..., 0], largest[..., 1]
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
     return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf
 
 
-def _with_slope(gap_t: Callable[..., None], step: float) -> Callable[..., None]:
-    """The speed of a gap and its slope in time, where the motion of an obstacle has them."""
+def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]:
+    """Speeds and accelerations of each frame and obstacle that moves by itself, at these times, (times, n, 2)."""
+    state = np.array(scene.q0), np.array(scene.v0), m.p
+    for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
+        if f != ABSENT:
+            rates = np.zeros((len(times), n, 3))
+            (sample if callable(f) else compiled(sample))(f, times, *state, rates)
+            yield rates[:, :, 1:]
+    if m.gap_t != ABSENT:
+        now, then = np.zeros((2, len(times), scene.n_c))
+        for out, t in ((now, times), (then, times + step)):
+            (sample if callable(m.gap_t) else compiled(sample))(m.gap_t, t, *state, out)
+        yield np.stack([now, (then - now) / step], axis=2)
 
-    def f(t: float, q: Array, v: Array, p: Array, out: Array) -> None:
-        now, then = np.zeros(len(out)), np.zeros(len(out))
-        gap_t(t, q, v, p, now)
-        gap_t(t + step, q, v, p, then)
-        out[:, 1], out[:, 2] = now, (then - now) / step
 
-    return f
+def sample(f: Any, times: Array, q: Array, v: Array, p: Array, out: Array) -> None:
+    """Kernel: a callback at many times of one state."""
+    for k in range(len(times)):
+        call(f, times[k], q, v, p, out[k])

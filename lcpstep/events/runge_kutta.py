@@ -22,11 +22,11 @@ Array = NDArray[np.float64]
 QUADRATURE = 10  # nodes per interval of the contact forces' impulse
 
 
-def flow(scene: Scene, method: Any) -> loop.Flow:
+def flow(scene: Scene, m: Model, method: Any) -> loop.Flow:
     """How the smooth motion of the scene is computed."""
     nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
     return loop.Flow(
-        nodes=0.5 * (1.0 + nodes), weights=0.5 * weights, contact=scene.n_c > 0, scan=scan_interval(scene, 0.0),
+        nodes=0.5 * (1.0 + nodes), weights=0.5 * weights, contact=scene.n_c > 0, scan=scan_interval(scene, m, 0.0),
         rtol=method.rtol, atol=method.atol, corners=np.array(scene.corners), period=scene.period,
         t_end=scene.t_span[1], max_events=method.max_events,
     )  # fmt: skip
@@ -52,7 +52,7 @@ class RungeKutta(Run):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, m: Model, fast: bool) -> None:
         super().__init__(method, scene, kept, dense=kept.all)
-        self.model, self.flow, self.piece = m, flow(scene, method), piece(scene, m)
+        self.model, self.flow, self.piece = m, flow(scene, m, method), piece(scene, m)
         self.work, self.tableau = dop853.work(2 * scene.n_q), dop853.tableau()
         self.fast = fast
         self.run = compiled(loop.run) if fast else loop.run
