@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import tempfile
 from collections.abc import Iterable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 from benchmarks.stepping import peer
+from benchmarks.work_precision.cost import costs
 from benchmarks.work_precision.report import markdown
 from benchmarks.work_precision.siconos import MoreauJean
-from lagrangian import Scene, scenes
+from lagrangian import LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, study
 from lcpstep.analysis.work_precision import Study
 
@@ -30,7 +32,7 @@ TOLERANCES = (1e-5, 1e-7, 1e-9, 1e-11)
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, the steps of Moreau, of methods that locate impacts, and the finest of Siconos [s]."""
+    """A scene, the steps of Moreau, of methods that locate impacts, and the finest of Siconos (inf: none) [s]."""
 
     name: str
     scene: Scene
@@ -39,6 +41,7 @@ class Case:
     finest_peer: float
 
 
+THREE_DECADES = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 CASES = (
     Case(
         "bouncing ball, 5 s",
@@ -47,18 +50,26 @@ CASES = (
         (0.1, 1e-2, 1e-3),
         3e-5,
     ),
+    Case("impact oscillator, 100 s", scenes.impact_oscillator(), (*THREE_DECADES, 3e-5), THREE_DECADES, 1e-3),
     Case(
-        "impact oscillator, 100 s",
-        scenes.impact_oscillator(),
-        (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
-        (0.1, 3e-2, 1e-2, 3e-3),
-        1e-3,
+        "sticking oscillator, 100 s",
+        scenes.sticking_oscillator(),
+        (*THREE_DECADES, 3e-5),
+        THREE_DECADES,
+        math.inf,
+    ),
+    Case(
+        "double pendulum and wall, 3 s",
+        scenes.double_pendulum(),
+        (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5),
+        (3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5),
+        math.inf,
     ),
     Case(
         "cam-follower at 358 rpm, 1 s",
         scenes.cam_follower(t_end=1.0),
         (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6),
-        (1e-3, 3e-4, 1e-4, 3e-5),
+        (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6),
         1e-5,
     ),
 )
@@ -67,10 +78,8 @@ CASES = (
 def library_methods(case: Case) -> dict[str, list[Any]]:
     """Every method of the library over its range."""
     methods: dict[str, list[Any]] = {"Moreau": [Moreau(h) for h in case.steps]}
-    orders = (2, 4, "exact") if "order" in {f.name for f in fields(Located)} else ()
-    for more in [{"order": order} for order in orders] or [{}]:
-        name = f"Located, order {more.get('order', 2)}"
-        methods[name] = [Located(h, **more) for h in case.located]
+    for order in (2, 4, "exact") if isinstance(case.scene.system, LinearSystem) else (2, 4):
+        methods[f"Located, order {order}"] = [Located(h, order) for h in case.located]
     methods["EventDriven"] = [EventDriven(t, t) for t in TOLERANCES]
     return methods
 
@@ -78,7 +87,7 @@ def library_methods(case: Case) -> dict[str, list[Any]]:
 def one(case: Case, siconos: peer.Siconos | None, repeats: int) -> Study:
     """The study of one scene, Siconos' times as the worker reports them."""
     methods, seconds = library_methods(case), dict[float, list[float]]()
-    if siconos is not None:
+    if siconos is not None and case.finest_peer < math.inf:
         steps = [h for h in case.steps if h >= case.finest_peer]
         methods["Siconos Moreau-Jean"] = [MoreauJean(h, peer=siconos, seconds=seconds) for h in steps]
     found = study(
@@ -120,13 +129,18 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         siconos = peer.Siconos(python, Path(folder)) if python else None
         found = {case.name: one(case, siconos, asked.repeats) for case in CASES}
+        per_step = costs(asked.repeats)
         version = siconos.version if siconos else "not found"
         if siconos:
             siconos.close()
     asked.out.mkdir(parents=True, exist_ok=True)
-    stored = {"siconos": version, "studies": {name: s.as_dict() for name, s in found.items()}}
+    stored = {
+        "siconos": version,
+        "studies": {name: s.as_dict() for name, s in found.items()},
+        "steps": [c.as_dict() for c in per_step],
+    }
     (asked.out / "results.json").write_text(json.dumps(stored, indent=1) + "\n")
-    text = markdown(found, version)
+    text = markdown(found, per_step, version)
     (asked.out / "results.md").write_text(text)
     print(text)
 

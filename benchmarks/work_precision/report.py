@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-import numpy as np
-
+from benchmarks.work_precision.aims import OWN, summary
+from benchmarks.work_precision.cost import StepCost
+from benchmarks.work_precision.tables import error_at, table
 from lcpstep.analysis.orders import Cost
 from lcpstep.analysis.work_precision import Study
 
 ERRORS = (1e-3, 1e-5, 1e-7)
 TIMES = (1e-3, 1e-2, 1e-1)
-PEER, OWN = "Siconos Moreau-Jean", "Moreau"
+PEER = "Siconos Moreau-Jean"
 
 HEAD = """# Error against CPU time
 
@@ -24,22 +24,17 @@ neither enters the fits. A method that is more accurate than asked for at every 
 """
 
 
-def markdown(studies: Mapping[str, Study], siconos: str) -> str:
+def markdown(studies: Mapping[str, Study], per_step: Sequence[StepCost], siconos: str) -> str:
     """All tables."""
     first = next(iter(studies.values()))
     facts = ", ".join(f"{k} {v}" for k, v in {**first.versions, **first.machine, "Siconos": siconos}.items())
-    parts = [HEAD, facts + ".\n"]
+    parts = [HEAD, facts + ".\n", summary(studies, per_step)]
     for name, study in studies.items():
         parts += [f"## {name}\n", f"Reference: {study.reference}; {study.growth}.\n"]
         parts += [_levels(study), _orders(study), _at_errors(study), _at_times(study)]
         parts += [f"- {note}" for note in study.notes]
         parts.append("")
     return "\n".join(parts)
-
-
-def _table(head: list[str], rows: list[list[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def _levels(study: Study) -> str:
@@ -55,7 +50,7 @@ def _levels(study: Study) -> str:
             [x.method, dial, f"{x.seconds:.2e}", f"{x.steps:.0f}", f"{errors[0]:.1e}{mark}"]
             + [f"{e:.1e}" for e in errors[1:]]
         )
-    return _table(
+    return table(
         ["method", "level", "CPU s", "steps", "sup of position", "L1 of velocity", "penetration"], rows
     )
 
@@ -67,7 +62,7 @@ def _orders(study: Study) -> str:
             f"{fits[m]} ({fits[m].points})" if m in fits else "" for m in ("sup_position", "l1_velocity")
         ]
         rows.append([method, *cells])
-    return _table(["fitted order [95 %] (levels)", "sup of position", "L1 of velocity"], rows)
+    return table(["fitted order [95 %] (levels)", "sup of position", "L1 of velocity"], rows)
 
 
 def _at_errors(study: Study) -> str:
@@ -83,7 +78,7 @@ def _at_errors(study: Study) -> str:
     head = ["CPU s for an error of"]
     for e in ERRORS:
         head += [f"{e:g}", "Siconos / it"]
-    return _table(head, rows)
+    return table(head, rows)
 
 
 def _cost_of(study: Study, method: str, error: float) -> Cost | None:
@@ -113,22 +108,11 @@ def _at_times(study: Study) -> str:
     for method in study.methods:
         row = [method]
         for seconds in TIMES:
-            own, it = _error_at(study, OWN, seconds), _error_at(study, method, seconds)
+            own, it = error_at(study, OWN, seconds), error_at(study, method, seconds)
             row.append("" if it is None else f"{it:.1e}")
             row.append("" if own is None or it is None or method == OWN or it == 0.0 else f"{own / it:.2g}")
         rows.append(row)
     head = ["error at a CPU time of"]
     for seconds in TIMES:
         head += [f"{seconds:g} s", "Moreau / it"]
-    return _table(head, rows)
-
-
-def _error_at(study: Study, method: str, seconds: float) -> float | None:
-    """Error reached within a CPU time, between levels only; that of the finest level where time is left."""
-    levels = [x for x in study.curve(method, "sup_position", trusted=False) if x.errors["sup_position"] > 0.0]
-    levels.sort(key=lambda x: x.seconds)
-    if not levels or levels[0].seconds > seconds:
-        return None
-    x = np.log([level.seconds for level in levels])
-    y = np.log([level.errors["sup_position"] for level in levels])
-    return math.exp(float(np.interp(math.log(seconds), x, y)))
+    return table(head, rows)
