@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from lcpstep.compiled import compiled
-from lcpstep.lcp.dense import NOT_FINITE, all_finite
+from lcpstep.lcp.dense import NOT_FINITE
 from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
 from lcpstep.lcp.problem import as_array, check_finite
+from lcpstep.lcp.scaling import all_finite
 from lcpstep.lcp.status import SOLVED, TOLERANCE
 from lcpstep.lcp.workspace import ITERATIONS, RESIDUAL, SLACK, workspace
 

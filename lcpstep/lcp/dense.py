@@ -15,6 +15,7 @@ from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_closed, solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
+from lcpstep.lcp.scaling import all_finite
 from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
 from lcpstep.lcp.workspace import (
     BEST_RESIDUAL,
@@ -102,16 +103,6 @@ def finish(status: int, w: Any, work: Any) -> tuple[int, int, float]:
     for i in range(w.shape[0]):
         w[i] = work.vectors[SLACK, i]
     return status, int(work.report[ITERATIONS]), work.report[RESIDUAL]
-
-
-def all_finite(W: Any, b: Any) -> bool:
-    """Whether no entry is NaN or infinite: a number minus itself is zero exactly then."""
-    n, total = b.shape[0], 0.0
-    for i in range(n):
-        total += b[i] - b[i]
-        for j in range(n):
-            total += W[i, j] - W[i, j]
-    return total == 0.0
 
 
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:

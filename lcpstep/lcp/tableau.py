@@ -36,6 +36,7 @@ from lcpstep.lcp.workspace import (
     SIZE,
     SLACK,
     TIED,
+    TRIAL,
 )
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
@@ -51,7 +52,8 @@ def pivot_tableau(n: int, max_pivots: int, work: Any) -> int:
     """Pivot from z = 0 on the scaled problem in the work arrays to a complementary basis; returns a status."""
     basic, nonbasic, place = work.indices[BASIC], work.indices[NONBASIC], work.indices[PLACE]
     for i in range(n):
-        basic[i], nonbasic[i], place[i], work.columns[n, i] = n + 1 + i, i, i, 1.0
+        basic[i], nonbasic[i], work.columns[n, i] = n + 1 + i, i, 1.0
+        place[i], place[n + 1 + i] = i, NOTHING
     nonbasic[n], place[n] = n, n
     s, p, waiting, together = n, last_lowest(work.vectors[SCALED_B], n), 0, TOGETHER if n >= LARGE else 1
     for _ in range(max_pivots):
@@ -69,9 +71,7 @@ def pivot_tableau(n: int, max_pivots: int, work: Any) -> int:
         tied = list_ties(s, n, work)
         if tied == 0:
             return RAY
-        if tied > 1 and waiting > 0:
-            waiting = change_all(waiting, n, work)
-        p = first_of_ties(tied, s, n, work)
+        p = first_of_ties(tied, s, waiting, n, work)
     return MAX_ITERATIONS
 
 
@@ -140,17 +140,14 @@ def change_column(column: Any, change: Any, d: float, e: float, f: float, g: flo
 
 def list_ties(s: int, n: int, work: Any) -> int:
     """List in TIED the rows that bound the entering variable of column s, the covering one alone if it does."""
-    q, d, rows = work.vectors[SCALED_B], work.columns[s], work.indices[TIED]
-    steepest, largest = 1.0, 0.0
+    q, d, rows, growth = work.vectors[SCALED_B], work.columns[s], work.indices[TIED], work.vectors[TRIAL]
+    smallest = SMALLEST_PIVOT * max(1.0, largest_entry(d, n))
+    slack = TIE * largest_entry(q, n)
+    for i in range(n):  # without branches: several rows at a time
+        growth[i] = (max(q[i], 0.0) + slack) / -d[i] if -d[i] > smallest else np.inf
+    bound, tied = lowest_entry(growth, n), 0
     for i in range(n):
-        steepest, largest = max(steepest, abs(d[i])), max(largest, abs(q[i]))
-    smallest, slack, bound = SMALLEST_PIVOT * steepest, TIE * largest, np.inf
-    for i in range(n):
-        if d[i] < -smallest:
-            bound = min(bound, (max(q[i], 0.0) + slack) / -d[i])
-    tied = 0
-    for i in range(n):
-        if d[i] < -smallest and q[i] <= -bound * d[i]:
+        if (-d[i] > smallest) & (q[i] <= -bound * d[i]):
             if work.indices[BASIC, i] == n:
                 rows[0] = i
                 return 1
@@ -159,28 +156,67 @@ def list_ties(s: int, n: int, work: Any) -> int:
     return tied
 
 
-def first_of_ties(tied: int, s: int, n: int, work: Any) -> int:
+def first_of_ties(tied: int, s: int, waiting: int, n: int, work: Any) -> int:
     """Of the tied rows the one that is lowest lexicographically."""
     rows, j = work.indices[TIED], 0
     while tied > 1 and j < n:
-        c, lowest, kept = work.indices[PLACE, n + 1 + j], np.inf, 0
-        for t in range(tied):
-            value = perturbation(rows[t], j, c, s, n, work)
-            if value < lowest - TIE * max(1.0, abs(value)):
-                lowest, kept = value, 0
-            if value <= lowest + TIE * max(1.0, abs(value)):
-                rows[kept] = rows[t]
-                kept += 1
-        tied = kept
+        c = work.indices[PLACE, n + 1 + j]
+        if c == NOTHING:
+            tied = leave_out(n + 1 + j, tied, work)
+        else:
+            tied = keep_lowest(c, tied, s, waiting, work)
         j += 1
-    return work.indices[TIED, 0]
+    return rows[0]
 
 
-def perturbation(i: int, j: int, c: int, s: int, n: int, work: Any) -> float:
-    """Coefficient of e^(j+1) in the ratio of row i: how b_j moves its variable, over the pivot."""
-    if c != NOTHING:
-        return work.columns[c, i] / work.columns[s, i]
-    return -1.0 / work.columns[s, i] if work.indices[BASIC, i] == n + 1 + j else 0.0
+def leave_out(variable: int, tied: int, work: Any) -> int:
+    """Take the row of a basic w_j off the list of ties: b_j moves it up, and none of the others."""
+    rows, kept = work.indices[TIED], 0
+    for t in range(tied):
+        if work.indices[BASIC, rows[t]] != variable:
+            rows[kept] = rows[t]
+            kept += 1
+    return kept
+
+
+def keep_lowest(c: int, tied: int, s: int, waiting: int, work: Any) -> int:
+    """Keep of the ties those that b_j moves least: its coefficient over the pivot; w_j is that of column c."""
+    rows, lowest, kept = work.indices[TIED], np.inf, 0
+    for t in range(tied):
+        i = rows[t]
+        value = work.columns[c, i]
+        for k in range(waiting):
+            value += work.vectors[SHARES + k, c] * work.vectors[CHANGES + k, i]
+        value /= work.columns[s, i]
+        if value < lowest - TIE * max(1.0, abs(value)):
+            lowest, kept = value, 0
+        if value <= lowest + TIE * max(1.0, abs(value)):
+            rows[kept] = i
+            kept += 1
+    return kept
+
+
+def largest_entry(x: Any, n: int) -> float:
+    """Largest |x_i| for i < n, in four parts that the processor can overlap."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a, b = max(a, abs(x[i])), max(b, abs(x[i + 1]))
+        c, d = max(c, abs(x[i + 2])), max(d, abs(x[i + 3]))
+    for i in range(whole, n):
+        a = max(a, abs(x[i]))
+    return max(max(a, b), max(c, d))
+
+
+def lowest_entry(x: Any, n: int) -> float:
+    """Lowest x_i for i < n, in four parts as well."""
+    a, b, c, d = np.inf, np.inf, np.inf, np.inf
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        a, b, c, d = min(a, x[i]), min(b, x[i + 1]), min(c, x[i + 2]), min(d, x[i + 3])
+    for i in range(whole, n):
+        a = min(a, x[i])
+    return min(min(a, b), min(c, d))
 
 
 def correct(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> float:

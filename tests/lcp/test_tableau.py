@@ -69,3 +69,20 @@ def test_ties_everywhere_end(n):
         compiled(equilibrate)(W, b, work)
         assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
         assert compiled(correct)(W, b, z, 1e-13, work) <= 1e-13
+
+
+@pytest.mark.parametrize("n", SIZES)
+def test_what_the_work_arrays_held_before_does_not_matter(n):
+    """A path that depended on it would break ties by it, and the same problem would have many answers."""
+    G = np.repeat(np.random.default_rng(n).normal(size=((n + 1) // 2, n)), 2, axis=0)[:n]
+    W, b = G @ G.T, np.repeat(-G[::2] @ G[::2].sum(axis=0), 2)[:n]
+    fresh, used = workspace(n), workspace(n)
+    used.vectors[:], used.indices[:] = 3.0, n - 1
+    answers = []
+    for work in (fresh, used):
+        z = np.zeros(n)
+        compiled(equilibrate)(W, b, work)
+        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
+        compiled(correct)(W, b, z, 1e-13, work)
+        answers.append(z)
+    assert np.array_equal(*answers)
