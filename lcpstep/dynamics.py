@@ -47,6 +47,7 @@ def total_force(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
             out[i] -= model.C[i, j] * v[j] + model.K[i, j] * q[j]
 
 
+@inline
 def mass(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
     """M(t, q)."""
     if model.mass != ABSENT:

@@ -117,7 +117,7 @@ def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop
     }
     contacts = {name: np.zeros(n_c) for name in ("g", "u", "impulse", "p", "g_t", "b", "z")}
     newton = Newton(
-        **{name: np.zeros(n_q) for name in ("R", "R_shifted", "v", "q", "f")},
+        **{name: np.zeros(n_q) for name in ("R", "v", "q", "f")},
         **{name: np.zeros((n_q, n_q)) for name in ("M", "M_start", "A", "J")},
         pivots=np.zeros(n_q, dtype=np.int64),
     )

@@ -6,28 +6,28 @@ The step's velocity v solves, with q(v) = q_i + h [theta v + (1-theta) v_i],
     M_theta = theta M(t+h, q(v)) + (1-theta) M(t, q_i)
 
 and is linearised as R(v_k) + A (v - v_k): v_free = v_k - A^-1 R(v_k), A ~ dR/dv. For constant M, C, K this is
-the linear theta-method and one iteration is exact. Source: V. Acary, B. Brogliato, Numerical Methods for
-Nonsmooth Dynamical Systems (Springer 2008), section 10.1.
+the linear theta-method and one iteration is exact. A is made at the start of a step, and again where that is slow.
+Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), section 10.1.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call
+from lcpstep.compiled import call, inline
 from lcpstep.dense import add, assign, factorise, positive_definite, solve
 from lcpstep.dynamics import mass, product, total_force
 from lcpstep.model import ABSENT
 
 STEP_FOR_DIFFERENCES = 1e-7  # relative; A only steers the iteration, its error does not enter the motion
-FORCES = 4  # place of the force evaluations in the array of counters
+FORCES, ITERATION = 4, 5  # places in the array of counters
+REFRESH = 5  # iterations with one A
 
 
 class Newton(NamedTuple):
     """Work space."""
 
     R: Any  # (n_q,)
-    R_shifted: Any  # (n_q,)
     v: Any  # (n_q,)
     q: Any  # (n_q,)
     f: Any  # (n_q,)
@@ -38,35 +38,62 @@ class Newton(NamedTuple):
     pivots: Any  # (n_q,)
 
 
+@inline
 def linearise(model: Any, plan: Any, state: Any, t: float, t_next: float, contact: bool, count: Any) -> bool:
     """v_free about next_v, and for active contacts A^-1 G^T and W; False if A is singular or not finite."""
-    work, n = state.newton, len(state.q)
-    mass(model, t, state.q, state.v, work.M_start)
-    assign(work.J, work.M_start)
-    if not positive_definite(work.J):
-        return False
-    residual(model, plan, state, t_next, state.next_v, work.R, count)
+    work, n, fresh = state.newton, len(state.q), count[ITERATION] % REFRESH == 0
+    given = model.force_q != ABSENT and model.force_v != ABSENT
+    if count[ITERATION] == 0:
+        mass(model, t, state.q, state.v, work.M_start)
+        assign(work.J, work.M_start)
+        if not positive_definite(work.J):
+            return False
+    shift = difference(state.next_v)
+    for j in range(n if fresh and not given else 0, -1, -1):  # the last one at next_v itself
+        assign(work.v, state.next_v)
+        if j > 0:
+            work.v[j - 1] += shift
+        residual(model, plan, state, t_next, work.v, work.R, count)
+        for i in range(n if j > 0 else 0):
+            work.A[i, j - 1] = work.R[i] / shift
     assign(state.next_force, work.f)
-    if model.force_q != ABSENT and model.force_v != ABSENT:
-        given_jacobian(model, plan, state, t_next)
-    else:
-        differenced_jacobian(model, plan, state, t_next, count)
-    if not factorise(work.A, work.pivots):
-        return False
+    if fresh:
+        if given:
+            given_jacobian(model, plan, state, t_next)
+        else:
+            for i in range(n):
+                for j in range(n):
+                    work.A[i, j] -= work.R[i] / shift
+        if not factorise(work.A, work.pivots):
+            return False
     solve(work.A, work.pivots, work.R)
     for i in range(n):
         state.v_free[i] = state.next_v[i] - work.R[i]
-    if contact:
-        for c in range(len(state.u)):
-            assign(work.R, state.G[c])
-            solve(work.A, work.pivots, work.R)
-            for i in range(n):
-                plan.A_g[i, c] = work.R[i]
-            for d in range(len(state.u)):
-                plan.W[d, c] = product(state.G, work.R, d)
+    if contact and fresh:
+        respond(plan.A_g, plan.W, state.G, work.A, work.pivots, work.R)
     return True
 
 
+def respond(A_g: Any, W: Any, G: Any, A: Any, pivots: Any, x: Any) -> None:
+    """A^-1 G^T and W = G A^-1 G^T of all contacts."""
+    for c in range(len(G)):
+        assign(x, G[c])
+        solve(A, pivots, x)
+        for i in range(len(x)):
+            A_g[i, c] = x[i]
+        for d in range(len(G)):
+            W[d, c] = product(G, x, d)
+
+
+def difference(v: Any) -> float:
+    """Step of the differences."""
+    size = 1e-3
+    for i in range(len(v)):
+        size = max(size, abs(v[i]))
+    return STEP_FOR_DIFFERENCES * size
+
+
+@inline
 def residual(model: Any, plan: Any, state: Any, t_next: float, v: Any, R: Any, count: Any) -> None:
     """R(v); leaves q(v), M_theta and f(t+h, q(v), v) in the work space."""
     work, theta, h = state.newton, plan.theta, plan.h
@@ -82,6 +109,7 @@ def residual(model: Any, plan: Any, state: Any, t_next: float, v: Any, R: Any, c
             R[i] += work.M[i, j] * (v[j] - state.v[j])
 
 
+@inline
 def given_jacobian(model: Any, plan: Any, state: Any, t_next: float) -> None:
     """A = M_theta - h theta (df/dv + h theta df/dq), the change of M left out."""
     work, ht = state.newton, plan.h * plan.theta
@@ -90,17 +118,3 @@ def given_jacobian(model: Any, plan: Any, state: Any, t_next: float) -> None:
     add(work.A, -ht, work.J)
     call(model.force_q, t_next, work.q, state.next_v, model.p, work.J)
     add(work.A, -ht * ht, work.J)
-
-
-def differenced_jacobian(model: Any, plan: Any, state: Any, t_next: float, count: Any) -> None:
-    """A = dR/dv by differences."""
-    work = state.newton
-    size = 1e-3
-    for i in range(len(state.v)):
-        size = max(size, abs(state.next_v[i]))
-    for j in range(len(state.v)):
-        assign(work.v, state.next_v)
-        work.v[j] += STEP_FOR_DIFFERENCES * size
-        residual(model, plan, state, t_next, work.v, work.R_shifted, count)
-        for i in range(len(state.v)):
-            work.A[i, j] = (work.R_shifted[i] - work.R[i]) / (STEP_FOR_DIFFERENCES * size)
