@@ -5,8 +5,8 @@
 z holds a guess (zeros: none) and receives the solution. One unknown has a closed form, two are enumerated;
 beyond, principal pivoting starts from the positive z of the guess, or where b is negative if n is small;
 where a few exchanges do not end it, Lemke's method finds a basis on a tableau and, where the judge refuses
-that answer, again in revised form with fresh factors. Every answer is judged before it is called one, and a
-problem of a few unknowns is enumerated at last.
+that answer and exchanges from its basis do not mend it, again in revised form with fresh factors. Every
+answer is judged before it is called one, and a problem of a few unknowns is enumerated at last.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ __all__ = ["Workspace", "solve_small", "workspace"]
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
+ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again for more unknowns than TINY
 STARTS = 12  # times that Lemke's method is started
 STRIDE = 7919  # a prime that scatters them
 SMALLEST_PIVOTS = (1e-11, 1e-8)  # relative to the largest entry of a direction, in turn
@@ -84,6 +85,8 @@ def solve_dense(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work:
         return SOLVED
     if pivot_fast(W, b, z, strict, max_pivots, work) == SOLVED:
         return SOLVED
+    if n > TINY and work.report[BEST_RESIDUAL] <= ALMOST * tolerance:
+        return conclude(W, b, z, tolerance, FAILED, work)
     return pivot_on(W, b, z, tolerance, max_pivots, work)
 
 
