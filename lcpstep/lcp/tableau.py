@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from lcpstep.compiled import inline
 from lcpstep.lcp.elimination import copy, subtract
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
@@ -84,6 +85,7 @@ def last_lowest(q: Any, n: int) -> int:
     return p
 
 
+@inline
 def bring_up_to_date(s: int, waiting: int, n: int, work: Any) -> None:
     """Make the waiting changes in one column."""
     for k in range(waiting):
@@ -91,6 +93,7 @@ def bring_up_to_date(s: int, waiting: int, n: int, work: Any) -> None:
         work.vectors[SHARES + k, s] = 0.0
 
 
+@inline
 def advance(p: int, s: int, waiting: int, n: int, work: Any) -> None:
     """Exchange row p and column s, which is up to date; the change of the other columns is put on the list."""
     T, q = work.columns, work.vectors[SCALED_B]
@@ -115,6 +118,7 @@ def advance(p: int, s: int, waiting: int, n: int, work: Any) -> None:
     shares[s], T[s, p] = 0.0, reciprocal
 
 
+@inline
 def change_all(waiting: int, n: int, work: Any) -> int:
     """Make the waiting changes in all columns; returns how many are left: none."""
     T, change = work.columns, work.vectors[CHANGES : CHANGES + TOGETHER]
@@ -138,6 +142,7 @@ def change_column(column: Any, change: Any, d: float, e: float, f: float, g: flo
         column[i] += (d * t[i] + e * u[i]) + (f * v[i] + g * w[i])
 
 
+@inline
 def list_ties(s: int, n: int, work: Any) -> int:
     """List in TIED the rows that bound the entering variable of column s, the covering one alone if it does."""
     q, d, rows, growth = work.vectors[SCALED_B], work.columns[s], work.indices[TIED], work.vectors[TRIAL]
