@@ -112,7 +112,7 @@ def test_any_guess_is_harmless_and_a_good_one_is_quick(n, seed):
     assert n == 1 or solve_lcp(W, b, guess=s).iterations <= 1
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(st.integers(0, 40), st.integers(1, 6), seeds)
 def test_batch_is_one_by_one(m, n, seed):
     rng = np.random.default_rng(seed)
