@@ -11,6 +11,8 @@ from typing import Any
 
 from lcpstep.compiled import inline
 
+DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
+
 
 @inline
 def assign(x: Any, y: Any) -> None:
@@ -89,7 +91,11 @@ def positive_definite(A: Any) -> bool:
 
 def solve_definite(L: Any, x: Any) -> None:
     """X <- A^-1 x, with L from `positive_definite`."""
-    n = len(L)
+    solve_factored(L, len(L), x)
+
+
+def solve_factored(L: Any, n: int, x: Any) -> None:
+    """X[:n] <- (L L^T)^-1 x[:n] for the first n rows and columns of a lower triangle L."""
     for i in range(n):
         for j in range(i):
             x[i] -= L[i, j] * x[j]
@@ -98,3 +104,28 @@ def solve_definite(L: Any, x: Any) -> None:
         for j in range(i + 1, n):
             x[i] -= L[j, i] * x[j]
         x[i] /= L[i, i]
+
+
+def grow_factor(D: Any, L: Any, rows: Any, doubt: Any, k: int) -> bool:
+    """Row k of the Cholesky factor L of D[rows, rows]; False where it depends on those before, to rounding.
+
+    D is symmetric and positive semidefinite. `doubt` keeps the relative errors of the diagonal, in units of
+    rounding.
+    """
+    i = rows[k]
+    pivot = size_of_pivot = D[i, i]
+    for m in range(k):
+        total = D[i, rows[m]]
+        size = abs(total)
+        for n in range(m):
+            total -= L[k, n] * L[m, n]
+            size += abs(L[k, n] * L[m, n])
+        x = total / L[m, m]
+        L[k, m] = x
+        pivot -= x * x
+        size_of_pivot += 2.0 * abs(x) * (size / L[m, m] + abs(x) * doubt[m])
+    if not pivot > DEPENDENT * size_of_pivot:
+        return False
+    L[k, k] = math.sqrt(pivot)
+    doubt[k] = 0.5 * size_of_pivot / pivot
+    return True

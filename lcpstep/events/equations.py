@@ -16,7 +16,7 @@ import math
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import call
-from lcpstep.dense import assign, solve_definite
+from lcpstep.dense import assign, grow_factor, solve_definite, solve_factored
 from lcpstep.dynamics import gap_rates, gaps, product, total_force
 from lcpstep.events.flow import DIFFERENCE, free_acceleration, inside
 from lcpstep.model import ABSENT
@@ -39,7 +39,6 @@ N_MODE = 3
 HELD_ROWS, HELD_JOINTS, CULPRIT, MEMBERS, NEXT, SOUGHT = range(6)  # MEMBERS: contacts of the last problem
 N_NUMBER = 6
 
-DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
 REFINEMENTS = 6
 RESOLUTION = 2.0**-52
 NOISE = 64 * RESOLUTION
@@ -169,20 +168,9 @@ def measure(model: Any, joints: Any, s: Any, t: float) -> bool:
 
 def hold(s: Any, i: int) -> None:
     """Add row i to the rows held, unless it depends on them as far as rounding lets tell. Factor by Cholesky."""
-    k, pivot, doubt = s.number[HELD_ROWS], s.D[i, i], s.D[i, i]
-    for m in range(k):
-        total = s.D[i, s.row[m]]
-        size = abs(total)
-        for n in range(m):
-            total -= s.L[k, n] * s.L[m, n]
-            size += abs(s.L[k, n] * s.L[m, n])
-        x = total / s.L[m, m]
-        s.L[k, m] = x
-        pivot -= x * x
-        doubt += 2.0 * abs(x) * (size / s.L[m, m] + abs(x) * s.doubt[m])
-    if pivot > DEPENDENT * doubt:
-        s.L[k, k] = math.sqrt(pivot)
-        s.row[k], s.doubt[k] = i, 0.5 * doubt / pivot
+    k = s.number[HELD_ROWS]
+    s.row[k] = i
+    if grow_factor(s.D, s.L, s.row, s.doubt, k):
         s.number[HELD_ROWS] = k + 1
 
 
@@ -205,15 +193,8 @@ def hold_contacts(s: Any) -> None:
 
 
 def solve_held(s: Any, k: int, x: Any) -> None:
-    """x <- (L L^T)^-1 x for the k rows held."""
-    for i in range(k):
-        for j in range(i):
-            x[i] -= s.L[i, j] * x[j]
-        x[i] /= s.L[i, i]
-    for i in range(k - 1, -1, -1):
-        for j in range(i + 1, k):
-            x[i] -= s.L[j, i] * x[j]
-        x[i] /= s.L[i, i]
+    """X <- (L L^T)^-1 x for the k rows held."""
+    solve_factored(s.L, k, x)
 
 
 def bias_of(s: Any, i: int) -> float:

@@ -14,18 +14,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import call_solver, inline
+from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import product
 from lcpstep.recording import write_event
+from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.located_work import (
     A_TRY,
     ACCUMULATION,
     ALPHA,
+    BEFORE,
     CHOSEN,
     CLOSE_HITS,
     CLOSED,
     CLOSED_NOW,
+    CORNER,
     END,
     EVENT,
     EVENTS,
@@ -33,14 +36,13 @@ from lcpstep.stepping.located_work import (
     FREE,
     GAP,
     GAP_T,
-    GAP_TRY,
     GROUNDED,
     HALF,
     HITS,
     IMPACT,
     IMPULSE,
+    INERTIA,
     LAST,
-    LCP_CALLS,
     OLDER,
     OLDER_TIME,
     OPEN,
@@ -58,6 +60,7 @@ from lcpstep.stepping.located_work import (
     V,
     Z,
 )
+from lcpstep.stepping.refine import keep_closed, solve_chosen
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
@@ -71,21 +74,6 @@ def log(record: Any, count: Any, t: float, c: int, before: float, after: float, 
     """Note an event."""
     write_event(record.events[count[EVENT]], t, c, before, after, p, kind)
     count[EVENT] += 1
-
-
-@inline
-def solve_chosen(w: Any, W: Any, n: int, count: Any) -> bool:
-    """0 <= z, W z + b >= 0 on the chosen contacts."""
-    count[LCP_CALLS] += 1
-    if n == 1:
-        c = w.mark[CHOSEN, 0]
-        if W[c, c] > 0.0:
-            w.num[Z, 0] = max(0.0, -w.num[B, 0] / W[c, c])
-            return True
-    for i in range(n):
-        for j in range(n):
-            w.problem[i * n + j] = W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
-    return call_solver(w.solver, w.problem[: n * n].reshape((n, n)), w.num[B, :n], w.num[Z, :n], w.lcp) == 0
 
 
 # --- contact forces -------------------------------------------------------------------------------------------
@@ -107,7 +95,7 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
     rest = x[END] - x[SIGMA]
     W = w.WA[place] if plan.constant else w.W
     MG = w.AG[place] if plan.constant else w.MG
-    if not solve_chosen(w, W, n_k, count):
+    if not solve_chosen(m, plan, w, W, place if plan.constant else INERTIA, n_k, count):
         return False
     for i in range(n):
         w.vec[A_TRY, i] = abs(w.vec[FREE, i])
@@ -117,11 +105,11 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
             for i in range(n):
                 w.vec[A, i] += MG[c, i] * force
                 w.vec[A_TRY, i] += abs(MG[c, i] * force)
-    for i in range(n):
-        if abs(w.vec[A, i]) <= ROUNDING * w.vec[A_TRY, i]:
-            w.vec[A, i] = 0.0
-            if plan.plain and abs(w.vec[V, i]) <= ROUNDING * w.vec[A_TRY, i] * plan.h:
-                w.vec[V, i] = 0.0
+    zero_rounding(plan, w)
+    if plan.plain and n_k > 1:
+        L = w.problem[: n_k * n_k].reshape((n_k, n_k))
+        if keep_closed(w.G, W, MG, w.vec, w.num, w.mark, L, n_k):
+            zero_rounding(plan, w)
     for k in range(n_k):
         c, force = w.mark[CHOSEN, k], w.num[Z, k]
         if force == 0.0:
@@ -135,6 +123,16 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
         w.num[OLDER, c], w.num[OLDER_TIME, c] = force, t + 0.5 * rest
         w.num[FORCE_NOW, c] = force
     return True
+
+
+@inline
+def zero_rounding(plan: Any, w: Any) -> None:
+    """What is but rounding of the sums in w.vec[A_TRY] is zero: accelerations, and velocities that they made."""
+    for i in range(w.vec.shape[1]):
+        if abs(w.vec[A, i]) <= ROUNDING * w.vec[A_TRY, i]:
+            w.vec[A, i] = 0.0
+            if plan.plain and abs(w.vec[V, i]) <= ROUNDING * w.vec[A_TRY, i] * plan.h:
+                w.vec[V, i] = 0.0
 
 
 @inline
@@ -182,7 +180,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
             w.num[Z, n_k] = 0.5 * tau * w.num[FORCE_NOW, c]
             w.num[B, n_k] = product(w.G, w.vec[V], c) + w.num[GAP_T, c]
             n_k += 1
-    if not solve_chosen(w, w.W, n_k, count):
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_k, count):
         return False
     for k in range(n_k):
         c, p = w.mark[CHOSEN, k], w.num[Z, k]
@@ -209,8 +207,13 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
 
 @inline
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
-    """The impact of contact `first`, and of those that fire with it; how many took part, 0 if none was solved."""
-    n_s = choose_struck(plan, w, first)
+    """The impact of contact `first`, and of those that fire with it, or (CORNER) of those whose velocity jumps.
+
+    Returns how many took part, -1 where the impact was not solved.
+    """
+    n_s = choose_jumping(m, plan, w, x, t) if first == CORNER else choose_struck(plan, w, first)
+    if n_s == 0:
+        return 0
     if x[CLOSED_NOW] > 0:
         n_s = choose_connected(w, n_s)
     alone = n_s == 1
@@ -219,15 +222,17 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
         w.num[Z, k] = w.num[B, k] = w.num[P, c] = 0.0
         w.mark[PLASTIC, c] = 0
         if w.mark[STATUS, c] == OPEN:
-            w.mark[PLASTIC, c] = 1 if closes(m, plan, w, x, c, alone) else 0
+            w.mark[PLASTIC, c] = 1 if first != CORNER and closes(m, plan, w, x, c, alone) else 0
             r = 0.0 if w.mark[PLASTIC, c] == 1 else m.restitution[c]
-            w.num[B, k] = (1.0 + r) * w.num[RATE, c]
-    if not solve_chosen(w, w.W, n_s, count):
-        return 0
+            w.num[B, k] = w.num[RATE, c] + r * min(w.num[BEFORE, c], 0.0)
+        elif first == CORNER:
+            w.num[B, k] = w.num[RATE, c]
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, count):
+        return -1
     jump(w, n_s)
     still = 0.0
     for k in range(n_s):
-        still = max(still, ROUNDING * abs(w.num[GAP_TRY, w.mark[CHOSEN, k]]))
+        still = max(still, ROUNDING * abs(w.num[BEFORE, w.mark[CHOSEN, k]]))
     for k in range(n_s):
         after_impact(m, w, x, record, w.mark[CHOSEN, k], w.num[Z, k], t, still, count)
     x[EVENTS] += 1
@@ -246,6 +251,7 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
     touched = w.mark[GROUNDED, first] == 1 and w.num[LAST, first] < 0.0
     w.num[GAP, first], w.mark[GROUNDED, first] = 0.0, 1
     for c in range(w.num.shape[1]):
+        w.num[BEFORE, c] = w.num[RATE, c]
         if c != first and w.mark[STATUS, c] == OPEN and w.num[RATE, c] < 0.0 and w.num[GAP, c] <= plan.slack:
             pushed = touched and w.mark[GROUNDED, c] == 1 and w.num[LAST, c] < 0.0
             if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u):
@@ -261,6 +267,8 @@ def choose_connected(w: Any, n_s: int) -> int:
     n_c = w.num.shape[1]
     for c in range(n_c):
         w.num[P, c] = 1.0 if w.mark[STATUS, c] == CLOSED else 0.0  # still to be looked at
+    for k in range(n_s):
+        w.num[P, w.mark[CHOSEN, k]] = 0.0
     k = 0
     while k < n_s:
         for c in range(n_c):
@@ -313,8 +321,6 @@ def jump(w: Any, n_s: int) -> None:
     for i in range(n):
         if abs(w.vec[V, i]) <= ROUNDING * w.vec[V_TRY, i]:
             w.vec[V, i] = 0.0
-    for c in range(n_c):
-        w.num[GAP_TRY, c] = w.num[RATE, c]  # before
     for k in range(n_s):
         d, p = w.mark[CHOSEN, k], w.num[Z, k]
         if p > 0.0:
@@ -327,7 +333,7 @@ def after_impact(
     m: Any, w: Any, x: Any, record: Any, c: int, p: float, t: float, still: float, count: Any
 ) -> None:
     """Note the impact of a contact; the velocity it leaves with, to the last digit."""
-    r, before = m.restitution[c], w.num[GAP_TRY, c]
+    r, before = m.restitution[c], min(w.num[BEFORE, c], 0.0)
     w.num[IMPULSE, c] += p
     if w.mark[STATUS, c] == CLOSED:
         if p > 0.0:
@@ -363,13 +369,14 @@ def settle_rest(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     for c in range(n_c):
         w.mark[CHOSEN, c], w.num[Z, c] = c, 0.0
         w.num[B, c] = w.num[GAP, c] / rest + w.num[RATE, c] + rest * w.num[HALF, c]
-    if not solve_chosen(w, w.W, n_c, count):
+        w.num[BEFORE, c] = w.num[RATE, c]
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_c, count):
         return False
     jump(w, n_c)
     for c in range(n_c):
         w.num[IMPULSE, c] += w.num[Z, c]
         if w.num[Z, c] > 0.0:
-            log(record, count, t, c, w.num[GAP_TRY, c], w.num[RATE, c], w.num[Z, c], IMPACT)
+            log(record, count, t, c, w.num[BEFORE, c], w.num[RATE, c], w.num[Z, c], IMPACT)
         elif w.mark[STATUS, c] == CLOSED and w.num[RATE, c] > 0.0:
             release(w, record, count, x, c, t, w.num[RATE, c])
     return True

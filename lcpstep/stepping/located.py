@@ -333,8 +333,9 @@ class _Run:
         if status == Status.STEP_TOO_SMALL:
             return f"the tolerance {self.method.tolerance:g} cannot be met by any step {where}; expected a larger one"
         if status == Status.LCP_FAILED:
-            closed = np.flatnonzero(self.work.mark[work.STATUS]).tolist()
-            return f"no solution was found for the impact or the forces of closed contacts ({closed}) {where}"
+            n = int(self.count[work.MEMBERS])
+            contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
+            return f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together {where}"
         return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
 
 

@@ -13,20 +13,24 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
-from lcpstep.dynamics import external_force, gaps, obstacle, product
+from lcpstep.dynamics import external_force, gap_rates, gaps, obstacle, product
 from lcpstep.model import ABSENT
 from lcpstep.recording import LEAD, write_row
 from lcpstep.recording import TIME as ROW_TIME
+from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
 from lcpstep.stepping.located_work import (
+    A_FROM,
     ALPHA,
     BEND,
     BIAS,
     BUFFER_FULL,
+    CHANGE,
     CHOSEN,
     CLOSE_HITS,
     CLOSED,
     CLOSED_NOW,
+    CORNER,
     CUT,
     END,
     END_S,
@@ -47,13 +51,16 @@ from lcpstep.stepping.located_work import (
     HIGH,
     HITS,
     IMPULSE,
+    IMPULSE_FROM,
     LAST,
     LCP_FAILED,
     LOW,
     NEXT_FORCE,
     NEXT_TIME,
+    NOBODY,
     NOT_FINITE,
     OPEN,
+    Q_FROM,
     Q_TRY,
     RATE,
     ROUNDING,
@@ -64,6 +71,7 @@ from lcpstep.stepping.located_work import (
     TOO_MANY_EVENTS,
     UNCHANGED,
     UNDER_WAY,
+    V_FROM,
     V_TRY,
     WHOLE,
     A,
@@ -89,7 +97,6 @@ from lcpstep.stepping.smooth import (
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
 LATE = 1e-9  # of a step: what rounding may take from the last one's end
-NOBODY = -1
 
 
 def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
@@ -103,7 +110,7 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
     if plan.steady:
         for i in range(w.vec.shape[1]):
             w.vec[FREE, i] = product(plan.A_inverse[WHOLE], w.vec[FORCE], i)
-    measure(m, plan, w, t)
+    measure(m, plan, w, x, t)
     if plan.constant:
         respond(m, w)
         for c in range(w.num.shape[1]):
@@ -228,32 +235,36 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
     n_c = w.num.shape[1]
     settled = False
     while True:
-        if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
+        if count[EVENT] + 4 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
         if count[EVENT] > count[EVENTS_LEFT]:
             return TOO_MANY_EVENTS
+        c = NOBODY
         if x[SIGMA] >= x[END]:
             if x[END] >= plan.h:
                 return FINISHED
-            begin_interval(model, plan, w, x, count, t)
             settled = False
-        if not begin_piece(model, plan, w, x, record, t + x[SIGMA], count):
-            return LCP_FAILED if finite(w) else NOT_FINITE
-        rest = x[END] - x[SIGMA]
-        c, tau = NOBODY, rest
-        if not settled and x[EVENTS] > plan.per_step:
-            settled = True
-            count[CUT] += 1
-            if not settle_rest(model, plan, w, x, record, t + x[SIGMA], count):
-                return LCP_FAILED
-        if not settled:
-            c, tau = first_contact(plan, w, rest, t + x[END])
-            if c != NOBODY and not plan.plain:
-                c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
-        x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
-        code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
-        if code != FINISHED:
-            return code
+            c = CORNER if begin_interval(model, plan, w, x, count, t) else NOBODY
+        if c == NOBODY:
+            if not begin_piece(model, plan, w, x, record, t + x[SIGMA], count):
+                return LCP_FAILED if finite(w) else NOT_FINITE
+            rest = x[END] - x[SIGMA]
+            tau = rest
+            if not settled and x[EVENTS] > plan.per_step:
+                settled = True
+                count[CUT] += 1
+                if not settle_rest(model, plan, w, x, record, t + x[SIGMA], count):
+                    return LCP_FAILED
+            if not settled:
+                c, tau = first_contact(plan, w, rest, t + x[END])
+                if c != NOBODY and not plan.plain:
+                    c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
+                if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
+                    c, tau = NOBODY, rest
+            x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
+            code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
+            if code != FINISHED:
+                return code
         if c != NOBODY:
             code = event(model, plan, w, x, record, t, c, count)
             if code != FINISHED:
@@ -261,11 +272,15 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
 
 
 @inline
-def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> None:
-    """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends."""
-    now = t + x[SIGMA]
+def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> bool:
+    """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends.
+
+    Whether it begins at a corner at which velocities of gaps may jump.
+    """
+    now, turns = t + x[SIGMA], False
     if now >= x[HIGH] - plan.margin:
         x[LOW], x[HIGH] = find_corners(plan, now)
+        turns = obstacles_move(m)
         if m.linear and not plan.steady:
             external_force(m, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FORCE])
         elif not m.linear:
@@ -282,6 +297,7 @@ def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> N
         obstacle(m, end, w.vec[Q], w.vec[V])
         for c in range(w.num.shape[1]):
             w.num[END_S, c] = m.motion_now[c, 2]
+    return turns
 
 
 @inline
@@ -417,7 +433,12 @@ def move(
 ) -> int:
     """Go on to x[SIGMA] + tau; contacts that were closed all the way stay on the surface."""
     now = t + x[SIGMA]
-    keep_times(m, plan, w, x, record, count, now, now + tau)
+    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    wanted = count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < end
+    if wanted and plan.plain:
+        keep_times(m, plan, w, x, record, count, now, end)
+    elif wanted:
+        remember(w)
     if tau > 0.0:
         for c in range(w.num.shape[1]):
             w.mark[GROUNDED, c] = 0
@@ -439,7 +460,9 @@ def move(
                 return LCP_FAILED
             if penetrates(plan, w):
                 put_on_surface(m, plan, w, now + tau)
-            measure(m, plan, w, now + tau)
+            measure(m, plan, w, x, now + tau)
+    if wanted and not plan.plain:
+        keep_between(m, plan, w, x, record, count, now, tau, end)
     return FINISHED
 
 
@@ -455,9 +478,9 @@ def penetrates(plan: Any, w: Any) -> bool:
 
 @inline
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
-    """The impact of contact c at x[SIGMA], and what it changes."""
+    """The impact of contact c at x[SIGMA], or that of a corner, and what it changes."""
     now = t + x[SIGMA]
-    if w.num[RATE, c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
+    if c != CORNER and w.num[RATE, c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
         if w.num[RATE, c] == 0.0:
             stick(w, record, count, x, c, now)
@@ -467,8 +490,8 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
             return NOT_FINITE
         respond(m, w)
     n_s = strike(m, plan, w, x, record, c, now, count)
-    if n_s == 0:
-        return LCP_FAILED
+    if n_s <= 0:
+        return LCP_FAILED if n_s < 0 else FINISHED
     if plan.plain:  # rounding of the state must not add up over many impacts
         for k in range(n_s):
             d = w.mark[CHOSEN, k]
@@ -510,23 +533,6 @@ def height(m: Any, w: Any, c: int) -> float:
     return product(m.G, w.vec[Q], c) + m.offset[c]
 
 
-def find_corners(plan: Any, t: float) -> tuple[float, float]:
-    """The smooth interval that begins at t or holds it."""
-    low, high = -math.inf, math.inf
-    if len(plan.corners) == 0:
-        return low, high
-    turn = 0.0 if plan.period == math.inf else math.floor(t / plan.period) * plan.period
-    for k in range(-1, 3):
-        if k == 0 or plan.period < math.inf:
-            for corner in plan.corners:
-                time = corner + (turn + k * plan.period if plan.period < math.inf else 0.0)
-                if time <= t + plan.margin:
-                    low = max(low, time)
-                else:
-                    high = min(high, time)
-    return low, high
-
-
 @inline
 def finite(w: Any) -> bool:
     """Whether state and gaps are finite."""
@@ -550,10 +556,51 @@ def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: 
         for i in range(w.vec.shape[1]):
             w.vec[Q_TRY, i] = w.vec[Q, i] + tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
             w.vec[V_TRY, i] = w.vec[V, i] + tau * w.vec[A, i]
+        write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q_TRY], w.vec[V_TRY], w.num[IMPULSE])
+        count[ROW] += 1
+        count[NEXT_TIME] += 1
+
+
+def remember(w: Any) -> None:
+    """Note the base of a piece, within which states will be asked for once its end is known."""
+    assign(w.vec[Q_FROM], w.vec[Q])
+    assign(w.vec[V_FROM], w.vec[V])
+    assign(w.vec[A_FROM], w.vec[A])
+    assign(w.num[IMPULSE_FROM], w.num[IMPULSE])
+
+
+def keep_between(
+    m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, base: float, tau: float, end: float
+) -> None:
+    """Keep the states asked for within the piece that has been made, bent so that they meet the state at its end.
+
+    Velocities along the acceleration of the base alone would be of order one.
+    """
+    n, n_c, share = w.vec.shape[1], w.num.shape[1], 0.0
+    for c in range(n_c):
+        w.num[CHANGE, c] = w.num[IMPULSE, c] - w.num[IMPULSE_FROM, c]
+        w.num[IMPULSE, c] = w.num[IMPULSE_FROM, c]
+    while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < end:
+        t = record.times[count[NEXT_TIME]]
+        s = min(max(0.0, t - base), tau)
+        r = s / tau
+        for i in range(n):
+            q, v, a = w.vec[Q_FROM, i], w.vec[V_FROM, i], w.vec[A_FROM, i]
+            bent = w.vec[Q, i] - q - tau * (v + 0.5 * tau * a)
+            w.vec[Q_TRY, i] = q + s * (v + 0.5 * s * a) + r * r * r * bent
+            w.vec[V_TRY, i] = v + s * a + r * r * (w.vec[V, i] - v - tau * a)
+        for c in range(n_c):
+            w.num[IMPULSE, c] += (r - share) * w.num[CHANGE, c]
+        share = r
         settle_state(m, plan, w, x, t, w.vec[Q_TRY])
         write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q_TRY], w.vec[V_TRY], w.num[IMPULSE])
         count[ROW] += 1
         count[NEXT_TIME] += 1
+    for c in range(n_c):
+        w.num[IMPULSE, c] += (1.0 - share) * w.num[CHANGE, c]
+    if not plan.constant:  # `settle_state` has looked elsewhere
+        gap_rates(m, within(plan, x, base + tau), w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+        refactor(m, w, base + tau)
 
 
 @inline

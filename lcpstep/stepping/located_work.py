@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS = range(5)
-# Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact
-STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT = range(8)
-N_COUNTERS = 8
+# Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact, contacts
+# of the last problem of several
+STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS = range(9)
+N_COUNTERS = 9
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before
@@ -17,7 +18,9 @@ N_NUMBERS = 8
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
-WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest of one
+NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity jumps at a corner
+WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest of one;
+INERTIA = 2  # in their place: M alone
 
 EPS = 2.0**-52
 ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size
@@ -33,7 +36,11 @@ Q_BASE = 6
 Q_TRY = 7
 V_TRY = 8
 A_TRY = 9
-N_VEC = 10
+JOLT = 10  # change by the impulses or forces of several contacts
+Q_FROM = 11  # state, acceleration at the base of a piece within which states are kept
+V_FROM = 12
+A_FROM = 13
+N_VEC = 14
 # Rows of Work.num, a number per contact
 GAP = 0  # g
 RATE = 1  # u
@@ -53,7 +60,12 @@ IMPULSE = 14  # since the last kept state
 P = 15  # impulses of the event at hand
 B = 16  # of the complementarity problem at hand, and its solution
 Z = 17
-N_NUM = 18
+RESIDUAL = 18  # what the solution leaves, its correction, and the relative error of factors
+CHANGE = 19
+DOUBT = 20
+BEFORE = 21  # gap velocity just before a corner
+IMPULSE_FROM = 22  # impulses at the base of a piece within which states are kept
+N_NUM = 23
 # Rows of Work.mark, a whole number per contact
 STATUS = 0  # OPEN or CLOSED
 GROUNDED = 1  # the piece began at gap zero
@@ -61,7 +73,9 @@ HITS = 2  # impacts in this step
 CLOSE_HITS = 3  # the latest of them that came at hardly any distance
 PLASTIC = 4  # restitution of the event at hand is zero
 CHOSEN = 5  # contacts of the problem at hand
-N_MARK = 6
+HELD = 6  # those of them that carry an impulse or a force, and their places in the list
+PLACE = 7
+N_MARK = 8
 # Rows of Polynomial.vec (after Q and V) and of Polynomial.num
 Q_STAGE = 2
 V_STAGE = 3

@@ -174,12 +174,15 @@ def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
 
 @inline
 def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count: Any) -> bool:
-    """Runge-Kutta step of length L, and the quintic through both of its ends."""
+    """Runge-Kutta step of length L, and the quintic through both of its ends.
+
+    The changes are summed up without the state, beside which those of a very short step would be rounded away.
+    """
     n = w.vec.shape[1]
     good = acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], z.a[0], count)
     for i in range(n):
-        z.vec[Q_END, i] = w.vec[Q, i] + L * w.vec[V, i] / 6.0
-        z.vec[V_END, i] = w.vec[V, i] + L * z.a[0, i] / 6.0
+        z.vec[Q_END, i] = L * w.vec[V, i] / 6.0
+        z.vec[V_END, i] = L * z.a[0, i] / 6.0
         z.vec[V_STAGE, i] = w.vec[V, i]
     for k in range(1, 4):
         share = 1.0 if k == 3 else 0.5
@@ -193,12 +196,15 @@ def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count
         for i in range(n):
             z.vec[Q_END, i] += weight * z.vec[V_STAGE, i]
             z.vec[V_END, i] += weight * z.a[k, i]
-    good = good and acceleration(m, plan, w, x, t + L, z.vec[Q_END], z.vec[V_END], z.a[4], count)
+    for i in range(n):
+        z.vec[Q_STAGE, i] = w.vec[Q, i] + z.vec[Q_END, i]
+        z.vec[V_STAGE, i] = w.vec[V, i] + z.vec[V_END, i]
+    good = good and acceleration(m, plan, w, x, t + L, z.vec[Q_STAGE], z.vec[V_STAGE], z.a[4], count)
     z.scale[0] = L
     for i in range(n):
         c_1, c_2 = L * w.vec[V, i], 0.5 * L * L * z.a[0, i]
-        d = z.vec[Q_END, i] - w.vec[Q, i] - c_1 - c_2
-        d_v = L * z.vec[V_END, i] - c_1 - 2.0 * c_2
+        d = z.vec[Q_END, i] - c_1 - c_2
+        d_v = L * z.vec[V_END, i] - 2.0 * c_2
         d_a = L * L * z.a[4, i] - 2.0 * c_2
         z.T[0, i], z.T[1, i], z.T[2, i] = w.vec[Q, i], c_1, c_2
         z.T[3, i] = 10.0 * d - 4.0 * d_v + 0.5 * d_a
@@ -212,7 +218,7 @@ def state_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float) ->
     """State at tau after the base t of the piece, into z.vec[Q] and z.vec[V]."""
     n = w.vec.shape[1]
     if on_surface(m, plan, w, x):
-        surface_state(m, w, z, t + tau)
+        surface_state(m, plan, w, x, z, t + tau)
         return
     degree = DEGREE if plan.exact else QUINTIC
     s = tau / z.scale[0]
@@ -230,12 +236,15 @@ def state_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float) ->
 
 
 @inline
-def surface_state(m: Any, w: Any, z: Any, t: float) -> None:
-    """State of the one coordinate on its obstacle."""
+def surface_state(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> None:
+    """State of the one coordinate on its obstacle; at a corner with the velocity on the near side."""
+    inner = within(plan, x, t)
     for c in range(w.num.shape[1]):
         if w.mark[STATUS, c] == CLOSED:
             obstacle(m, t, w.vec[Q], w.vec[V])
             z.vec[Q, 0] = (m.motion_now[c, 0] - m.offset[c]) / m.G[c, 0]
+            if inner != t:
+                obstacle(m, inner, w.vec[Q], w.vec[V])
             z.vec[V, 0] = m.motion_now[c, 1] / m.G[c, 0]
 
 

@@ -12,11 +12,12 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
+from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import hold, release, settle_rest, stick, strike
 from lcpstep.stepping.located_loop import (
     LATE,
+    SAME_TIME,
     begin_step,
-    find_corners,
     finite,
     keep,
     penetrates,
@@ -28,6 +29,7 @@ from lcpstep.stepping.located_work import (
     CHOSEN,
     CLOSED,
     CLOSED_NOW,
+    CORNER,
     CUT,
     END,
     EPS,
@@ -117,7 +119,7 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
     """The rest of the step that began at t: from x[SIGMA] to its end."""
     n_c = w.num.shape[1]
     while True:
-        if count[EVENT] + 3 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
+        if count[EVENT] + 4 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
         if count[EVENT] > count[EVENTS_LEFT]:
             return TOO_MANY_EVENTS
@@ -127,9 +129,18 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
                 return FINISHED
             if now >= x[HIGH] - plan.margin:
                 x[LOW], x[HIGH] = find_corners(plan, now)
+                if obstacles_move(m):
+                    code = touch(m, plan, w, x, z, record, now, CORNER, count)
+                    if code != FINISHED:
+                        return code
             x[END] = plan.h
             if t + plan.h > x[HIGH] + plan.margin:
                 x[END] = max(x[HIGH] - t, x[SIGMA])
+            continue
+        if x[END] - x[SIGMA] <= SAME_TIME * (
+            abs(now) + plan.h
+        ):  # too short for positions to tell its ends apart
+            x[SIGMA] = x[END]
             continue
         length = min(x[END] - x[SIGMA], plan.longest)
         if not load(m, plan, w, x, record, now, count):
@@ -143,6 +154,8 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             return NOT_FINITE
         opening, stop = first_release(m, plan, w, x, z, now, length, count)
         landing, tau = first_landing(m, plan, w, x, z, now, stop)
+        if landing != NOBODY and at_corner(plan, x, now + tau):
+            landing, tau = NOBODY, stop
         ends = landing == NOBODY and opening == NOBODY and x[SIGMA] + length >= x[END] * (1.0 - EPS)
         code = follow(m, plan, w, x, z, record, t, tau, ends, count)
         if code != FINISHED:
@@ -194,7 +207,8 @@ def follow(
 ) -> int:
     """Go on to x[SIGMA] + tau along the polynomial."""
     now = t + x[SIGMA]
-    while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < now + tau:
+    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < end:
         state_at(m, plan, w, x, z, now, max(0.0, record.times[count[NEXT_TIME]] - now))
         settle_state(m, plan, w, x, record.times[count[NEXT_TIME]], z.vec[Q])
         keep_now(w, record, count, record.times[count[NEXT_TIME]], z.vec[Q], z.vec[V])
@@ -213,15 +227,15 @@ def follow(
     assign(w.vec[V], z.vec[V])
     for c in range(w.num.shape[1]):
         w.mark[GROUNDED, c] = 0
-    measure(m, plan, w, now + tau)
+    measure(m, plan, w, x, now + tau)
     if not on_surface(m, plan, w, x) and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
         if not plan.constant:
             if not refactor(m, w, now + tau):
                 return NOT_FINITE
             respond(m, w)
         put_on_surface(m, plan, w, now + tau)
-        slide(m, w, now + tau)
-        measure(m, plan, w, now + tau)
+        slide(m, w, within(plan, x, now + tau))
+        measure(m, plan, w, x, now + tau)
     return FINISHED
 
 
@@ -237,7 +251,7 @@ def slide(m: Any, w: Any, t: float) -> None:
 
 def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: int, count: Any) -> int:
     """Contact c lands at x[SIGMA]: an impact, or a touch without one."""
-    if w.num[RATE, c] >= 0.0:
+    if c != CORNER and w.num[RATE, c] >= 0.0:
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
         if w.num[RATE, c] == 0.0 or x[SIGMA] - w.num[LAST, c] <= STALLED * plan.h:
             stick(w, record, count, x, c, t)
@@ -255,8 +269,8 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
     for d in range(w.num.shape[1]):
         w.num[HALF, d] = 0.5 * (product(w.G, w.vec[A], d) + w.num[BIAS, d])
     n_s = strike(m, plan, w, x, record, c, t, count)
-    if n_s == 0:
-        return LCP_FAILED
+    if n_s <= 0:
+        return LCP_FAILED if n_s < 0 else FINISHED
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
         d = w.mark[CHOSEN, k]
         W, error = w.W[d, d], w.num[RATE, d] - product(w.G, w.vec[V], d) - w.num[GAP_T, d]

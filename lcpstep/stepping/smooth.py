@@ -185,10 +185,10 @@ def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
 
 
 @inline
-def measure(m: Any, plan: Any, w: Any, t: float) -> None:
+def measure(m: Any, plan: Any, w: Any, x: Any, t: float) -> None:
     """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
     gaps(m, t, w.vec[Q], w.vec[V], w.num[GAP])
-    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
+    gap_rates(m, within(plan, x, t), w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
     for c in range(w.num.shape[1]):
         w.num[RATE, c] = product(w.G, w.vec[V], c) + w.num[GAP_T, c]
         if w.mark[STATUS, c] == CLOSED:
@@ -307,5 +307,5 @@ def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any)
         for i in range(n):
             w.vec[V, i] += 0.5 * tau * (w.vec[A_TRY, i] + w.vec[A, i])
             w.vec[FREE, i] = w.vec[A_TRY, i]
-    measure(m, plan, w, t_next)
+    measure(m, plan, w, x, t_next)
     return True

@@ -238,3 +238,59 @@ def test_a_stiff_linear_chain_is_stable_at_any_step():
         energy = 0.5 * np.sum(m.v**2, axis=1) + 0.5 * np.einsum("ti,ij,tj->t", m.q, K, m.q)
         assert np.max(energy) <= energy[0] * (1 + 1e-9)
     assert simulate(scene, Moreau(1e-2)).status.name == "DONE"
+
+
+@pytest.mark.parametrize("ratio", [1e-9, 1e3, 1e6, 1e9, 1e12])
+def test_forces_between_bodies_of_very_different_mass_keep_all_digits(ratio):
+    h = 2.0**-10
+    m = simulate(scenes.heavy_on_light(ratio=ratio, t_end=0.25), Located(h))
+    weights = 9.81 * np.array([1.0 + ratio, ratio])
+    np.testing.assert_allclose(m.impulse[1:] / h, np.tile(weights, (len(m.t) - 1, 1)), rtol=1e-14)
+    assert np.all(m.v == 0.0)
+
+
+def test_a_heavy_body_on_light_ones_that_a_table_lifts_is_carried_with_all_digits():
+    # not at rest and not plain: the table rises with constant acceleration, so each contact carries m (g + a)
+    masses, lift = np.array([1.0, 1e9, 1.0]), 2.0
+
+    def rising(t, q, v, p, out):
+        out[:] = 0.0
+        out[0, 0], out[0, 1], out[0, 2] = 0.5 * p[0] * t * t, p[0] * t, p[0]
+
+    G = np.eye(3) - np.eye(3, k=-1)
+    scene = Scene(
+        system=LinearSystem(M=np.diag(masses), force=Harmonic(constant=-9.81 * masses)),
+        contacts=LinearContacts(G=G, restitution=0.0, motion=rising),
+        q0=np.zeros(3), v0=np.zeros(3), t_span=(0.0, 0.25), p=[lift],
+    )  # fmt: skip
+    h = 2.0**-8
+    m = simulate(scene, Located(h))
+    carried = (9.81 + lift) * np.cumsum(masses[::-1])[::-1]
+    np.testing.assert_allclose(m.impulse[1:] / h, np.tile(carried, (len(m.t) - 1, 1)), rtol=1e-13)
+    np.testing.assert_allclose(m.v, lift * np.tile(m.t[:, None], 3), rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("n", [3, 30, 100])
+def test_a_block_on_many_feet_lies_exactly_still(n):
+    m = simulate(scenes.block_on_feet(n=n, t_end=0.1), Located(2.0**-10))
+    assert np.all(m.v == 0.0)
+    assert np.all(m.q == 0.0)
+    forces = m.impulse[-1] / (m.t[-1] - m.t[-2])
+    assert np.min(forces) >= 0.0
+    assert np.sum(forces) == pytest.approx(9.81, rel=1e-12)
+    assert forces @ np.linspace(-0.5, 0.5, n) == pytest.approx(0.981, rel=1e-12)
+
+
+def test_two_walls_that_close_end_the_run_and_are_named():
+    def closing(t, q, v, p, out):
+        out[:] = 0.0
+        out[1, 0], out[1, 1] = 0.1 * t, 0.1
+        out[2, 0], out[2, 1] = 0.1 * t, 0.1
+
+    contacts = LinearContacts(G=[[0.0, 1.0], [1.0, 0.0], [-1.0, 0.0]], offset=[5.0, 0.0, 1.0], motion=closing)
+    scene = Scene(
+        system=LinearSystem(M=np.eye(2)), contacts=contacts, q0=[0.5, 0.0], v0=[0.0, 0.0], t_span=(0.0, 10.0)
+    )
+    m = simulate(scene, Located(0.01))
+    assert m.status.name == "LCP_FAILED"
+    assert "[1, 2]" in m.message
