@@ -12,7 +12,6 @@ import argparse
 import importlib.metadata
 import platform
 import time
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -56,25 +55,30 @@ def verdict(claimed: bool, found: float) -> str:
 
 
 def collect(set_of: list[Problem]) -> dict[str, list[tuple[Problem, str, float, float]]]:
-    """For every solver: problem, verdict, residual and seconds."""
-    outcome: dict[str, list[tuple[Problem, str, float, float]]] = {}
-    answers: dict[str, Iterable[Answer | None]] = {
-        name: map(solver, set_of) for name, solver in SOLVERS.items()
-    }
+    """For every solver: problem, verdict, residual and seconds.
+
+    Each problem goes to all solvers in turn, so that the ratio of two times does not depend on what else the
+    machine does meanwhile.
+    """
+    outcome: dict[str, list[tuple[Problem, str, float, float]]] = {name: [] for name in SOLVERS}
+
+    def note(name: str, problem: Problem, answer: Answer) -> None:
+        z, claimed, seconds = answer
+        r = error(problem, z)
+        outcome[name].append((problem, verdict(claimed, r), r, seconds))
+
+    for problem in set_of:
+        for name, solver in SOLVERS.items():
+            answer = solver(problem)
+            if answer is not None:
+                note(name, problem, answer)
     from_siconos = siconos(set_of)
     if from_siconos is None:
         print("Siconos is not installed for the system's python3: left out")
     else:
-        answers["Siconos Lemke"] = from_siconos
-    for name, found in answers.items():
-        rows = []
-        for problem, answer in zip(set_of, found, strict=True):
-            if answer is not None:
-                z, claimed, seconds = answer
-                r = error(problem, z)
-                rows.append((problem, verdict(claimed, r), r, seconds))
-        outcome[name] = rows
-        print(f"{name}: {len(rows)} problems")
+        outcome["Siconos Lemke"] = []
+        for problem, answer in zip(set_of, from_siconos, strict=True):
+            note("Siconos Lemke", problem, answer)
     return outcome
 
 

@@ -78,10 +78,10 @@ def bare_qp(name: str, problem: Problem) -> Answer | None:
 
 SOLVERS: dict[str, Callable[[Problem], Answer | None]] = {
     "lcpstep lemke": partial(ours, "lemke"),
+    "quantecon lcp_lemke": quantecon,
     "lcpstep auto": partial(ours, "auto"),
     "lcpstep newton": partial(ours, "newton"),
     "lcpstep qp (osqp)": partial(ours, "qp"),
-    "quantecon lcp_lemke": quantecon,
     **{
         f"bare {name}": partial(bare_qp, name)
         for name in ("osqp", "daqp", "quadprog", "piqp", "clarabel", "proxqp")
