@@ -1,148 +1,156 @@
-"""Steps of `Located` chosen by an error estimate: one step of h is compared with two of h/2, which are kept.
+"""Steps chosen by an error estimate: one step of h is compared with two of h/2, which are kept.
 
-A step is accepted where the difference, as large as tolerance * (1 + size of the motion) allows over the whole span,
-takes no more than its share h / span of that. So errors of the whole motion are proportional to the tolerance, up to
-what the motion itself magnifies. Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are made
-once, and an end of the span that is met exactly. Velocities count where both runs had the same events: an impact
-that one of them sees just after the end of the step is no error. Source: E. Hairer, S. P. Norsett, G. Wanner, Solving
-Ordinary Differential Equations I (1993), section II.4.
+A step is accepted where its error, relative to 1 + the size of the motion, takes no more than its share h / span of
+the tolerance. So errors of the whole motion are proportional to the tolerance, up to what the motion itself
+magnifies. Steps with events, and those that hold a jump of the forces, are few, and their errors fall no faster than
+h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller.
+
+Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are made once, an end of the span that is
+met exactly, and a bisection for whatever asks for short steps. This file decides; the loops of the methods
+(`adaptive_moreau`, `adaptive_located`) take the steps and measure their errors. Source: E. Hairer, S. P. Norsett,
+G. Wanner, Solving Ordinary Differential Equations I (1993), section II.4.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lcpstep.stepping import located_work as work
+from lcpstep.compiled import inline
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
-from lcpstep.trajectory import Status
 
-LEVELS = 30  # halvings of the longest step
-SAFE = 0.1  # of what is allowed: twice the step, eight times the error, may then be accepted
-LEAST_SHARE = 1e-3  # of the span, in steps with events: they are few, and releases are not smooth
-LOOK = 256  # steps between two looks at the outside world
-
-
-class State:
-    """A copy of all that steps change."""
-
-    def __init__(self, run: Any) -> None:
-        w = run.work
-        self.arrays = [w.vec, w.num, w.mark, w.G, w.MG, w.W, w.M, run.x, run.count]
-        self.saved = [a.copy() for a in self.arrays]
-        self.where = run.plan, run.t0, run.first
-
-    def restore(self, run: Any) -> None:
-        """Go back there; work that was done stays counted."""
-        done = [int(run.count[i]) for i in (work.LCP_CALLS, work.FORCES)]
-        for a, saved in zip(self.arrays, self.saved, strict=True):
-            a[...] = saved
-        run.count[work.LCP_CALLS], run.count[work.FORCES] = done
-        run.plan, run.t0, run.first = self.where
+# Why a loop returned, besides its method's own reasons: to have its buffers emptied, and for good
+PAUSED, TOO_SMALL = -1, -2
+ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
+LEVELS = 52  # halvings of the longest step, at most
+LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
+FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
+NOISE = 8 * RESOLUTION  # relative differences that are rounding
+PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
+LOOK = 4096  # steps between two looks at the outside world
+# Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
+POSITION, LEVEL, END, FINEST = range(4)
+# Places in Control.real; the last: error of the attempt before, if that failed at the same place
+START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST = range(8)
 
 
-class Ladder:
-    """Steps of h_max / 2^k, taken from the present state."""
+class Control(NamedTuple):
+    """Where the run is, and what it allows."""
 
-    def __init__(self, run: Any, h_max: float, t_start: float) -> None:
-        self.run, self.h_max, self.t_start = run, h_max, t_start
-        self.plans: dict[int, work.Plan] = {}
-
-    def h(self, level: int) -> float:
-        """Step of a level [s]."""
-        return math.ldexp(self.h_max, -level)
-
-    def take(self, level: int, steps: int, t: float) -> int:
-        """Steps of one size from time t; the code of the loop."""
-        run = self.run
-        if level not in self.plans:
-            run.prepare(self.h(level))
-            self.plans[level] = run.plan
-        run.use(self.plans[level])
-        run.t0, run.first = t, int(run.count[work.STEP])
-        run.x[work.UNCHANGED] = 0.0
-        return int(run.steps(run.recorder.buffers, t, run.first, run.first + steps))
+    whole: Any  # (4,)
+    real: Any  # (8,)
 
 
-def advance(run: Any, tolerance: float, progress: Callable[[float], None]) -> Status:
-    """The whole span of a run in steps that meet the tolerance."""
-    t_start, t_end = run.scene.t_span
-    span = t_end - t_start
-    coarse = max(1, math.ceil(span / run.method.h - WHOLE))
-    ladder = Ladder(run, span / coarse, t_start)
-    finest = LEVELS
-    while finest > 0 and ladder.h(finest + 1) < 8.0 * RESOLUTION * max(abs(t_start), abs(t_end)):
-        finest -= 1
-    position, end, level, tried = 0, coarse << LEVELS, 0, 0
-    size = sizes(run)
-    while position < end:
-        t = t_start + math.ldexp(ladder.h_max * position, -LEVELS)
-        code, error, size_now = attempt(run, ladder, level, t, span, size)
-        if code != work.FINISHED or not error <= tolerance:
-            if level < finest:
-                level += 1
-                continue
-            return FAILED.get(code, Status.STEP_TOO_SMALL)
-        position += 1 << (LEVELS - level)
-        size = np.maximum(size, size_now)
-        tried += 1
-        if filled(run) or tried % LOOK == 0 or position == end:
-            run.empty()
-            progress(run.now)
-        if error <= SAFE * tolerance and level > 0 and position % (1 << (LEVELS - level + 1)) == 0:
-            level -= 1
-    return Status.DONE
+class Steps(Protocol):
+    """What a method gives to `advance`."""
+
+    def attempts(self) -> int:
+        """Take steps until the loop returns; say why."""
+
+    def undo(self) -> None:
+        """Go back to the start of the step that was interrupted."""
 
 
-def attempt(
-    run: Any, ladder: Ladder, level: int, t: float, span: float, size: NDArray[np.float64]
-) -> tuple[int, float, NDArray[np.float64]]:
-    """One step of a level in two halves, its error relative to its share; the state from before where one fails."""
-    before = State(run)
-    try:
-        code = ladder.take(level, 1, t)
-        one, events = run.work.vec[[work.Q, work.V]].copy(), happened(run, before)
-        before.restore(run)
-        if code == work.FINISHED:
-            code = ladder.take(level + 1, 2, t)
-        two, events_two = run.work.vec[[work.Q, work.V]], happened(run, before)
-        size_now = sizes(run)
-        difference = np.max(np.abs(one - two), axis=1) / (1.0 + np.maximum(size, size_now))
-        error = float(difference[0] if events != events_two else np.max(difference))
-        h = ladder.h(level)
-        error /= max(h / span, LEAST_SHARE if events or events_two else 0.0)
-    except BaseException:
-        before.restore(run)
-        raise
-    if code != work.FINISHED or not error <= run.method.tolerance:
-        before.restore(run)
-    return code, error, size_now
+def control(span: tuple[float, float], h: float, tolerance: float, order: int) -> Control:
+    """For steps of at most h over a span, by a method of the given order."""
+    start, end = span
+    coarse = max(1, math.ceil((end - start) / h - WHOLE))
+    h_max = (end - start) / coarse
+    least = 8.0 * RESOLUTION * max(abs(start), abs(end))
+    finest = min(LEVELS, 62 - coarse.bit_length())
+    if least > 0.0:
+        finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
+    whole = np.array([0, 0, coarse << finest, finest], dtype=np.int64)
+    enough = PLENTY * 0.5**order
+    return Control(whole, np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf]))
 
 
-def sizes(run: Any) -> NDArray[np.float64]:
-    """Largest coordinate and largest velocity."""
-    largest: NDArray[np.float64] = np.max(np.abs(run.work.vec[[work.Q, work.V]]), axis=1)
-    return largest
+def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
+    """The whole span; 0, or why it could not be reached. `arrive` is called where the loop has returned to Python."""
+    while True:
+        try:
+            code = steps.attempts()
+        except BaseException:
+            steps.undo()
+            arrive()
+            raise
+        arrive()
+        progress(now(c))
+        if code != PAUSED:
+            return code
 
 
-def happened(run: Any, before: State) -> list[tuple[float, float]]:
-    """Contact and kind of each event since then."""
-    first, last = int(before.saved[-1][work.EVENT]), int(run.count[work.EVENT])
-    return [(e[1], e[5]) for e in run.recorder.buffers.events[first:last].tolist()]
+@inline
+def step_size(c: Any, level: int) -> float:
+    """Step of a level [s]."""
+    return c.real[H_MAX] * 0.5**level
 
 
-def filled(run: Any) -> bool:
-    """Whether the buffers are half full."""
-    b = run.recorder.buffers
-    return bool(2 * run.count[work.ROW] > len(b.rows) or 2 * run.count[work.EVENT] > len(b.events))
+@inline
+def now(c: Any) -> float:
+    """Time at which the step begins [s]."""
+    return c.real[START] + c.real[H_MAX] * (c.whole[POSITION] * 0.5 ** c.whole[FINEST])
 
 
-FAILED = {
-    work.NOT_FINITE: Status.NOT_FINITE,
-    work.LCP_FAILED: Status.LCP_FAILED,
-    work.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
-}
+@inline
+def over(c: Any) -> bool:
+    """Whether the end of the span is reached."""
+    return c.whole[POSITION] >= c.whole[END]
+
+
+@inline
+def resolved(c: Any, place: int) -> float:
+    """Error that a step with events may make, of positions (place SIZE_Q) or velocities (SIZE_V)."""
+    return LEAST_SHARE * c.real[TOLERANCE] * (1.0 + c.real[place])
+
+
+def judge(c: Any, failed: bool, apart_q: float, apart_v: float, q: Any, v: Any, event: bool) -> int:
+    """Whether a step to q, v whose errors are apart_q, apart_v is accepted; sets the next one's place and level."""
+    level, x = c.whole[LEVEL], c.real
+    size_q, size_v = max(x[SIZE_Q], largest(q)), max(x[SIZE_V], largest(v))
+    noise = min(NOISE, LEAST_SHARE * x[TOLERANCE])
+    error = max(apart_q / (1.0 + size_q), apart_v / (1.0 + size_v)) - noise
+    allowed = step_size(c, level) / x[SPAN]
+    if event or FLAT * error > x[LAST]:
+        allowed = max(allowed, LEAST_SHARE)
+    allowed *= x[TOLERANCE]
+    if x[TOLERANCE] < NOISE:  # no step is that good
+        return GIVEN_UP
+    if failed or not error <= allowed:
+        x[LAST] = math.inf if failed else error
+        if level >= c.whole[FINEST]:
+            return GIVEN_UP
+        c.whole[LEVEL] = level + 1
+        return AGAIN
+    x[SIZE_Q], x[SIZE_V], x[LAST] = size_q, size_v, math.inf
+    c.whole[POSITION] += 1 << (c.whole[FINEST] - level)
+    fits = level > 0 and c.whole[POSITION] % (1 << (c.whole[FINEST] - level + 1)) == 0
+    if fits and error <= x[ENOUGH] * allowed:
+        c.whole[LEVEL] = level - 1
+    return ACCEPTED
+
+
+@inline
+def largest(x: Any) -> float:
+    """Largest entry, in magnitude."""
+    most = 0.0
+    for i in range(len(x)):
+        most = max(most, abs(x[i]))
+    return most
+
+
+@inline
+def distance(x: Any, y: Any) -> float:
+    """Largest difference of two vectors."""
+    most = 0.0
+    for i in range(len(x)):
+        most = max(most, abs(x[i] - y[i]))
+    return most
+
+
+def too_small(tolerance: float | None, where: str) -> str:
+    """A tolerance that no step meets, in words."""
+    return f"the tolerance {tolerance:g} cannot be met by any step {where}; expected a larger one"

@@ -17,8 +17,8 @@ from lcpstep.compiled import compiled, jit_disabled, solver_address
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, require
-from lcpstep.recording import Kept, Record, Recorder
-from lcpstep.stepping import adaptive, interpolation, polynomial_loop
+from lcpstep.recording import Kept, Recorder
+from lcpstep.stepping import adaptive, adaptive_located, interpolation, polynomial_loop
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
 from lcpstep.stepping.steps import WHOLE, check_resolved
@@ -53,13 +53,12 @@ class Located:
         which loses energy that elastic contacts would keep; the run's message says how many steps that were
 
     tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
-        tolerance * (1 + size of the motion) over the span, in the scene's units; with order 2 only. A tolerance that
-        cannot be met ends the run with the status STEP_TOO_SMALL
+        tolerance * (1 + size of the motion) over the span, in the scene's units. A tolerance that cannot be met ends
+        the run with the status STEP_TOO_SMALL
 
     Raises
     ------
-    ValueError   h, a bound or the tolerance is not positive
-    LcpStepError   a tolerance is given with an order other than 2
+    ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
 
     Notes
     -----
@@ -85,9 +84,9 @@ class Located:
         object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
-            if self.order != 2:
-                raise LcpStepError(
-                    f"tolerance: steps are adapted with order=2 only, got order={self.order!r}"
+            if self.order == "exact":
+                raise ValueError(
+                    'tolerance: order="exact" makes no error that steps could control; expected None'
                 )
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
@@ -186,6 +185,8 @@ class _Run:
         self.fast = fast and not jit_disabled()
         self.plan = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, self.plan, self.fast)
+        run: Callable[..., int] = loop.run if method.order == 2 else polynomial_loop.run
+        self.run = compiled(run) if self.fast else run
         self.x = np.zeros(work.N_NUMBERS)
         self.piece = polynomial(scene.n_q, scene.n_c)
         self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 8)
@@ -195,27 +196,14 @@ class _Run:
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        (t_start, t_end), h = self.scene.t_span, self.method.h
-        steps = (t_end - t_start) / h
-        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
-        status = Status.DONE
+        (t_start, t_end), tolerance = self.scene.t_span, self.method.tolerance
         try:
             begin = compiled(loop.begin) if self.fast else loop.begin
-            self.prepare((t_end - t_start) / whole if whole and abs(steps - whole) <= WHOLE else h)
+            self.prepare(min(self.method.h, t_end - t_start))
             code = begin(self.model, self.plan, self.work, self.x, self.recorder.buffers, self.count, t_start)
             status = STATUS[code]
-            if status == Status.DONE and self.method.tolerance is not None:
-                status = self.adapted(self.method.tolerance, progress)
-            elif status == Status.DONE and whole > 0:
-                status = self.portions(t_start, 0, whole, progress)
-            if (
-                status == Status.DONE
-                and self.method.tolerance is None
-                and (whole == 0 or abs(steps - whole) > WHOLE)
-            ):
-                t_last = t_start + whole * h
-                self.prepare(t_end - t_last)
-                status = self.portions(t_last, whole, whole + 1, progress)
+            if status == Status.DONE:
+                status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
@@ -223,49 +211,85 @@ class _Run:
             raise SimulationError(result.message, result)
         return result
 
-    def prepare(self, h: float) -> None:
-        """Constants for steps of size h."""
-        self.use(plan(self.scene, self.model, self.method, h))
+    def even(self, progress: Callable[[float], None]) -> Status:
+        """The whole run in steps of one size, and a last one where that does not divide the span."""
+        (t_start, t_end), h = self.scene.t_span, self.method.h
+        steps = (t_end - t_start) / h
+        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
+        status = Status.DONE
+        if whole > 0:
+            self.prepare((t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h)
+            status = self.portions(t_start, 0, whole, progress)
+        if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
+            t_last = t_start + whole * h
+            self.prepare(t_end - t_last)
+            status = self.portions(t_last, whole, whole + 1, progress)
+        return status
 
-    def use(self, p: work.Plan) -> None:
-        """Take these constants for the steps to come."""
-        self.plan = p
-        respond(self.model, p, self.work)
+    def prepare(self, h: float) -> None:
+        """Take steps of size h from now on."""
+        self.plan = plan(self.scene, self.model, self.method, h)
+        respond(self.model, self.plan, self.work)
 
     def adapted(self, tolerance: float, progress: Callable[[float], None]) -> Status:
-        """The whole run in steps of any size that meet the tolerance."""
-        self.t0 = self.scene.t_span[0]
+        """The whole run in steps that meet the tolerance."""
+        control = adaptive.control(self.scene.t_span, self.method.h, tolerance, int(self.method.order))
+        steps = adaptive_located.Attempts(
+            self.made, self.one, self.work, self.x, self.recorder.buffers, self.count, control,
+            self.plan.constant, self.fast,
+        )  # fmt: skip
+
+        def arrive() -> None:
+            self.t0, self.first = adaptive.now(control), int(self.count[work.STEP])
+            self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
+            self.empty()
+            self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
+
         try:
-            return adaptive.advance(self, tolerance, progress)
+            arrive()
+            return STATUS[adaptive.advance(steps, control, arrive, progress)]
         except Exception as error:  # a callback in plain Python; compiled code raises nothing
-            message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
-            raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+            raise self.failed(error) from error
+
+    def made(self, h: float) -> tuple[work.Plan, work.Work]:
+        """Constants of steps of size h, and the work space with the responses of these."""
+        w = self.work._replace(AG=self.work.AG.copy(), WA=self.work.WA.copy())
+        p = plan(self.scene, self.model, self.method, h)._replace(slack=self.plan.slack)
+        respond(self.model, p, w)
+        return p, w
+
+    def one(self, p: work.Plan, w: work.Work, t: float) -> int:
+        """One step from time t."""
+        first = int(self.count[work.STEP])
+        return self.steps(p, w, t, first, first + 1)
+
+    def failed(self, error: Exception) -> SimulationError:
+        """What a callback in plain Python makes of a run."""
+        message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
+        return SimulationError(message, self.trajectory(Status.NOT_FINITE))
 
     def portions(self, t0: float, first: int, last: int, progress: Callable[[float], None]) -> Status:
         """Steps first .. last - 1 of the run, all of one size."""
-        count, b = self.count, self.recorder.buffers
+        count = self.count
         self.t0, self.first = t0, first
         code = work.FINISHED
         while count[work.STEP] < last and code in (work.FINISHED, work.BUFFER_FULL):
             goal = min(last, int(count[work.STEP]) + PORTION)
             try:
-                code = self.steps(b, t0, first, goal)
+                count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
+                code = self.steps(self.plan, self.work, t0, first, goal)
             except Exception as error:  # a callback in plain Python; compiled code raises nothing
-                message = f"a callback failed in the step from t = {self.now:.9g} s: {error}"
-                raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+                raise self.failed(error) from error
             self.empty()
             progress(self.now)
         return STATUS[code]
 
-    def steps(self, b: Record, t0: float, first: int, goal: int) -> int:
+    def steps(self, p: work.Plan, w: work.Work, t0: float, first: int, goal: int) -> int:
         """Steps up to `goal`, by the kernel of the method's order."""
-        m, p, w, x, count = self.model, self.plan, self.work, self.x, self.count
-        count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
+        m, x, b, count = self.model, self.x, self.recorder.buffers, self.count
         if self.method.order == 2:
-            run = compiled(loop.run) if self.fast else loop.run
-            return int(run(m, p, w, x, b, count, t0, first, goal))
-        run = compiled(polynomial_loop.run) if self.fast else polynomial_loop.run
-        return int(run(m, p, w, x, self.piece, b, count, t0, first, goal))
+            return int(self.run(m, p, w, x, b, count, t0, first, goal))
+        return int(self.run(m, p, w, x, self.piece, b, count, t0, first, goal))
 
     @property
     def now(self) -> float:
@@ -331,7 +355,7 @@ class _Run:
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.STEP_TOO_SMALL:
-            return f"the tolerance {self.method.tolerance:g} cannot be met by any step {where}; expected a larger one"
+            return adaptive.too_small(self.method.tolerance, where)
         if status == Status.LCP_FAILED:
             n = int(self.count[work.MEMBERS])
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
@@ -340,6 +364,7 @@ class _Run:
 
 
 STATUS = {
+    adaptive.TOO_SMALL: Status.STEP_TOO_SMALL,
     work.FINISHED: Status.DONE,
     work.BUFFER_FULL: Status.DONE,
     work.NOT_FINITE: Status.NOT_FINITE,

@@ -19,7 +19,7 @@ from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import Model, culprit, model, models
 from lcpstep.recording import Kept, Recorder
-from lcpstep.stepping import constrained, interpolation, sparse
+from lcpstep.stepping import adaptive, adaptive_moreau, constrained, interpolation, sparse
 from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
@@ -37,15 +37,20 @@ class Moreau:
 
     Parameters
     ----------
-    h : step [s]; the last step is shortened where h does not divide the span
+    h : step [s]; the last step is shortened where h does not divide the span. With a tolerance: the longest step
     theta : 0 explicit, 1/2 trapezoidal (keeps the energy of linear systems), 1 implicit
     lcp : solver of the complementarity problems, "lemke" (compiled with the loop) or any name that
         `lcpstep.solve_lcp` takes: "qp", "qp:daqp", ...; joints, friction and projection take "lemke" only
     projected : put positions back onto joints and out of obstacles at the end of every step
+    tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
+        tolerance * (1 + size of the motion) over the span, in the scene's units. Steps are short where something
+        strikes; contacts that close slower than the tolerance resolves do not rebound. Takes "lemke" and dense scenes
+        only; a tolerance that cannot be met ends the run with the status STEP_TOO_SMALL
 
     Raises
     ------
-    ValueError   h is not positive, theta lies outside [0, 1], or the solver's name is unknown
+    ValueError   h or the tolerance is not positive, theta lies outside [0, 1], or the solver's name is unknown
+    LcpStepError   a tolerance is given with another solver than "lemke"
     MissingSolver   the solver is not installed
 
     Notes
@@ -59,11 +64,16 @@ class Moreau:
     theta: float = 0.5
     lcp: str = "lemke"
     projected: bool = False
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
         check_method(self.lcp)
+        if self.tolerance is not None:
+            object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
+            if self.lcp != "lemke":
+                raise LcpStepError(f'tolerance: steps are adapted with lcp="lemke" only, got {self.lcp!r}')
 
     def beyond_contacts(self, scene: Scene) -> bool:
         """Whether the scene's steps have more in them than frictionless contacts."""
@@ -78,6 +88,10 @@ class Moreau:
                 f"compiled with the loop; got {self.lcp!r} for {scene.name!r}"
             )
         if sparse.is_sparse(scene) and not self.beyond_contacts(scene):
+            if self.tolerance is not None:
+                raise LcpStepError(
+                    f"tolerance: scenes with sparse matrices take steps of one size; expected None for {scene.name!r}"
+                )
             return sparse.Run(self, scene, kept).finish(progress)
         return _Run(self, scene, kept).finish(progress)
 
@@ -154,6 +168,7 @@ class _Run:
         else:
             self.model, fast = model(scene)
             fast = fast and not jit_disabled()
+        self.fast = fast
         never = (loop.linearise,) if self.model.linear and not self.extra else ()
         steps: Callable[..., int] = constrained.run if self.extra else loop.run
         self.kernel = compiled(steps, never) if fast else steps
@@ -170,27 +185,34 @@ class _Run:
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        (t_start, t_end), h = self.scene.t_span, self.method.h
-        steps = (t_end - t_start) / h
-        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
-        status = Status.DONE
+        t_start, tolerance = self.scene.t_span[0], self.method.tolerance
         try:
             self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start)
-            if whole > 0:
-                exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
-                status = self.portions(
-                    plan(self.model, exact, self.method.theta, self.slack), t_start, 0, whole, progress
-                )
-            if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
-                t_last = t_start + whole * h
-                rest = plan(self.model, t_end - t_last, self.method.theta, self.slack)
-                status = self.portions(rest, t_last, whole, whole + 1, progress)
+            status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
         return result
+
+    def even(self, progress: Callable[[float], None]) -> Status:
+        """The whole run in steps of one size, and a last one where that does not divide the span."""
+        (t_start, t_end), h = self.scene.t_span, self.method.h
+        steps = (t_end - t_start) / h
+        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
+        status = Status.DONE
+        if whole > 0:
+            exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
+            status = self.portions(self.plan_for(exact), t_start, 0, whole, progress)
+        if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
+            t_last = t_start + whole * h
+            status = self.portions(self.plan_for(t_end - t_last), t_last, whole, whole + 1, progress)
+        return status
+
+    def plan_for(self, h: float) -> loop.Plan:
+        """What steps of size h multiply with."""
+        return plan(self.model, h, self.method.theta, self.slack)
 
     def portions(
         self, p: loop.Plan, t0: float, first: int, last: int, progress: Callable[[float], None]
@@ -209,8 +231,7 @@ class _Run:
                     else:
                         code = self.kernel(*arguments, external, solved)
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
-                    message = f"a callback failed in the step from t = {self.now:.9g} s: {error}"
-                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+                    raise self.failed(error) from error
                 solved = False
                 if code == loop.LOG_FULL:
                     self.empty()
@@ -225,6 +246,38 @@ class _Run:
             if count[loop.STEP] < goal:
                 return STATUS[code]
         return Status.DONE
+
+    def adapted(self, tolerance: float, progress: Callable[[float], None]) -> Status:
+        """The whole run in steps that meet the tolerance."""
+        method, span = self.method, self.scene.t_span
+        control = adaptive.control(span, method.h, tolerance, 2 if method.theta == 0.5 else 1)
+        self.plan = self.plan_for(adaptive.step_size(control, 0))
+        constraints = self.extra[0] if self.extra else None
+        steps = adaptive_moreau.Attempts(
+            self.plan_for,
+            self.model,
+            self.state,
+            self.recorder.buffers,
+            self.count,
+            control,
+            constraints,
+            self.fast,
+        )
+
+        def arrive() -> None:
+            self.t0, self.first = adaptive.now(control), int(self.count[loop.STEP])
+            self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
+            self.empty()
+
+        try:
+            return STATUS[adaptive.advance(steps, control, arrive, progress)]
+        except Exception as error:  # a callback in plain Python; compiled code raises nothing
+            raise self.failed(error) from error
+
+    def failed(self, error: Exception) -> SimulationError:
+        """What a callback in plain Python makes of a run."""
+        message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
+        return SimulationError(message, self.trajectory(Status.NOT_FINITE))
 
     def solve_outside(self) -> bool:
         """Hand the active problem to the named solver; whether it was solved."""
@@ -272,9 +325,14 @@ class _Run:
                 steps=int(count[loop.STEP]), lcp_calls=int(count[loop.LCP_CALLS]),
                 force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],
             ),
-            dense=interpolation.linear(t, q, v, self.kept.all),
+            dense=self.between()(t, q, v, self.kept.all),
             joint_impulse=joint, friction_impulse=friction,
         )  # fmt: skip
+
+    def between(self) -> Callable[..., interpolation.Between]:
+        """How states between kept ones follow from them: long steps are parabolas."""
+        adapted = self.method.tolerance is not None and adaptive_moreau.bending(self.method.theta) == 1.0
+        return interpolation.parabolic if adapted else interpolation.linear
 
     def message(self, status: Status) -> str:
         """How the run ended, in words."""
@@ -292,12 +350,16 @@ class _Run:
             return f"joints {joints} contradict each other {step} {where}"
         if status == Status.PROJECTION_FAILED:
             return f"no position near satisfies all joints and contacts {step} {where}"
+        if status == Status.STEP_TOO_SMALL:
+            return adaptive.too_small(self.method.tolerance, where)
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
         return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"
 
 
 STATUS = {
+    loop.FINISHED: Status.DONE,
+    adaptive.TOO_SMALL: Status.STEP_TOO_SMALL,
     loop.NOT_FINITE: Status.NOT_FINITE,
     loop.LCP_FAILED: Status.LCP_FAILED,
     loop.NEWTON_FAILED: Status.NEWTON_FAILED,
