@@ -108,7 +108,7 @@ def attractors(
     longest : longest period n, in periods of the forcing, that is recognised; at most a half of the window
     phase : of the section, as a share of the period in [0, 1)
     tolerance : of a return, relative to the size of the motion; 1e-6 where not given, and for time-stepping not
-        less than 30 h / period
+        less than 30 h / period, or 30 times its own tolerance
 
     Raises
     ------
@@ -121,7 +121,8 @@ def attractors(
     if tolerance is None:
         tolerance = TOLERANCE
         if isinstance(method, Moreau):
-            tolerance = max(tolerance, STEPS_APART * method.h / scene.period)
+            own = method.h / scene.period if method.tolerance is None else method.tolerance
+            tolerance = max(tolerance, STEPS_APART * own)
     tolerance = checks.positive("tolerance", tolerance)
     runs = periods(scene, method, starts, transient + window, drop=transient, phase=phase, strict=True)
     P = PeriodMap(scene, method, phase)

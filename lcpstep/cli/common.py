@@ -75,8 +75,9 @@ def located(options: argparse.Namespace) -> Located:
 
 
 def event_driven(options: argparse.Namespace) -> EventDriven:
-    """The event-driven integrator at the tolerance of the options."""
-    return EventDriven(rtol=options.tolerance, atol=options.tolerance)
+    """The event-driven integrator at the tolerance of the options, 1e-12 where none is given."""
+    tolerance = 1e-12 if options.tolerance is None else options.tolerance
+    return EventDriven(rtol=tolerance, atol=tolerance)
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +28,8 @@ from lcpstep.simulate import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
-    "moreau": moreau,
-    "located": located,
+    "moreau": lambda options: replace(moreau(options), tolerance=options.tolerance),
+    "located": lambda options: replace(located(options), tolerance=options.tolerance),
     "event-driven": event_driven,
 }
 
@@ -45,7 +46,11 @@ def add(commands: Any) -> None:
     p.add_argument("--method", choices=list(METHODS), default="moreau", help="(moreau)")
     stepping_arguments(p)
     p.add_argument("--order", default="2", help="2, 4 or exact, located only (2)")
-    p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
+    p.add_argument(
+        "--tolerance",
+        type=float,
+        help="rtol and atol of event-driven (1e-12); with moreau and located it chooses the steps, h the longest",
+    )
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
     p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")

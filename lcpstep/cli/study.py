@@ -18,10 +18,13 @@ from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, scene_arguments, scene
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulate import Method
 
-METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
-    "moreau": lambda options: Moreau(theta=options.theta, lcp=options.lcp),
-    "located": lambda options: Located(),
-    "event-driven": lambda options: EventDriven(),
+LONGEST = 100  # steps in the span, at least, where a tolerance chooses them
+METHODS: dict[str, Callable[[argparse.Namespace, float], Method]] = {
+    "moreau": lambda options, span: Moreau(theta=options.theta, lcp=options.lcp),
+    "located": lambda options, span: Located(),
+    "moreau-adaptive": lambda options, span: Moreau(span / LONGEST, theta=options.theta, tolerance=1e-4),
+    "located-adaptive": lambda options, span: Located(span / LONGEST, tolerance=1e-4),
+    "event-driven": lambda options, span: EventDriven(),
 }
 
 
@@ -67,7 +70,8 @@ def run_study(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     if options.solvers is not None:
         return run_solvers(scene, options)
-    methods = [METHODS[name](options) for name in dict.fromkeys(options.methods)]
+    span = scene.t_span[1] - scene.t_span[0]
+    methods = [METHODS[name](options, span) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
     from tqdm import tqdm
 
@@ -93,7 +97,7 @@ def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
         raise ValueError(f"--solvers: {reference.notes[0]}")
     steps = options.h or [(scene.t_span[1] - scene.t_span[0]) / n for n in (1000, 10_000)]
     found = compare_solvers(
-        scene, METHODS["moreau"](options), steps, reference.motion, solvers=options.solvers or None,
+        scene, METHODS["moreau"](options, 0.0), steps, reference.motion, solvers=options.solvers or None,
         tolerances=options.solver_tolerances,
     )  # fmt: skip
     text = json.dumps(found.as_dict() | {"reference": reference.text}, indent=1)

@@ -106,7 +106,12 @@ class Lockstep:
         """Whether all runs share forcing and obstacle: one linear degree of freedom, one flat contact."""
         m = self.model
         return bool(
-            m.linear and m.flat and self.scene.n_q == 1 and self.scene.n_c == 1 and self.method.lcp == "lemke"
+            m.linear
+            and m.flat
+            and self.scene.n_q == 1
+            and self.scene.n_c == 1
+            and self.method.lcp == "lemke"
+            and self.method.tolerance is None
         )
 
     def run(self, task: Task, strict: bool) -> None:

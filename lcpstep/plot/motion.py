@@ -94,6 +94,8 @@ def overview(run: Trajectory) -> Any:
 
 def _name(run: Trajectory) -> str:
     method = run.method
+    if getattr(method, "tolerance", None) is not None:
+        return f"{type(method).__name__}, tolerance {method.tolerance:g}"
     if hasattr(method, "h"):
         return f"{type(method).__name__}, h = {method.h:g} s, theta = {method.theta:g}"
     return f"event-driven, tolerance {method.rtol:g}"

@@ -33,15 +33,16 @@ PLENTY = 0.8  # of the share, that twice the step is expected to take where it i
 LOOK = 4096  # steps between two looks at the outside world
 # Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
 POSITION, LEVEL, END, FINEST = range(4)
-# Places in Control.real; the last: error of the attempt before, if that failed at the same place
-START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST = range(8)
+# Places in Control.real; the last two: error of the attempt before, if that failed at the same place; the time
+# reached, rounded as that of the state kept there
+START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED = range(9)
 
 
 class Control(NamedTuple):
     """Where the run is, and what it allows."""
 
     whole: Any  # (4,)
-    real: Any  # (8,)
+    real: Any  # (9,)
 
 
 class Steps(Protocol):
@@ -65,7 +66,7 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
     whole = np.array([0, 0, coarse << finest, finest], dtype=np.int64)
     enough = PLENTY * 0.5**order
-    return Control(whole, np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf]))
+    return Control(whole, np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, start]))
 
 
 def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
@@ -126,6 +127,8 @@ def judge(c: Any, failed: bool, apart_q: float, apart_v: float, q: Any, v: Any, 
         c.whole[LEVEL] = level + 1
         return AGAIN
     x[SIZE_Q], x[SIZE_V], x[LAST] = size_q, size_v, math.inf
+    half = 0.5 * step_size(c, level)
+    x[REACHED] = (now(c) + half) + half
     c.whole[POSITION] += 1 << (c.whole[FINEST] - level)
     fits = level > 0 and c.whole[POSITION] % (1 << (c.whole[FINEST] - level + 1)) == 0
     if fits and error <= x[ENOUGH] * allowed:

@@ -185,6 +185,7 @@ class _Run:
         self.fast = fast and not jit_disabled()
         self.plan = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, self.plan, self.fast)
+        respond(self.model, self.plan, self.work)
         run: Callable[..., int] = loop.run if method.order == 2 else polynomial_loop.run
         self.run = compiled(run) if self.fast else run
         self.x = np.zeros(work.N_NUMBERS)
@@ -196,10 +197,9 @@ class _Run:
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        (t_start, t_end), tolerance = self.scene.t_span, self.method.tolerance
+        t_start, tolerance = self.scene.t_span[0], self.method.tolerance
         try:
             begin = compiled(loop.begin) if self.fast else loop.begin
-            self.prepare(min(self.method.h, t_end - t_start))
             code = begin(self.model, self.plan, self.work, self.x, self.recorder.buffers, self.count, t_start)
             status = STATUS[code]
             if status == Status.DONE:
@@ -228,8 +228,9 @@ class _Run:
 
     def prepare(self, h: float) -> None:
         """Take steps of size h from now on."""
-        self.plan = plan(self.scene, self.model, self.method, h)
-        respond(self.model, self.plan, self.work)
+        if h != self.plan.h:
+            self.plan = plan(self.scene, self.model, self.method, h)
+            respond(self.model, self.plan, self.work)
 
     def adapted(self, tolerance: float, progress: Callable[[float], None]) -> Status:
         """The whole run in steps that meet the tolerance."""
@@ -240,7 +241,7 @@ class _Run:
         )  # fmt: skip
 
         def arrive() -> None:
-            self.t0, self.first = adaptive.now(control), int(self.count[work.STEP])
+            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[work.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
             self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]

@@ -29,6 +29,21 @@ def test_errors_follow_the_tolerance_through_impacts():
     assert 0.8 < np.polyfit(np.log(TOLERANCES), np.log(errors), 1)[0] < 1.2
 
 
+@pytest.mark.slow
+def test_fewer_steps_of_order_four_for_small_tolerances():
+    at = np.linspace(0.0, 10.0, 57)
+    true = simulate(oscillator(), EventDriven(), keep=at)
+    tolerances, errors, steps = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9), [], []
+    for tolerance in tolerances:
+        m = simulate(oscillator(), Located(0.5, order=4, tolerance=tolerance), keep=at)
+        errors.append(np.max(np.abs(m.q - true.q)))
+        steps.append(m.counts.steps)
+        assert errors[-1] <= tolerance * (1.0 + np.max(np.abs(true.q)))
+    assert 0.7 < np.polyfit(np.log(tolerances), np.log(errors), 1)[0] < 1.3
+    assert -0.35 < np.polyfit(np.log(tolerances), np.log(steps), 1)[0] < -0.15
+    assert steps[1] < 0.1 * simulate(oscillator(), Located(0.5, tolerance=1e-6)).counts.steps
+
+
 def test_the_log_of_a_chattering_ball_is_complete():
     scene = scenes.bouncing_ball(t_end=5.0)
     fixed, m = simulate(scene, Located(1e-3)), simulate(scene, Located(0.1, tolerance=1e-6))

@@ -1,0 +1,155 @@
+"""Moreau with a tolerance: errors follow it through impacts, corners, chattering and contact that lasts."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, LcpStepError, Moreau, SimulationInterrupted, Status, simulate
+from lcpstep.trajectory import Kind
+from tests.known import ball_height
+
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
+
+
+def oscillator():
+    return dataclasses.replace(scenes.impact_oscillator(), t_span=(0.0, 10.0))
+
+
+def errors(scene, h, theta=0.5, tolerances=TOLERANCES, until=None):
+    """Largest errors of the position at even times, against the event-driven motion; penetrations at all steps."""
+    at = np.linspace(scene.t_span[0], until or scene.t_span[1], 201)
+    true = simulate(scene, EventDriven(), keep=at).q
+    apart, deep = [], []
+    for tolerance in tolerances:
+        m = simulate(scene, Moreau(h, theta=theta, tolerance=tolerance))
+        assert m.status == Status.DONE
+        apart.append(np.max(np.abs(m.at(at)[0] - true)))
+        deep.append(np.max(m.penetration, initial=0.0))
+    return np.array(apart), np.array(deep), 1.0 + np.max(np.abs(true))
+
+
+def slope(x, y):
+    return np.polyfit(np.log(x), np.log(y), 1)[0]
+
+
+@pytest.mark.parametrize(
+    ("scene", "h", "theta"),
+    [
+        (oscillator(), 0.5, 0.5),
+        (oscillator(), 0.5, 1.0),
+        (scenes.cam_follower(rpm=358.0, t_end=1.0), 0.02, 0.5),
+        pytest.param(scenes.newtons_cradle(spacing=0.01), 0.1, 0.5, marks=pytest.mark.slow),
+        pytest.param(scenes.pendulum_stop(), 0.1, 0.5, marks=pytest.mark.slow),
+    ],
+    ids=["oscillator", "oscillator-implicit", "cam", "cradle", "pendulum"],
+)
+def test_errors_follow_the_tolerance(scene, h, theta):
+    tolerances = TOLERANCES if theta == 0.5 else TOLERANCES[:3]
+    apart, deep, size = errors(scene, h, theta, tolerances)
+    assert np.all(apart <= 3.0 * np.array(tolerances) * size)
+    assert np.all(deep <= 0.1 * np.array(tolerances) * size)
+    if np.max(apart) > 1e-10:  # else steps make no error in this motion
+        assert 0.8 < slope(tolerances, apart) < 1.2
+
+
+def test_a_chattering_ball_comes_to_rest_and_is_right_between_its_steps():
+    at = np.linspace(0.0, 5.0, 1001)
+    found = []
+    for tolerance in TOLERANCES:
+        m = simulate(scenes.bouncing_ball(t_end=5.0), Moreau(0.1, tolerance=tolerance))
+        assert m.status == Status.DONE
+        assert m.impacts.kind[-1] == Kind.STICK
+        assert m.v[-1, 0] == 0.0
+        assert m.counts.steps == len(m.t) - 1
+        assert m.penetration[0] <= 0.1 * tolerance
+        found.append(np.max(np.abs(m.at(at)[0][:, 0] - ball_height(1.0, 9.81, 0.8)(at))))
+        kept = simulate(scenes.bouncing_ball(t_end=5.0), Moreau(0.1, tolerance=tolerance), keep=at)
+        assert np.allclose(kept.q, m.at(at)[0], rtol=0.0, atol=1e-13)
+    assert np.all(np.array(found) <= TOLERANCES)
+    assert 0.8 < slope(TOLERANCES, found) < 1.2
+
+
+def test_a_floor_that_long_steps_fly_through_is_met():
+    """Without forces one long step and two agree to the last bit, below the floor as above it."""
+    scene = Scene(
+        LinearSystem(1.0), [1.0], [-1.1], (0.0, 8.0), contacts=LinearContacts([[1.0]], restitution=0.5)
+    )
+    for tolerance in TOLERANCES:
+        m = simulate(scene, Moreau(8.0, tolerance=tolerance))
+        assert np.max(m.penetration) <= 0.1 * tolerance
+        assert m.q[-1, 0] == pytest.approx(0.55 * (8.0 - 1.0 / 1.1), abs=tolerance)
+
+
+def test_fewer_steps_than_steps_of_one_size_for_the_same_error():
+    """The cam's corners and impacts ask for short steps, the rest does not."""
+    scene = scenes.cam_follower(rpm=358.0, t_end=0.5)
+    at = np.linspace(0.0, 0.5, 101)
+    true = simulate(scene, EventDriven(), keep=at).q
+    adapted = simulate(scene, Moreau(0.02, tolerance=1e-5), keep=at)
+    error = np.max(np.abs(adapted.q - true))
+    work = adapted.counts.force_evaluations
+    even = [simulate(scene, Moreau(0.5 / round(work * s)), keep=at) for s in (1.0, 1.07, 1.13, 1.21, 1.29)]
+    assert np.mean([np.max(np.abs(m.q - true)) for m in even]) > 10.0 * error
+
+
+def test_kept_states_are_a_choice():
+    full = simulate(oscillator(), Moreau(0.5, tolerance=1e-3))
+    third = simulate(oscillator(), Moreau(0.5, tolerance=1e-3), keep=3)
+    assert np.array_equal(third.q[:100], full.q[:300:3])
+    assert np.array_equal(third.impacts, full.impacts)
+    assert np.sum(third.impulse) == pytest.approx(np.sum(full.impulse), rel=1e-12)
+    steps = np.diff(full.t)
+    assert steps.max() <= 0.25
+    assert steps.min() < 1e-4 * steps.max()
+    struck = simulate(oscillator(), Moreau(0.5, tolerance=1e-3), keep="impacts")
+    assert set(struck.t[1:-1]) == set(full.impacts.time)
+
+
+def test_an_interruption_loses_nothing():
+    full = simulate(oscillator(), Moreau(0.5, tolerance=1e-6))
+
+    def stop(t):
+        raise KeyboardInterrupt
+
+    with pytest.raises(SimulationInterrupted) as stopped:
+        simulate(oscillator(), Moreau(0.5, tolerance=1e-6), progress=stop)
+    part = stopped.value.trajectory
+    n = len(part.t)
+    assert 100 < n < len(full.t)
+    assert np.array_equal(part.t, full.t[:n])
+    assert np.array_equal(part.q, full.q[:n])
+
+
+def test_a_tolerance_that_cannot_be_met_ends_the_run():
+    m = simulate(oscillator(), Moreau(0.5, tolerance=1e-17))
+    assert m.status == Status.STEP_TOO_SMALL
+    assert "tolerance" in m.message
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, "small"])
+def test_bad_tolerances_are_named(bad):
+    with pytest.raises(ValueError, match="tolerance"):
+        Moreau(0.1, tolerance=bad)
+
+
+def test_what_takes_steps_of_one_size_only_says_so():
+    with pytest.raises(LcpStepError, match="lemke"):
+        Moreau(0.1, lcp="qp", tolerance=1e-4)
+    many = LinearSystem(sparse.eye_array(3))
+    with pytest.raises(LcpStepError, match="sparse"):
+        simulate(Scene(many, np.ones(3), np.zeros(3), (0.0, 1.0)), Moreau(0.1, tolerance=1e-4))
+
+
+@pytest.mark.slow
+def test_joints_and_friction_are_adapted_too():
+    scene = scenes.slider_crank(t_end=0.05)
+    fine = simulate(scene, Moreau(0.05 / 200_000), keep=np.linspace(0.0, 0.05, 26)).q
+    found = []
+    for tolerance in TOLERANCES[:3]:
+        m = simulate(scene, Moreau(0.01, tolerance=tolerance), keep=np.linspace(0.0, 0.05, 26))
+        assert m.status == Status.DONE
+        found.append(np.max(np.abs(m.q - fine)))
+    assert np.all(np.array(found) <= 3.0 * np.array(TOLERANCES[:3]) * (1.0 + np.max(np.abs(fine))))
