@@ -25,12 +25,14 @@ from lcpstep.stepping.adaptive import (
     ACCEPTED,
     AGAIN,
     GIVEN_UP,
+    LEAST_SHARE,
     LEVEL,
     LEVELS,
     LOOK,
     PAUSED,
     SIZE_Q,
     SIZE_V,
+    SPAN,
     TOO_SMALL,
     Control,
     distance,
@@ -172,7 +174,10 @@ def attempt(
     t, h = now(control), step_size(control, control.whole[LEVEL])
     for part in range(3):
         if part == 1:
-            if 0.5 * done[APART_Q] > resolved(control, SIZE_Q) or 0.5 * done[APART_V] > slow:
+            share = max(1.0, h / (control.real[SPAN] * LEAST_SHARE))
+            most_q, most_v = share * resolved(control, SIZE_Q), share * slow
+            if 0.5 * done[APART_Q] > most_q or 0.5 * done[APART_V] > most_v:
+                done[APART_Q] = np.inf
                 return FINISHED
             for i in range(len(motion.q)):
                 saved.vec[ONE_Q, i], saved.vec[ONE_V, i] = motion.q[i], motion.v[i]

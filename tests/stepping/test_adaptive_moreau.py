@@ -144,7 +144,7 @@ def test_what_takes_steps_of_one_size_only_says_so():
 
 
 @pytest.mark.slow
-def test_joints_and_friction_are_adapted_too():
+def test_friction_in_a_mechanism_is_adapted_too():
     scene = scenes.slider_crank(t_end=0.05)
     fine = simulate(scene, Moreau(0.05 / 200_000), keep=np.linspace(0.0, 0.05, 26)).q
     found = []
