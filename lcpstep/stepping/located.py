@@ -158,15 +158,27 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
     n_q, n_c = scene.n_q, scene.n_c
     vec = np.zeros((work.N_VEC, n_q))
     vec[work.Q], vec[work.V] = scene.q0, scene.v0
+    mark = np.zeros((work.N_MARK, n_c), dtype=np.int64)
+    if p.plain and n_c > 0:
+        mark[work.FIRST_COORDINATE :] = ranges(m)
     lcp = workspace(max(n_c, 1))
     solver = solve_single if n_c <= 1 else solve_small
     return work.Work(
-        vec=vec, num=np.zeros((work.N_NUM, n_c)), mark=np.zeros((work.N_MARK, n_c), dtype=np.int64),
+        vec=vec, num=np.zeros((work.N_NUM, n_c)), mark=mark,
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
         pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
         solver=solver_address(solver, lcp) if fast else solver, lcp=lcp,
     )  # fmt: skip
+
+
+def ranges(m: Model) -> NDArray[np.int64]:
+    """First and last coordinate that an impulse of each contact changes, first and last contact that feels it."""
+    G = np.abs(m.G)
+    MG = G @ np.abs(m.M_inverse)
+    patterns = [np.asarray(x > 0.0) for x in (MG + G, MG @ G.T)]
+    first_last = [[x.argmax(axis=1), x.shape[1] - 1 - x[:, ::-1].argmax(axis=1)] for x in patterns]
+    return np.array(first_last, dtype=np.int64).reshape(4, len(G))
 
 
 def respond(m: Model, p: work.Plan, w: work.Work) -> None:

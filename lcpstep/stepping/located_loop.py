@@ -61,6 +61,7 @@ from lcpstep.stepping.located_work import (
     NOT_FINITE,
     OPEN,
     Q_FROM,
+    Q_TIME,
     Q_TRY,
     RATE,
     ROUNDING,
@@ -79,6 +80,7 @@ from lcpstep.stepping.located_work import (
     V,
 )
 from lcpstep.stepping.quadratic import first_zero, may_reach_zero
+from lcpstep.stepping.race import race
 from lcpstep.stepping.smooth import (
     ON_THE_SURFACE,
     accelerate,
@@ -259,6 +261,19 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                 c, tau = first_contact(plan, w, rest, t + x[END])
                 if c != NOBODY and not plan.plain:
                     c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
+                if c != NOBODY and plan.plain and plan.steady and racing(w, x, record, count, t):
+                    most = min(count[EVENTS_LEFT] - count[EVENT], plan.per_step - int(x[EVENTS])) + 1
+                    most = min(
+                        most, len(record.events) - count[EVENT] - 4 * n_c, len(record.rows) - count[ROW] - 4
+                    )
+                    done = race(
+                        w.vec, w.num, w.mark, w.G, w.MG, w.W, model.restitution, model.offset, record, count,
+                        t, x[SIGMA], x[END], plan.h, plan.slack, most, plan.many,
+                    )  # fmt: skip
+                    if done > 0:
+                        x[SIGMA] = w.vec[Q_TIME, 0]
+                        x[EVENTS] += done
+                        continue
                 if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
                     c, tau = NOBODY, rest
             x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
@@ -269,6 +284,13 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
             code = event(model, plan, w, x, record, t, c, count)
             if code != FINISHED:
                 return code
+
+
+@inline
+def racing(w: Any, x: Any, record: Any, count: Any, t: float) -> bool:
+    """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
+    wanted = count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] <= t + x[END]
+    return w.num.shape[1] > 1 and x[CLOSED_NOW] == 0 and not wanted
 
 
 @inline

@@ -40,7 +40,8 @@ JOLT = 10  # change by the impulses or forces of several contacts
 Q_FROM = 11  # state, acceleration at the base of a piece within which states are kept
 V_FROM = 12
 A_FROM = 13
-N_VEC = 14
+Q_TIME = 14  # time since the start of the step up to which a coordinate has been moved on
+N_VEC = 15
 # Rows of Work.num, a number per contact
 GAP = 0  # g
 RATE = 1  # u
@@ -65,7 +66,9 @@ CHANGE = 19
 DOUBT = 20
 BEFORE = 21  # gap velocity just before a corner
 IMPULSE_FROM = 22  # impulses at the base of a piece within which states are kept
-N_NUM = 23
+SINCE = 23  # time since the start of the step to which gap and gap velocity belong, and of the next zero
+NEXT_ZERO = 24
+N_NUM = 25
 # Rows of Work.mark, a whole number per contact
 STATUS = 0  # OPEN or CLOSED
 GROUNDED = 1  # the piece began at gap zero
@@ -75,7 +78,11 @@ PLASTIC = 4  # restitution of the event at hand is zero
 CHOSEN = 5  # contacts of the problem at hand
 HELD = 6  # those of them that carry an impulse or a force, and their places in the list
 PLACE = 7
-N_MARK = 8
+FIRST_COORDINATE = 8  # range of the coordinates that an impulse changes, if constant, and of the gaps
+LAST_COORDINATE = 9
+FIRST_CONTACT = 10
+LAST_CONTACT = 11
+N_MARK = 12
 # Rows of Polynomial.vec (after Q and V) and of Polynomial.num
 Q_STAGE = 2
 V_STAGE = 3

@@ -294,3 +294,20 @@ def test_two_walls_that_close_end_the_run_and_are_named():
     m = simulate(scene, Located(0.01))
     assert m.status.name == "LCP_FAILED"
     assert "[1, 2]" in m.message
+
+
+@pytest.mark.parametrize("force", [0.0, -9.81])
+def test_impacts_taken_in_turn_within_a_step_are_those_found_one_by_one(force):
+    # where states are asked for within every step, each impact moves the whole system on
+    n, h = 12, 0.1
+    masses = (1.0 + 0.7 * np.cos(np.arange(n))).tolist()
+    places, speeds = 0.1 * np.arange(1, n + 1), 2.0 * np.sin(3.0 * np.arange(n))
+    scene = line(places, speeds, 0.95, masses=masses, walls=True, force=force, t_end=1.0)
+    in_turn = simulate(scene, Located(h), keep=[1.0])
+    one_by_one = simulate(scene, Located(h), keep=np.arange(0.5 * h, 1.0 + h, h).clip(max=1.0))
+    assert len(in_turn.impacts) > 30
+    for name in ("time", "contact", "before", "after", "impulse"):
+        a, b = getattr(in_turn.impacts, name), getattr(one_by_one.impacts, name)
+        np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(in_turn.q[-1], one_by_one.q[-1], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(in_turn.v[-1], one_by_one.v[-1], rtol=0, atol=1e-10)
