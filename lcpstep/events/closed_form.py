@@ -13,6 +13,7 @@ from lagrangian import Scene
 from lcpstep.compiled import compiled
 from lcpstep.events import flight, single
 from lcpstep.events.oscillator import Oscillator, oscillator
+from lcpstep.events.reach import reach
 from lcpstep.events.run import Run, between, scan_interval
 from lcpstep.model import ABSENT, Model
 from lcpstep.recording import Kept, States
@@ -41,12 +42,13 @@ def numbers(scene: Scene, m: Model, o: Oscillator, method: Any) -> Array:
         flight.SCALE: scene.period if math.isfinite(scene.period) else scene.t_span[1] - t0,
         flight.SCAN: scan_interval(scene, m, max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))),
         flight.T_END: scene.t_span[1], flight.NOW: t0, flight.LOW: math.inf, flight.HIGH: -math.inf,
-        flight.HOLD: -math.inf, flight.LAST_EVENT: -math.inf,
+        flight.HOLD: -math.inf, flight.LAST_EVENT: -math.inf, flight.CLEAR: math.inf,
     }.items():  # fmt: skip
         x[place] = value
     if scene.n_c == 1:
         G = float(m.G[0, 0])
         x[flight.CONTACT], x[flight.G], x[flight.OFFSET] = 1.0, G, m.offset[0]
+        x[flight.CLEAR], x[flight.BEND] = reach(scene, m)
         x[flight.R], x[flight.RESPONSE] = m.restitution[0], G * G / mass
     return x
 

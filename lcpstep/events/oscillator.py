@@ -19,7 +19,13 @@ from typing import Any, NamedTuple
 from lcpstep.compiled import inline
 
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
+# Ratios of the coefficients of sin x / x in x^2, and of 2 (1 - cos x) / x^2
+D1, D2, D3, D4, D5, D6, D7 = (1.0 / (2 * k * (2 * k + 1)) for k in range(1, 8))
+C1, C2, C3, C4, C5, C6, C7 = (1.0 / ((2 * k + 1) * (2 * k + 2)) for k in range(1, 8))
 TERMS = 16  # of the series; the first neglected one is below rounding
+NEGLIGIBLE = 1e-18  # two terms in a row, of a sum that is near one
+ONE_OVER = (0.0, *(1.0 / k for k in range(1, TERMS + 2)))
+ONE_OVER_PAIR = (0.0, *(1.0 / (k * (k + 1)) for k in range(1, TERMS + 1)))
 NOTHING = 1e-100  # an exponent that is zero for every purpose
 NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
 
@@ -57,7 +63,11 @@ def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, floa
     if delta == 0.0 and w2 == 0.0:
         return tau, 1.0, 0.5 * tau * tau
     if max(2.0 * abs(delta) * tau, abs(w2) * tau * tau) < SMALL:
-        return series(delta, w2, tau)
+        return undamped_series(w2, tau) if delta == 0.0 else series(delta, w2, tau)
+    if w2 > 0.0 and delta == 0.0:
+        w = math.sqrt(w2)
+        dS = math.cos(w * tau)
+        return math.sin(w * tau) / w, dS, (1.0 - dS) / w2
     if w2 > delta * delta:
         w = math.sqrt(w2 - delta * delta)
         decay = math.exp(-delta * tau)
@@ -67,17 +77,35 @@ def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, floa
     return overdamped(delta, w2, tau)
 
 
+@inline
+def undamped_series(w2: float, tau: float) -> tuple[float, float, float]:
+    """The same without damping, by power series in w2 tau^2."""
+    t2 = tau * tau
+    m = w2 * t2
+    S = D6 * (1.0 - D7 * m)
+    P = C6 * (1.0 - C7 * m)
+    S, P = D5 * (1.0 - m * S), C5 * (1.0 - m * P)
+    S, P = D4 * (1.0 - m * S), C4 * (1.0 - m * P)
+    S, P = D3 * (1.0 - m * S), C3 * (1.0 - m * P)
+    S, P = D2 * (1.0 - m * S), C2 * (1.0 - m * P)
+    S, P = D1 * (1.0 - m * S), C1 * (1.0 - m * P)
+    P = 0.5 * t2 * (1.0 - m * P)
+    return tau * (1.0 - m * S), 1.0 - w2 * P, P
+
+
 def series(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """The same by their power series."""
     S = dS = P = 0.0
-    before, term, power = 0.0, 1.0, 1.0  # s_{k-1}, s_k, tau^{k-1}
+    before, term = 0.0, 1.0  # s_{k-1} tau^{k-2}, s_k tau^{k-1}
+    damping, stiffness = 2.0 * delta * tau, w2 * tau * tau
     for k in range(1, TERMS + 1):
-        dS += k * term * power
-        S += term * power * tau
-        P += term * power * tau * tau / (k + 1)
-        before, term = term, -(2.0 * delta * k * term + w2 * before) / (k * (k + 1))
-        power *= tau
-    return S, dS, P
+        dS += k * term
+        S += term
+        P += term * ONE_OVER[k + 1]
+        before, term = term, -(damping * k * term + stiffness * before) * ONE_OVER_PAIR[k]
+        if abs(before) + abs(term) < NEGLIGIBLE:
+            break
+    return S * tau, dS, P * tau * tau
 
 
 def overdamped(delta: float, w2: float, tau: float) -> tuple[float, float, float]:

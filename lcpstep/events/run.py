@@ -167,15 +167,24 @@ def fastest_turn(scene: Scene, m: Model) -> float:
     looked at in windows of time.
     """
     windows = 1 if math.isfinite(scene.period) else WINDOWS
-    t0, t1 = scene.t_span
-    length, k = min(scene.period, t1 - t0), np.arange(SAMPLES)
-    times, fastest = t0 + length * (k + k * GOLDEN % 1.0) / SAMPLES, 0.0
-    for rates in _rates(scene, m, times, SLOPE * length):
+    fastest = 0.0
+    for rates in _rates(scene, m, sample_times(scene), SLOPE * sampled_length(scene)):
         largest = np.abs(rates).reshape(windows, -1, rates.shape[1], 2).max(axis=1)
         speed, acceleration = largest[..., 0], largest[..., 1]
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
     return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf
+
+
+def sampled_length(scene: Scene) -> float:
+    """How much of the motion of what moves by itself is looked at: a period, or the whole span [s]."""
+    return min(scene.period, scene.t_span[1] - scene.t_span[0])
+
+
+def sample_times(scene: Scene) -> Array:
+    """Times at which it is looked at, (SAMPLES,); irregular, so that no oscillation hides between them."""
+    k = np.arange(SAMPLES)
+    return np.asarray(scene.t_span[0] + sampled_length(scene) * (k + k * GOLDEN % 1.0) / SAMPLES)
 
 
 def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]:

@@ -12,12 +12,14 @@ Nonlinear Dynamics 58 (2009).
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import inline
 from lcpstep.events.flight import (
     ALPHA0,
     ATOL,
+    CLEAR,
     CLOSED,
     CONTACT,
     EDGE_ALPHA,
@@ -41,15 +43,19 @@ from lcpstep.events.flight import (
     RTOL,
     SCALE,
     SCAN,
+    SHORT,
     SPEED0,
     T0,
     T_END,
     V0,
+    WORTH,
     G,
     R,
     after,
+    clear_until,
     find_corners,
     free,
+    gap_root,
     leave_from,
     on_obstacle,
     rebase,
@@ -77,7 +83,6 @@ from lcpstep.recording import TIME as ROW_TIME
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
-SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 MAX_STALLED = 1000  # events at one time
 JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
@@ -85,8 +90,9 @@ STRIDE = 3.0  # scan intervals in one stride, where the obstacle is far
 # How large a gap acceleration may be within a stride: relative to both ends, and to the largest of the flight so far
 BULGE, LEAST_BULGE = 2.0, 0.5
 HALVINGS = 40  # of an interval, in search of a positive gap
-POLISH = 1e-12  # of the flight: what a last step of Newton's may still move its end
-PROBES = 8  # samples of alpha per interval while the contact is closed
+# Steps of Newton's at the end of a flight: how many, the largest, relative to flight and velocity, and the last
+POLISHES, POLISH, POLISHED = 3, 1e-3, 1e-8
+PROBES = 4  # samples of alpha per interval while the contact is closed
 QUADRATURE = (  # nodes and weights of Gauss on [0, 1], for the impulse of the contact force
     (0.019855071751231912, 0.05061426814518813),
     (0.10166676129318664, 0.11119051722668724),
@@ -163,6 +169,8 @@ def fly(s: Any, record: Any, count: Any) -> bool:
         if guess < SHORT * x[SCAN]:
             tau, u = short_hop(s, guess, b)
             hop = tau != NONE
+    if not hop and x[CLEAR] < math.inf and leap(s, record, count):
+        return True
     if not hop:
         g, u, alpha = free(s, b)
         is_near = suspect(x, b - a, g, u, alpha)
@@ -190,13 +198,18 @@ def fly(s: Any, record: Any, count: Any) -> bool:
             pass_end(s, record, count, end)
             return True
     if not hop:
-        g, u, alpha = free(s, tau)
+        for _ in range(POLISHES):
+            g, u, alpha = free(s, tau)
+            if not (abs(g) < -u * POLISH * tau and abs(alpha * g) < POLISH * u * u):
+                break
+            past = g / u
+            tau -= past * (1.0 + 0.5 * alpha * past / u)
+            u -= alpha * past
+            if abs(past) <= POLISHED * tau:
+                break
         if u - u + alpha - alpha != 0.0:
             free(s, a)
             return False
-        if abs(g) < -u * POLISH * tau:
-            tau -= g / u
-            u -= alpha * g / u
     t = min(after(x, tau), end)
     keep_times(s, record, count, t, False)
     x[NOW] = t
@@ -208,6 +221,23 @@ def fly(s: Any, record: Any, count: Any) -> bool:
     else:  # a touch without impact
         settle(s, record, count, 0.0)
         keep_event(s, record, count)
+    return True
+
+
+@inline
+def leap(s: Any, record: Any, count: Any) -> bool:
+    """On to where the gap is no longer certain to be open, across corners; False where that is no longer stride."""
+    x = s.x
+    tau = clear_until(s, x[T_END] - x[T0])
+    end = min(x[T0] + tau, x[T_END])
+    if end - x[NOW] <= WORTH * x[SCAN] or tau - tau != 0.0:
+        return False
+    keep_times(s, record, count, end, False)
+    # A corner at the very end is still to be turned
+    find_corners(s, end - 4.0 * NUDGE * max(abs(end), x[SCALE]))
+    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = free(s, end - x[T0])
+    x[PEAK] = max(x[PEAK], abs(x[EDGE_ALPHA]))
+    pass_end(s, record, count, end)
     return True
 
 
@@ -242,7 +272,7 @@ def first_contact(s: Any, a: float, b: float, g_b: float, u_b: float, alpha_b: f
     g_a, u_a, alpha_a = x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]
     falling = u_a < 0.0 and u_b < 0.0 and not (alpha_a > 0.0 and alpha_b < 0.0)
     if alpha_a * alpha_b < 0.0 and not falling:
-        m = root(s, 2, a, alpha_a, b, alpha_b)
+        m = root(s, 2, a, alpha_a, b, alpha_b, NONE)
         g_m, u_m, _ = free(s, m)
         found = first_in_half(s, a, g_a, u_a, m, g_m, u_m)
         return found if found != NONE else first_in_half(s, m, g_m, u_m, b, g_b, u_b)
@@ -253,17 +283,17 @@ def first_in_half(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float
     """The same where the gap velocity is monotone, or does not change its sign."""
     if u_a > 0.0 and u_b < 0.0 and g_a <= 0.0 and g_b <= 0.0:  # up from the obstacle and down to it again
         m = a + (b - a) * u_a / (u_a - u_b)
-        g_m, _, _ = free(s, m)
+        g_m, u_m, _ = free(s, m)
         if g_m <= 0.0:
-            m = root(s, 1, a, u_a, b, u_b)
-            g_m, _, _ = free(s, m)
-        return m if g_m <= 0.0 else root(s, 0, m, g_m, b, g_b)
+            m = root(s, 1, a, u_a, b, u_b, NONE)
+            g_m, u_m, _ = free(s, m)
+        return m if g_m <= 0.0 else gap_root(s, m, g_m, u_m, b, g_b, u_b)
     if u_a < 0.0 and u_b > 0.0 and g_a > 0.0 and g_b > 0.0:  # a dip
-        m = root(s, 1, a, u_a, b, u_b)
-        g_m, _, _ = free(s, m)
-        return root(s, 0, a, g_a, m, g_m) if g_m <= 0.0 else NONE
+        m = root(s, 1, a, u_a, b, u_b, NONE)
+        g_m, u_m, _ = free(s, m)
+        return gap_root(s, a, g_a, u_a, m, g_m, u_m) if g_m <= 0.0 else NONE
     if g_a > 0.0 and g_b <= 0.0:
-        return root(s, 0, a, g_a, b, g_b)
+        return gap_root(s, a, g_a, u_a, b, g_b, u_b)
     return NONE
 
 
@@ -274,7 +304,7 @@ def small_hop(s: Any, a: float, b: float, g_b: float) -> float:
         m, end, g_end = a + 0.5 * (m - a), m, g_b
         g_b, _, _ = free(s, m)
         if g_b > ON_THE_SURFACE * max(1.0, abs(s.q[0])):
-            return root(s, 0, m, g_b, end, g_end)
+            return root(s, 0, m, g_b, end, g_end, NONE)
     return NONE
 
 
@@ -302,7 +332,8 @@ def rest(s: Any, record: Any, count: Any) -> bool:
     if start >= x[HOLD]:
         t = first_release(s, start, min(x[EDGE_ALPHA], 0.0), end)
     stop = end if t == NONE else t
-    x[IMPULSE] += contact_impulse(s, start, stop)
+    if record.every > 0 or record.on_events or len(record.times) > 0:  # or nobody asks for it
+        x[IMPULSE] += contact_impulse(s, start, stop)
     keep_times(s, record, count, stop, t == NONE and stop >= x[T_END])
     _, _, alpha = on_obstacle(s, stop, 0.0)
     if alpha - alpha + x[IMPULSE] - x[IMPULSE] != 0.0:
@@ -497,11 +528,13 @@ def turn_corner(s: Any, record: Any, count: Any) -> None:
             x[Q0], x[V0] = s.q[0], s.v[0]
         keep_event(s, record, count)
         return
-    _, u, _ = free(s, t - x[T0])
-    strikes = x[CONTACT] == 1.0 and u < -ON_THE_SURFACE * max(1.0, abs(s.v[0]))
-    if strikes and x[EDGE_G] <= -2.0 * u * NUDGE * max(abs(t), x[SCALE]):  # within rounding of the corner
-        impact(s, record, count, u)
-        return
+    u = x[EDGE_U]
+    if x[CONTACT] == 1.0 and u < 0.0 and x[EDGE_G] <= -2.0 * u * NUDGE * max(abs(t), x[SCALE]):
+        # within rounding of the corner
+        free(s, t - x[T0])
+        if u < -ON_THE_SURFACE * max(1.0, abs(s.v[0])):
+            impact(s, record, count, u)
+            return
     find_corners(s, t)
     _, x[EDGE_U], x[EDGE_ALPHA] = free(s, t - x[T0])
     x[PEAK] = max(x[PEAK], abs(x[EDGE_ALPHA]))
@@ -523,6 +556,8 @@ def log(s: Any, record: Any, count: Any, t: float, kind: int, before: float, aft
 @inline
 def state_at(s: Any, t: float) -> None:
     """The state at time t of the flight or rest at hand, into s.q, s.v."""
+    if t > s.x[HIGH]:
+        find_corners(s, t)
     if s.x[MODE] == CLOSED:
         on_obstacle(s, t, 0.0)
     else:

@@ -6,12 +6,13 @@ equal images to the last bit, and following n periods is iterating the strobosco
 
 A state that recurs exactly during the periods to be dropped has shown its whole future, and whole cycles of it are
 skipped. But where a motion sticks, forgets, and then amplifies rounding errors to its own size before it sticks
-again, rounding alone can close a cycle. So the cycle must first survive small kicks, which a stable orbit forgets.
+again, rounding alone can close a cycle. So the cycle must first survive small kicks, one in every period of it: a
+stable orbit forgets them.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from copy import copy
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ from lcpstep.recording import Kept, Recorder
 CODES = STATUS
 PERIODS_OF_SPAN = 4  # of the span that the scan for events is made for
 NO_LIMIT = 2**62
-KICKS, KICK = 3, 1e-10  # how often a cycle is tried, and with what share of the motion's size
+KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size
 UNREACHED = -1
 INSIDE = -1  # among the codes: a start inside of the obstacle
 IMPACTS, ENDS = 0, 1  # places in the counts of a period: impacts, chattering sequences or landings
@@ -61,7 +62,7 @@ def follow(s: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
     q, v = s.q, s.v
     for i in range(len(task.starts)):
         q[0], v[0] = task.starts[i, 0], task.starts[i, 1]
-        code, k, age, power, kicks, length, speed = FINISHED, 0, 0, 1, 0, 0.0, 0.0
+        code, k, age, power, kicks, noisy, length, speed = FINISHED, 0, 0, 1, 0, 0, 0.0, 0.0
         if task.strict and not admissible(s, x0, task.t_start):
             code = INSIDE
         old_q, old_v = q[0], v[0]
@@ -70,12 +71,16 @@ def follow(s: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
             k += 1
             age += 1
             length, speed = max(length, abs(q[0])), max(speed, abs(v[0]))
-            if k < task.drop and age > 0 and q[0] == old_q and v[0] == old_v:  # R. Brent's search for a cycle
+            if k < task.drop and noisy > 0:
+                q[0] += KICK * length
+                v[0] += KICK * speed
+                noisy -= 1
+                old_q, old_v, age, power = q[0], v[0], 0, 1
+            elif (
+                k < task.drop and age > 0 and q[0] == old_q and v[0] == old_v
+            ):  # R. Brent's search for a cycle
                 if kicks < KICKS:
-                    q[0] += KICK * length
-                    v[0] += KICK * speed
-                    kicks += 1
-                    old_q, old_v, age, power = q[0], v[0], 0, 1
+                    kicks, noisy = kicks + 1, age
                 else:
                     k += (task.drop - k) // age * age
                     age = -NO_LIMIT
@@ -160,8 +165,11 @@ class Follower:
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
         scene = self.scene
-        span = (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
-        x0 = numbers(replace(scene, t_span=span), self.model, self.oscillator, self.method)  # type: ignore[arg-type]
+        spanned = copy(scene)  # a checked scene needs no further check
+        object.__setattr__(
+            spanned, "t_span", (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
+        )
+        x0 = numbers(spanned, self.model, self.oscillator, self.method)  # type: ignore[arg-type]
         record = Recorder(1, scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).buffers
         count = np.zeros(N_COUNTERS, dtype=np.int64)
         count[MAX_EVENTS] = self.method.max_events

@@ -1,0 +1,75 @@
+"""How far an obstacle and a frame that move by themselves can reach, from samples of a period.
+
+With c the displacement of the frame and s that of the obstacle, the gap offset + G (y - c) - s of the absolute
+position y is open while
+
+    G y > max over a period of (G c + s) - offset
+
+and its acceleration is G y'' less at most max |G c'' + s''|. Corners split a period into smooth pieces, and every
+piece is looked at, however short.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.compiled import compiled
+from lcpstep.events.run import SAMPLES, sample, sample_times, sampled_length
+from lcpstep.model import ABSENT, Model
+
+Array = NDArray[np.float64]
+PER_PIECE = 8  # samples between two corners
+AGAIN = 16  # every so many samples, is the motion the same a period later?
+SAME = 1e-9  # relative
+STEEPER, HARDER = 2.0, 1.25  # than in the samples: speeds and accelerations between them
+
+
+def looked_at(scene: Scene, m: Model, f: Any, times: Array) -> Array:
+    """Samples (k, 1, 3) of a callback; zero where there is none."""
+    out = np.zeros((len(times), 1, 3))
+    if f != ABSENT:
+        kernel = sample if callable(f) else compiled(sample)
+        kernel(f, times, np.array(scene.q0), np.array(scene.v0), m.p, out)
+    return out
+
+
+def reach(scene: Scene, m: Model) -> tuple[float, float]:
+    """The bounds above: the position that is clear, and the acceleration.
+
+    The position is infinite where nothing moves, and strides do as well, and where the motion does not repeat.
+    """
+    G, offset = float(m.G[0, 0]), float(m.offset[0])
+    if (m.frame == ABSENT and m.motion == ABSENT) or not math.isfinite(scene.period):
+        return math.inf, 0.0
+
+    def samples(times: Array) -> Array:
+        result = G * looked_at(scene, m, m.frame, times) + looked_at(scene, m, m.motion, times)
+        return result[:, 0]
+
+    regular = sample_times(scene)
+    found = samples(np.concatenate([regular, _between_corners(scene)]))
+    size = np.max(np.abs(found), axis=0)
+    late = regular[::AGAIN] + scene.period
+    late = late[late <= scene.t_span[1]]
+    again = np.abs(samples(late) - found[:SAMPLES:AGAIN][: len(late)])
+    if not np.all(np.isfinite(size)) or np.any(again[:, :2] > SAME * size[:2]):
+        return math.inf, 0.0
+    spacing = sampled_length(scene) / SAMPLES
+    return float(np.max(found[:, 0]) + STEEPER * spacing * size[1] - offset), float(HARDER * size[2])
+
+
+def _between_corners(scene: Scene) -> Array:
+    """Times inside of every smooth piece of the period at the start of the span."""
+    corners = np.asarray(scene.corners, dtype=float)
+    if len(corners) == 0:
+        return np.zeros(0)
+    start = scene.period * math.floor(scene.t_span[0] / scene.period)
+    ends = start + np.append(corners, corners[0] + scene.period)
+    share = (np.arange(PER_PIECE) + 0.5) / PER_PIECE
+    times = (ends[:-1, None] + np.diff(ends)[:, None] * share).ravel()
+    return np.asarray(times[(times >= scene.t_span[0]) & (times <= scene.t_span[1])])

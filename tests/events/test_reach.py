@@ -1,0 +1,78 @@
+"""How far a moving obstacle reaches, and flights that cross its corners in one leap under that bound."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian.scenes import cam_follower
+from lcpstep import EventDriven, simulate
+from lcpstep.events.reach import reach
+from lcpstep.model import plain_model
+
+PULSE = (0.61, 0.6102)  # of the period: between these a tooth rises and sinks
+
+
+def tooth(t, q, v, p, out):
+    x = (t - np.floor(t) - PULSE[0]) / (PULSE[1] - PULSE[0])
+    rate = np.pi / (PULSE[1] - PULSE[0])
+    inside = 0.0 < x < 1.0
+    out[0, 0] = p[0] * np.sin(np.pi * x) ** 2 if inside else 0.0
+    out[0, 1] = p[0] * rate * np.sin(2.0 * np.pi * x) if inside else 0.0
+    out[0, 2] = 2.0 * p[0] * rate**2 * np.cos(2.0 * np.pi * x) if inside else 0.0
+
+
+def rising(t, q, v, p, out):
+    tooth(t, q, v, p, out)
+    out[0, 0] += 0.01 * t
+    out[0, 1] += 0.01
+
+
+def above(motion, height=0.4):
+    return Scene(
+        system=LinearSystem(1.0, force=-10.0), contacts=LinearContacts(1.0, restitution=0.5, motion=motion),
+        q0=0.1, v0=3.0, t_span=(0.0, 3.0), p=[height], corners=(PULSE[0], 0.6101, PULSE[1]), period=1.0,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("coordinates", ["relative", "absolute"])
+@pytest.mark.parametrize("rpm", [125.0, 700.0])
+def test_the_cam_stays_below_its_reach(rpm, coordinates):
+    scene = cam_follower(rpm=rpm, coordinates=coordinates)
+    clear, bend = reach(scene, plain_model(scene))
+    f = scene.system.frame or scene.contacts.motion
+    now = np.zeros((20_000, 1, 3))
+    for t, out in zip(np.linspace(0.0, scene.period, len(now)), now, strict=True):
+        f(t, scene.q0, scene.v0, scene.p, out)
+    assert np.max(now[:, 0, 0]) < clear < np.max(now[:, 0, 0]) + 0.02
+    assert np.max(np.abs(now[:, 0, 2])) < bend
+
+
+def test_a_tooth_between_near_corners_is_seen_and_struck():
+    scene = above(tooth)
+    clear, _ = reach(scene, plain_model(scene))
+    assert clear > 0.4
+    # It meets the mass in the middle of its flight, which would touch the floor at 0.631 s only
+    first = simulate(scene, EventDriven()).impacts[0]
+    assert PULSE[0] < first.time < PULSE[1]
+    free = simulate(above(tooth, height=0.0), EventDriven()).impacts[0]
+    assert free.time == pytest.approx(0.3 + np.sqrt(0.09 + 0.02), abs=1e-14)
+
+
+def test_an_obstacle_that_does_not_repeat_has_no_reach():
+    scene = above(rising)
+    assert reach(scene, plain_model(scene))[0] == np.inf
+
+
+def test_states_within_a_leap_are_those_of_the_free_motion():
+    make = partial(cam_follower, rpm=700.0, q0=1.0, v0=60.0, t_end=0.03)  # above the whole cam at once
+    wanted = np.linspace(0.0, 0.03, 101)
+    run = simulate(make(), EventDriven())
+    assert len(run.impacts) == 0
+    assert len(run.t) <= 3
+    q, v = make().exact(wanted)
+    np.testing.assert_allclose(run.at(wanted)[0], q, rtol=0.0, atol=1e-13)
+    kept = simulate(make(), EventDriven(), keep=wanted)
+    np.testing.assert_allclose(kept.q, q, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(kept.v, v, rtol=0.0, atol=1e-11)
