@@ -14,6 +14,8 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign
 from lcpstep.model import ABSENT
 
+DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
+
 
 @inline
 def external_force(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
@@ -84,6 +86,40 @@ def gap_rates(model: Any, t: float, q: Any, v: Any, G: Any, g_t: Any) -> None:
         g_t[c] = 0.0
     if model.gap_t != ABSENT:
         call(model.gap_t, t, q, v, model.p, g_t)
+
+
+@inline
+def bias(model: Any, t: float, q: Any, v: Any, shifted: Any, G: Any, rate: Any, out: Any) -> None:
+    """(dG/dt) v + d(g_t)/dt along the motion; by differences of order four where the scene does not give it.
+
+    Work space: shifted (n_q,), G (n_c, n_q), rate (n_c,).
+    """
+    for c in range(len(out)):
+        out[c] = 0.0
+    if model.flat:
+        if model.motion != ABSENT:
+            obstacle(model, t, q, v)
+            for c in range(len(out)):
+                out[c] = -model.motion_now[c, 2]
+        return
+    if model.bias != ABSENT:
+        call(model.bias, t, q, v, model.p, out)
+        return
+    size = 1.0
+    for i in range(len(q)):
+        size = max(size, abs(v[i]))
+    d = DIFFERENCE / size
+    for k in range(4):
+        shift, weight = (
+            (d, 8.0)
+            if k == 0
+            else ((-d, -8.0) if k == 1 else ((2.0 * d, -1.0) if k == 2 else (-2.0 * d, 1.0)))
+        )
+        for i in range(len(q)):
+            shifted[i] = q[i] + shift * v[i]
+        gap_rates(model, t + shift, shifted, v, G, rate)
+        for c in range(len(out)):
+            out[c] += weight * (product(G, v, c) + rate[c]) / (12.0 * d)
 
 
 @inline

@@ -19,6 +19,9 @@ from lcpstep.dense import assign
 from lcpstep.dynamics import product
 from lcpstep.recording import write_event
 from lcpstep.stepping.corners import choose_jumping
+from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
+from lcpstep.stepping.joint_tasks import PIECE
+from lcpstep.stepping.located_joints import pass_on
 from lcpstep.stepping.located_work import (
     A_TRY,
     ACCUMULATION,
@@ -186,6 +189,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
         c, p = w.mark[CHOSEN, k], w.num[Z, k]
         w.num[P, c] = p
         w.num[IMPULSE, c] += p
+        pass_on(w, c, p, PIECE)
         for i in range(w.vec.shape[1]):
             w.vec[V, i] += w.MG[c, i] * p
     for k in range(n_k):
@@ -315,6 +319,7 @@ def jump(w: Any, n_s: int) -> None:
     for k in range(n_s):
         c, p = w.mark[CHOSEN, k], w.num[Z, k]
         if p > 0.0:
+            pass_on(w, c, p, JOINT_IMPULSE)
             for i in range(n):
                 w.vec[V, i] += w.MG[c, i] * p
                 w.vec[V_TRY, i] += abs(w.MG[c, i] * p)

@@ -93,7 +93,7 @@ def diagonalise(e: Any) -> None:
 
 def rotate(B: Any, V: Any, p: int, q: int) -> None:
     """Make B_pq zero by a rotation, which V collects."""
-    if B[p, q] == 0.0:
+    if abs(B[p, q]) <= EPSILON * EPSILON:  # of the diagonal: its square would overflow below
         return
     tau = (B[q, q] - B[p, p]) / (2.0 * B[p, q])
     t = (1.0 if tau >= 0.0 else -1.0) / (abs(tau) + math.sqrt(1.0 + tau * tau))

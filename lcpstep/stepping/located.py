@@ -16,11 +16,14 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
-from lcpstep.model import ABSENT, Model, culprit, model, require
+from lcpstep.model import ABSENT, Model, culprit, model, models, require
 from lcpstep.recording import Kept, Recorder
-from lcpstep.stepping import adaptive, adaptive_located, interpolation, polynomial_loop
+from lcpstep.stepping import adaptive, adaptive_located, interpolation, polynomial_loop, refine, smooth
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
+from lcpstep.stepping.joint_tasks import CULPRIT
+from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
+from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.steps import WHOLE, check_resolved
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
@@ -65,9 +68,10 @@ class Located:
     Smooth motion is of order two, with one force evaluation a step; so is the whole motion, through impacts,
     chattering, sticking and release. Contacts that fire together obey Moreau's law for simultaneous impacts, all
     others are struck one after another. Linear systems take the trapezoidal rule and are stable for every h, others
-    velocity Verlet, which needs h below 2 / (highest frequency). Sources: J. J. Moreau (1988), V. Acary and
+    velocity Verlet, which needs h below 2 / (highest frequency). Scenes with joints (order 2, fixed steps) take
+    velocity Verlet too; every step ends on the joints. Sources: J. J. Moreau (1988), V. Acary and
     B. Brogliato (2008)
-    for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts.
+    for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts and the joints.
     """
 
     h: float = 1e-3
@@ -92,7 +96,10 @@ class Located:
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
         check_resolved(self.h, scene.t_span)
-        require(scene, "Located", joints=False, friction=False)
+        require(scene, "Located", joints=True, friction=False)
+        variant = "a tolerance" if self.tolerance is not None else f"order={self.order!r}"
+        joints = self.order == 2 and self.tolerance is None
+        require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
         return _Run(self, scene, kept).finish(progress)
@@ -112,20 +119,28 @@ def require_linear(scene: Scene) -> None:
     raise LcpStepError(f'scene: Located(order="exact") expects {reason}; take order=4 for {scene.name!r}')
 
 
+# What steps with joints never reach: the ways of the trapezoidal rule
+UNJOINED = (
+    loop.glide, loop.pressed, loop.straighten, smooth.invert_rest, smooth.shift,
+    refine.solve_several, refine.keep_closed,
+)  # fmt: skip
+
+
 def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     """Constants of steps of size h."""
     n_q = scene.n_q
-    stiff = bool(m.linear and (np.any(m.C) or np.any(m.K)))
-    steady = bool(m.linear and not stiff and m.force == ABSENT and m.frame == ABSENT and m.omega == 0.0)
+    trapezoidal = m.linear and scene.n_j == 0
+    stiff = bool(trapezoidal and (np.any(m.C) or np.any(m.K)))
+    steady = bool(trapezoidal and not stiff and m.force == ABSENT and m.frame == ABSENT and m.omega == 0.0)
     A_inverse = np.zeros((2, n_q, n_q))
-    if m.linear:
+    if trapezoidal:
         implicit = h if method.order == 2 else 0.0
         A_inverse[:] = np.linalg.inv(m.M + 0.5 * implicit * m.C + 0.25 * implicit**2 * m.K)
     size = max(np.max(np.abs(x), initial=0.0) for x in (scene.q0, m.offset, h * np.asarray(scene.v0)))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     return work.Plan(
-        h=h, stiff=stiff, steady=steady,
-        plain=bool(m.linear and m.flat and m.motion == ABSENT), constant=bool(m.linear and m.flat),
+        h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
+        plain=bool(trapezoidal and m.flat and m.motion == ABSENT), constant=bool(trapezoidal and m.flat),
         small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
         exact=method.order == "exact", longest=longest(scene, m, method),
@@ -153,7 +168,7 @@ def polynomial(n_q: int, n_c: int) -> work.Polynomial:
     )  # fmt: skip
 
 
-def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
+def start(scene: Scene, fast: bool, joints: Joined | None) -> work.Work:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
     vec = np.zeros((work.N_VEC, n_q))
@@ -168,7 +183,7 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool) -> work.Work:
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
         pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
-        solver=solver_address(solver, lcp) if fast else solver, lcp=lcp,
+        solver=solver_address(solver, lcp) if fast else solver, lcp=lcp, joints=joints,
     )  # fmt: skip
 
 
@@ -193,16 +208,22 @@ class _Run:
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model, fast = model(scene)
+        joints = None
+        if scene.n_j > 0:
+            (self.model, rows, _), fast = models(scene)
+            joints = joined(scene, self.model, rows, fast and not jit_disabled())
+        else:
+            self.model, fast = model(scene)
         self.fast = fast and not jit_disabled()
+        self.never = (*HOOKS, refine.solve_unrefined) if joints is None else UNJOINED
         self.plan = plan(scene, self.model, method, method.h)
-        self.work = start(scene, self.model, self.plan, self.fast)
+        self.work = start(scene, self.fast, joints)
         respond(self.model, self.plan, self.work)
         run: Callable[..., int] = loop.run if method.order == 2 else polynomial_loop.run
-        self.run = compiled(run) if self.fast else run
+        self.run = compiled(run, self.never) if self.fast else run
         self.x = np.zeros(work.N_NUMBERS)
         self.piece = polynomial(scene.n_q, scene.n_c)
-        self.recorder = Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 8)
+        self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
         self.count = np.zeros(work.N_COUNTERS, dtype=np.int64)
         self.totals = {"events": 0}
         self.t0, self.first = scene.t_span[0], 0
@@ -211,7 +232,7 @@ class _Run:
         """Run to the end of the span, or to where it cannot go on."""
         t_start, tolerance = self.scene.t_span[0], self.method.tolerance
         try:
-            begin = compiled(loop.begin) if self.fast else loop.begin
+            begin = compiled(loop.begin, self.never) if self.fast else loop.begin
             code = begin(self.model, self.plan, self.work, self.x, self.recorder.buffers, self.count, t_start)
             status = STATUS[code]
             if status == Status.DONE:
@@ -321,7 +342,7 @@ class _Run:
         """Everything computed so far."""
         self.empty()
         kept, w = self.recorder.states(), self.work
-        q_now, v_now, impulse_now = w.vec[work.Q], w.vec[work.V], w.num[work.IMPULSE]
+        q_now, v_now, impulse_now = w.vec[work.Q], w.vec[work.V], self.impulse()
         t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
@@ -333,6 +354,7 @@ class _Run:
         if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
         count = self.count
+        impulse, joint = np.split(impulse, [self.scene.n_c], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
             impacts=self.recorder.events(), status=status, message=self.message(status, *last),
@@ -341,7 +363,14 @@ class _Run:
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
             dense=interpolation.parabolic(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
+            joint_impulse=joint,
         )  # fmt: skip
+
+    def impulse(self) -> Array:
+        """Impulses of contacts and joints since the last kept state."""
+        joints = self.work.joints
+        of_joints = np.zeros(0) if joints is None else joints.own.num[JOINT_IMPULSE]
+        return np.concatenate([self.work.num[work.IMPULSE], of_joints])
 
     def again(self) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, by another run that keeps them."""
@@ -369,6 +398,10 @@ class _Run:
             return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.STEP_TOO_SMALL:
             return adaptive.too_small(self.method.tolerance, where)
+        if status == Status.JOINTS_FAILED:
+            return f"joint {self.work.joints.own.order[CULPRIT]} contradicts others {where}"
+        if status == Status.PROJECTION_FAILED:
+            return f"no position near satisfies joint {self.work.joints.own.order[CULPRIT]} {where}"
         if status == Status.LCP_FAILED:
             n = int(self.count[work.MEMBERS])
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
@@ -383,4 +416,6 @@ STATUS = {
     work.NOT_FINITE: Status.NOT_FINITE,
     work.LCP_FAILED: Status.LCP_FAILED,
     work.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
+    work.JOINTS_FAILED: Status.JOINTS_FAILED,
+    work.NO_POSITION: Status.PROJECTION_FAILED,
 }

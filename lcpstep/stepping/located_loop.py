@@ -19,6 +19,15 @@ from lcpstep.recording import LEAD, write_row
 from lcpstep.recording import TIME as ROW_TIME
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
+from lcpstep.stepping.located_joints import (
+    joints_failed,
+    load_joints,
+    put_on_joints,
+    share_out,
+    take_back,
+    turn_with_joints,
+    write_joints,
+)
 from lcpstep.stepping.located_work import (
     A_FROM,
     ALPHA,
@@ -104,7 +113,7 @@ LATE = 1e-9  # of a step: what rounding may take from the last one's end
 def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
     """Forces, gaps and status of the initial state, which is kept where states are."""
     x[LOW], x[HIGH] = find_corners(plan, t)
-    if m.linear:
+    if plan.trapezoidal:
         external_force(m, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FORCE])
     elif not free_acceleration(m, w, t, w.vec[Q], w.vec[V], w.vec[FREE]):
         return NOT_FINITE
@@ -139,7 +148,7 @@ def run(
 ) -> int:
     """Steps count[STEP] .. last - 1, step `first` beginning at t0; says why it returned."""
     n_c = w.num.shape[1]
-    single = model.linear and model.flat and n_c <= 1 and w.vec.shape[1] == 1 and len(record.times) == 0
+    single = plan.trapezoidal and model.flat and n_c <= 1 and w.vec.shape[1] == 1 and len(record.times) == 0
     while count[STEP] < last:
         if x[UNDER_WAY] == 0.0:
             if single and (n_c == 0 or w.mark[STATUS, 0] == OPEN):
@@ -160,6 +169,9 @@ def run(
         x[UNDER_WAY] = 0.0
         if not finite(w):
             return NOT_FINITE
+        code = joints_failed(w)
+        if code != FINISHED:
+            return code
         if record.every > 0 and count[STEP] % record.every == 0:
             keep(w, record, count, t_next)
     return FINISHED
@@ -302,17 +314,18 @@ def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> b
     now, turns = t + x[SIGMA], False
     if now >= x[HIGH] - plan.margin:
         x[LOW], x[HIGH] = find_corners(plan, now)
-        turns = obstacles_move(m)
-        if m.linear and not plan.steady:
+        turns = obstacles_move(m) or plan.joined
+        if plan.trapezoidal and not plan.steady:
             external_force(m, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FORCE])
-        elif not m.linear:
+        elif not plan.trapezoidal:
+            turn_with_joints(w, within(plan, x, now))
             free_acceleration(m, w, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FREE])
         count[FORCES] += 1
     x[END] = plan.h
     if t + plan.h > x[HIGH] + plan.margin:
         x[END] = max(x[HIGH] - t, x[SIGMA])
     end = within(plan, x, t + x[END])
-    if m.linear and not plan.steady:
+    if plan.trapezoidal and not plan.steady:
         external_force(m, end, w.vec[Q], w.vec[V], w.vec[NEXT_FORCE])
         count[FORCES] += 1
     if m.flat and m.motion != ABSENT:
@@ -376,6 +389,7 @@ def flat_accelerations(m: Any, plan: Any, w: Any, t: float, x: Any) -> None:
             s, s_end = m.motion_now[c, 2], w.num[END_S, c]
             w.num[ALPHA, c] -= 0.5 * (s + s_end)
             w.num[BEND, c] = (s_end - s) / 6.0
+            w.num[BIAS, c] = -0.5 * (s + s_end)
 
 
 @inline
@@ -430,6 +444,7 @@ def polish(m: Any, plan: Any, w: Any, c: int, t: float, tau: float, rest: float)
     for _ in range(POLISHING):
         for i in range(w.vec.shape[1]):
             w.vec[Q_TRY, i] = w.vec[Q, i] + tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
+        put_on_joints(w, t + tau, plan.slack, w.vec[Q_TRY])
         gaps(m, t + tau, w.vec[Q_TRY], w.vec[V], w.num[GAP_TRY])
         u = w.num[RATE, c] + 2.0 * tau * w.num[HALF, c]
         if abs(w.num[GAP_TRY, c]) <= 0.125 * plan.slack:
@@ -454,7 +469,8 @@ def move(
     m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, to_end: bool, count: Any
 ) -> int:
     """Go on to x[SIGMA] + tau; contacts that were closed all the way stay on the surface."""
-    now = t + x[SIGMA]
+    now, first_row = t + x[SIGMA], count[ROW]
+    load_joints(w)
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
     wanted = count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < end
     if wanted and plan.plain:
@@ -467,7 +483,7 @@ def move(
         if not advance(m, plan, w, x, within(plan, x, now), tau, count):
             return NOT_FINITE
     x[SIGMA] = x[END] if to_end else x[SIGMA] + tau
-    if to_end and m.linear and not plan.steady:
+    if to_end and plan.trapezoidal and not plan.steady:
         assign(w.vec[FORCE], w.vec[NEXT_FORCE])
     if tau > 0.0 and (x[CLOSED_NOW] > 0 or penetrates(plan, w)):
         if plan.plain:
@@ -485,6 +501,7 @@ def move(
             measure(m, plan, w, x, now + tau)
     if wanted and not plan.plain:
         keep_between(m, plan, w, x, record, count, now, tau, end)
+    share_out(w, record, count, first_row, now, tau)
     return FINISHED
 
 
@@ -519,10 +536,10 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
             d = w.mark[CHOSEN, k]
             lift(m, plan, w, w.vec[Q], d, -height(m, w, d))
             straighten(m, plan, w, d)
-    if m.linear and not plan.steady:
+    if plan.trapezoidal and not plan.steady:
         external_force(m, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FORCE])
         count[FORCES] += 1
-    elif not m.linear:
+    elif not plan.trapezoidal:
         if not free_acceleration(m, w, within(plan, x, now), w.vec[Q], w.vec[V], w.vec[FREE]):
             return NOT_FINITE
         count[FORCES] += 1
@@ -579,6 +596,7 @@ def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: 
             w.vec[Q_TRY, i] = w.vec[Q, i] + tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
             w.vec[V_TRY, i] = w.vec[V, i] + tau * w.vec[A, i]
         write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q_TRY], w.vec[V_TRY], w.num[IMPULSE])
+        write_joints(w, record.rows[count[ROW]])
         count[ROW] += 1
         count[NEXT_TIME] += 1
 
@@ -616,6 +634,7 @@ def keep_between(
         share = r
         settle_state(m, plan, w, x, t, w.vec[Q_TRY])
         write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q_TRY], w.vec[V_TRY], w.num[IMPULSE])
+        write_joints(w, record.rows[count[ROW]])
         count[ROW] += 1
         count[NEXT_TIME] += 1
     for c in range(n_c):
@@ -632,5 +651,7 @@ def keep(w: Any, record: Any, count: Any, t: float) -> None:
         count[ROW] -= 1
         for c in range(w.num.shape[1]):
             w.num[IMPULSE, c] += record.rows[count[ROW], LEAD + 2 * w.vec.shape[1] + c]
+        take_back(w, record.rows[count[ROW]])
     write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q], w.vec[V], w.num[IMPULSE])
+    write_joints(w, record.rows[count[ROW]])
     count[ROW] += 1

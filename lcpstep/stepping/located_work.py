@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 # Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS = range(5)
+FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION = range(7)
 # Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact, contacts
 # of the last problem of several
 STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS = range(9)
@@ -101,6 +101,8 @@ class Plan(NamedTuple):
     """Constants of a run."""
 
     h: float
+    trapezoidal: bool  # a linear system without joints, which moves by the trapezoidal rule
+    joined: bool  # there are joints
     stiff: bool  # C or K is not zero
     steady: bool  # the acceleration without contact never changes
     plain: bool  # flat contacts at rest: gaps follow from their own quadratics
@@ -141,6 +143,7 @@ class Work(NamedTuple):
     pivots: Any  # (n_c + 1,)
     solver: Any
     lcp: Any
+    joints: Any  # `located_joints.Joined`, or None
 
 
 class Polynomial(NamedTuple):

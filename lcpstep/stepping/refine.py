@@ -55,6 +55,8 @@ def solve_chosen(m: Any, plan: Any, w: Any, W: Any, place: int, n: int, count: A
         if W[c, c] > 0.0:
             w.num[Z, 0] = max(0.0, -w.num[B, 0] / W[c, c])
             return True
+    if plan.joined:
+        return solve_unrefined(W, w.num, w.mark, w.problem[: n * n].reshape((n, n)), w.solver, w.lcp, n)
     factored = place == INERTIA and m.mass != ABSENT
     inverse = w.M if factored else (m.M_inverse if place == INERTIA else plan.A_inverse[place])
     return solve_several(
@@ -70,6 +72,14 @@ def solve_chosen(m: Any, plan: Any, w: Any, W: Any, place: int, n: int, count: A
         w.lcp,
         n,
     )
+
+
+def solve_unrefined(W: Any, num: Any, mark: Any, P: Any, solver: Any, lcp: Any, n: int) -> bool:
+    """The same from W alone: with joints W is not G A^-1 G^T."""
+    for i in range(n):
+        for j in range(n):
+            P[i, j] = W[mark[CHOSEN, i], mark[CHOSEN, j]]
+    return call_solver(solver, P, num[B, :n], num[Z, :n], lcp) == 0
 
 
 def solve_several(

@@ -14,10 +14,19 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import call, inline
+from lcpstep.compiled import inline
 from lcpstep.dense import assign, factorise, positive_definite, solve, solve_definite
-from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
+from lcpstep.dynamics import bias, gap_rates, gaps, mass, product, total_force
 from lcpstep.model import ABSENT
+from lcpstep.stepping.located_joints import (
+    join_acceleration,
+    meet_joints,
+    put_on_joints,
+    reach_joints,
+    reduce_mobility,
+    settle_velocity,
+    take_joints,
+)
 from lcpstep.stepping.located_work import (
     A_TRY,
     BIAS,
@@ -52,7 +61,6 @@ from lcpstep.stepping.located_work import (
     Z,
 )
 
-DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
 LANDINGS = 6  # Newton iterations onto the surface
 ON_THE_SURFACE = 1 / 16  # of what counts as closed: where these end
 
@@ -93,7 +101,7 @@ def accelerate(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
     """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
     rest = x[END] - x[SIGMA]
     place = WHOLE if rest == plan.h or not plan.stiff else REST
-    if not m.linear or plan.steady:
+    if not plan.trapezoidal or plan.steady:
         return place
     if place == REST:
         if plan.small:
@@ -121,12 +129,14 @@ def free_acceleration(m: Any, w: Any, t: float, q: Any, v: Any, out: Any) -> boo
         total_force(m, t, q, v, w.vec[FORCE])
         for i in range(len(out)):
             out[i] = product(m.M_inverse, w.vec[FORCE], i)
+        join_acceleration(w, t, q, v, out)
         return True
     total_force(m, t, q, v, out)
     mass(m, t, q, v, w.M)
     if not positive_definite(w.M):
         return False
     solve_definite(w.M, out)
+    join_acceleration(w, t, q, v, out)
     return True
 
 
@@ -139,6 +149,7 @@ def mobility(m: Any, w: Any, c: int) -> None:
     else:
         assign(w.MG[c], w.G[c])
         solve_definite(w.M, w.MG[c])
+    reduce_mobility(w, c)
 
 
 @inline
@@ -152,36 +163,18 @@ def respond(m: Any, w: Any) -> None:
 
 @inline
 def refactor(m: Any, w: Any, t: float) -> bool:
-    """Factors of the mass matrix at the state w.vec[Q]."""
-    if m.mass == ABSENT:
-        return True
-    mass(m, t, w.vec[Q], w.vec[V], w.M)
-    return positive_definite(w.M)
+    """Factors of the mass matrix and of the joints at the state w.vec[Q]."""
+    if m.mass != ABSENT:
+        mass(m, t, w.vec[Q], w.vec[V], w.M)
+        if not positive_definite(w.M):
+            return False
+    take_joints(w, t)
+    return True
 
 
 def gap_bias(m: Any, w: Any, t: float, q: Any, v: Any) -> None:
-    """(dG/dt) v + d(g_t)/dt along the motion, into w.num[BIAS]; by differences where the scene does not give it."""
-    n_c = w.num.shape[1]
-    if m.bias != ABSENT:
-        call(m.bias, t, q, v, m.p, w.num[BIAS])
-        return
-    size = 1.0
-    for i in range(len(q)):
-        size = max(size, abs(v[i]))
-    d = DIFFERENCE / size
-    for c in range(n_c):
-        w.num[BIAS, c] = 0.0
-    for k in range(4):
-        shift, weight = (
-            (d, 8.0)
-            if k == 0
-            else ((-d, -8.0) if k == 1 else ((2.0 * d, -1.0) if k == 2 else (-2.0 * d, 1.0)))
-        )
-        for i in range(len(q)):
-            w.vec[Q_TRY, i] = q[i] + shift * v[i]
-        gap_rates(m, t + shift, w.vec[Q_TRY], v, w.G_try, w.num[GAP_T_TRY])
-        for c in range(n_c):
-            w.num[BIAS, c] += weight * (product(w.G_try, v, c) + w.num[GAP_T_TRY, c]) / (12.0 * d)
+    """Gap accelerations at v' = 0 into w.num[BIAS]."""
+    bias(m, t, q, v, w.vec[Q_TRY], w.G_try, w.num[GAP_T_TRY], w.num[BIAS])
 
 
 @inline
@@ -214,6 +207,7 @@ def shift(w: Any, tau: float) -> None:
 def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
     for _ in range(LANDINGS):
+        put_on_joints(w, t, plan.slack, w.vec[Q])
         gaps(m, t, w.vec[Q], w.vec[V], w.num[GAP_TRY])
         worst = 0.0
         for c in range(w.num.shape[1]):
@@ -232,13 +226,16 @@ def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
 
 
 def settle_state(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any) -> None:
-    """Q, a state within a piece, onto closed contacts and out of obstacles."""
-    if plan.plain or w.num.shape[1] == 0 or (plan.exact and x[CLOSED_NOW] > 0):
+    """Q, a position within a piece, onto closed contacts and joints and out of obstacles; V_TRY onto joints."""
+    free = plan.plain or w.num.shape[1] == 0 or (plan.exact and x[CLOSED_NOW] > 0)
+    if free and not plan.joined:
         return
     assign(w.vec[Q_BASE], w.vec[Q])
     assign(w.vec[Q], q)
+    put_on_joints(w, t, plan.slack, w.vec[Q])
     if refactor(m, w, t):
         put_on_surface(m, plan, w, t)
+        settle_velocity(w, t)
     assign(q, w.vec[Q])
     assign(w.vec[Q], w.vec[Q_BASE])
 
@@ -293,11 +290,12 @@ def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any)
         w.vec[Q, i] += tau * (w.vec[V, i] + 0.5 * tau * w.vec[A, i])
     for c in range(w.num.shape[1]):
         w.num[IMPULSE, c] += 0.5 * tau * w.num[FORCE_NOW, c]
+    reach_joints(w, t_next, tau, plan.slack)
     if x[CLOSED_NOW] > 0:
         if not refactor(m, w, t_next):
             return False
         put_on_surface(m, plan, w, t_next)
-    if m.linear:
+    if plan.trapezoidal:
         for i in range(n):
             w.vec[V, i] += 0.5 * tau * (w.vec[FREE, i] + w.vec[A, i])
     else:
@@ -307,5 +305,6 @@ def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any)
         for i in range(n):
             w.vec[V, i] += 0.5 * tau * (w.vec[A_TRY, i] + w.vec[A, i])
             w.vec[FREE, i] = w.vec[A_TRY, i]
+        meet_joints(w, t_next, tau)
     measure(m, plan, w, x, t_next)
     return True

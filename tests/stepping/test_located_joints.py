@@ -1,0 +1,352 @@
+"""Joints in the steps with located impacts: against closed forms, fewer coordinates, and the event-driven motion."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
+from lagrangian.scenes.double_pendulum import REFERENCE_STATES, REFERENCE_TIMES
+from lagrangian.scenes.pendulum import tension
+from lcpstep import EventDriven, Kind, LcpStepError, Located, simulate
+from tests.known import SPREAD
+from tests.stepping.test_joints import (
+    G0,
+    place,
+    platform,
+    platform_jacobian,
+    point_on_a_rod,
+    shaker,
+    swing,
+    three_parting,
+    two_rods,
+    two_rods_jacobian,
+    wire,
+    wire_jacobian,
+    wire_rate,
+)
+from tests.stepping.test_order import slope
+
+
+@pytest.fixture
+def plain(monkeypatch):
+    """Kernels in plain Python: the loop with joints takes long to compile, and these tests need few steps."""
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+
+
+def errors_of(scene, levels, at, q, spread=(1.0,)):
+    """Largest distance from the positions q at the times `at`; each level a mean over `spread`, no drift anywhere."""
+    errors = []
+    for n in levels:
+        runs = [simulate(scene, Located(np.ptp(scene.t_span) / round(n * s)), keep=at) for s in spread]
+        assert max(np.max(m.joint_drift) for m in runs) < 1e-12
+        assert max(np.max(m.penetration, initial=0.0) for m in runs) < 1e-12
+        errors.append(np.mean([np.max(np.abs(m.q - q)) for m in runs]))
+    return errors
+
+
+# --- the pendulum with a stop
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_point_on_a_rod_strikes_a_stop_with_order_two():
+    scene = scenes.pendulum_stop(form="rod")
+    at, levels = np.linspace(*scene.t_span, 50), (125, 250, 500)
+    assert slope(levels, errors_of(scene, levels, at, scene.exact(at)[0])) >= 1.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("restitution", [1.0, 0.8, 0.0])
+def test_a_point_on_a_rod_strikes_a_stop_as_the_angle_does(restitution):
+    rod, angle = (scenes.pendulum_stop(form=form, restitution=restitution) for form in ("rod", "angle"))
+    at, levels = np.linspace(*rod.t_span, 200), (125, 250, 500, 1000, 2000)
+    errors = errors_of(rod, levels, at, rod.exact(at)[0], SPREAD[:3])
+    assert slope(levels, errors) >= 1.9
+    for n in levels[::2]:
+        a, b = (simulate(scene, Located(5.0 / n), keep=at) for scene in (rod, angle))
+        assert len(a.impacts) == len(b.impacts)
+        assert np.max(np.abs(np.arctan2(a.q[:, 0], -a.q[:, 1]) - b.q[:, 0])) < 3.0 * errors[levels.index(n)]
+
+
+@pytest.mark.usefixtures("plain")
+def test_the_tension_of_the_rod_is_of_order_two():
+    scene, angle = scenes.pendulum_stop(form="rod"), scenes.pendulum_stop().exact
+    times = np.arange(0.0, 5.0, 0.05)
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    levels, errors = (100, 200, 400), []
+    for n in levels:
+        m = simulate(scene, Located(5.0 / n), keep=times)
+        worst = 0.0
+        for k in range(1, len(times)):
+            if not np.any((m.impacts.time >= times[k - 1]) & (m.impacts.time <= times[k])):
+                theta, rate = angle(times[k - 1] + 0.025 * (1.0 + nodes))
+                mean = 0.5 * weights @ tension(theta, rate, 1.0, 9.81)[:, 0]
+                worst = max(worst, abs(-m.joint_impulse[k, 0] / 0.05 - mean))
+        errors.append(worst)
+    assert slope(levels, errors) >= 1.9
+    assert errors[-1] < 5e-3
+
+
+@pytest.mark.slow
+def test_a_rod_swings_for_long_without_drift_and_keeps_its_energy():
+    scene = point_on_a_rod(2.0, 100.0)
+    drifts = []
+    for h in (2e-2, 1e-2):
+        m = simulate(scene, Located(h))
+        energy = 0.5 * np.sum(m.v**2, axis=1) + G0 * m.q[:, 1]
+        drifts.append(np.max(np.abs(energy - energy[0])))
+        assert np.max(m.joint_drift) < 1e-12
+        assert np.max(np.abs(np.sum(m.q * m.v, axis=1))) < 1e-12
+    assert drifts[1] < 0.3 * drifts[0]
+
+
+@pytest.mark.usefixtures("plain")
+def test_impulses_add_up_between_kept_states():
+    scene = scenes.pendulum_stop(form="rod", t_end=2.0)
+    every, some = simulate(scene, Located(1e-2)), simulate(scene, Located(1e-2), keep=[0.123, 0.777, 2.0])
+    hits = simulate(scene, Located(1e-2), keep="impacts")
+    for m in (every, some, hits):
+        assert m.joint_impulse.shape == (len(m.t), 1)
+    np.testing.assert_allclose(some.joint_impulse.sum(), every.joint_impulse.sum(), rtol=1e-13)
+    np.testing.assert_allclose(hits.joint_impulse.sum(), every.joint_impulse.sum(), rtol=1e-13)
+
+
+# --- two rods
+
+
+def wall(t, q, v, p, out):
+    out[0] = p[0] - q[2]
+
+
+def wall_jacobian(t, q, v, p, out):
+    out[0, 0] = out[0, 1] = out[0, 3] = 0.0
+    out[0, 2] = -1.0
+
+
+def two_points(a, b, t_end, contacts=None, p=None):
+    """Two unit masses on two unit rods, one hung on the other."""
+    return Scene(
+        LinearSystem(M=np.eye(4), force=[0.0, -G0, 0.0, -G0]), place(a, b), np.zeros(4), (0.0, t_end),
+        contacts=contacts, joints=Joints(2, two_rods, two_rods_jacobian), p=p, name="two rods",
+    )  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("curved", [False, True])
+def test_a_double_pendulum_by_joints_strikes_a_wall_as_in_angles(curved):
+    flat = LinearContacts([[0.0, 0.0, -1.0, 0.0]], offset=0.0, restitution=0.7)
+    contacts = Contacts(1, wall, wall_jacobian, restitution=0.7) if curved else flat
+    scene = two_points(-1.0, -1.2, 3.0, contacts, p=[0.0])
+    a, b = REFERENCE_STATES[:, 0], REFERENCE_STATES[:, 1]
+    known = np.array([place(*angles) for angles in zip(a, b, strict=True)])
+    levels = (300, 600, 1200, 2400)
+    errors = errors_of(scene, levels, REFERENCE_TIMES, known, SPREAD[:3])
+    assert slope(levels, errors) >= 1.9
+
+
+def both_stops(restitution):
+    """A wall on either side of the double pendulum: the upper mass strikes the left one, the tip the right one."""
+    G = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0]]
+    return two_points(0.5, -0.2, 2.0, LinearContacts(G, offset=[0.0, 0.3], restitution=restitution))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("restitution", [0.6, 0.0])
+def test_two_rods_between_two_stops_converge_with_order_two(restitution):
+    scene = both_stops(restitution)
+    at = np.linspace(0.0, 2.0, 101)
+    exact = simulate(scene, EventDriven(), keep=at)
+    assert len(set(exact.impacts.contact)) == 2
+    levels = (100, 200, 400, 800, 1600)
+    errors = errors_of(scene, levels, at, exact.q, SPREAD[:3])
+    assert slope(levels, errors) >= 1.9
+    fine = simulate(scene, Located(1e-3), keep=at)
+    assert np.max(np.abs(fine.impulse.sum(axis=0) - exact.impulse.sum(axis=0))) < 2e-3
+    assert np.max(np.abs(fine.joint_impulse.sum(axis=0) - exact.joint_impulse.sum(axis=0))) < 2e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("restitution", [0.9, [1.0, 0.3], 0.0])
+def test_impacts_never_create_energy_and_leave_the_joints_alone(restitution):
+    scene = both_stops(restitution)
+    m = simulate(scene, Located(1e-2), keep="impacts")
+    energy = 0.5 * np.sum(m.v**2, axis=1)
+    before = simulate(scene, Located(1e-2), keep=np.unique(m.impacts.time - 1e-9))
+    for t in np.unique(m.impacts.time[m.impacts.kind == Kind.IMPACT]):
+        i, k = np.argmin(np.abs(m.t - t)), np.argmin(np.abs(before.t - t))
+        assert energy[i] <= 0.5 * np.sum(before.v[k] ** 2) + 1e-6
+    J, rates = np.zeros((2, 4)), []
+    for q, v in zip(m.q, m.v, strict=True):
+        two_rods_jacobian(0.0, q, v, [], J)
+        rates.append(J @ v)
+    assert np.max(np.abs(rates)) < 1e-12
+    assert np.max(m.joint_drift) < 1e-12
+
+
+@pytest.mark.usefixtures("plain")
+def test_the_blow_at_the_tip_is_shared_by_both_rods():
+    # hanging straight, the tip is struck sideways: the rods turn, and no rod feels the blow; along them both do
+    G = [[0.0, 0.0, 0.0, 1.0]]
+    scene = Scene(
+        LinearSystem(M=np.diag([1.0, 1.0, 2.0, 2.0]), force=np.zeros(4)), [0.0, 0.0, 0.0, -1.0],
+        [0.0, -2.0, 0.0, -2.0], (0.0, 1.0), joints=LinearJoints([[0.0, 1.0, 0.0, -1.0]], offset=-1.0),
+        contacts=LinearContacts(G, offset=1.5, restitution=0.5),
+    )  # fmt: skip
+    m = simulate(scene, Located(1e-2))
+    assert m.impacts.time[0] == pytest.approx(0.25, abs=1e-14)
+    np.testing.assert_allclose(m.v[-1], [0.0, 1.0, 0.0, 1.0], atol=1e-14)
+    assert m.impulse.sum() == pytest.approx(3.0 * 3.0, rel=1e-13)
+    assert m.joint_impulse.sum() == pytest.approx(3.0, rel=1e-13)
+
+
+# --- sticking and release
+
+
+@pytest.mark.slow
+def test_a_mass_rests_sticks_and_leaves_as_the_joint_lets_it():
+    """A driven mass tied to another one, which lies on a floor until the tie pulls it up."""
+    scene = Scene(
+        LinearSystem(M=np.eye(2), force=[0.0, -G0]), [0.0, 0.0], [0.0, 0.0], (0.0, 4.0),
+        joints=LinearJoints([[1.0, -1.0]], motion=heave), contacts=LinearContacts([[0.0, 1.0]], restitution=0.3),
+        p=[1.5 * G0],
+    )  # fmt: skip
+    exact = simulate(scene, EventDriven())
+    kinds = set(exact.impacts.kind)
+    assert {Kind.IMPACT, Kind.STICK, Kind.RELEASE} <= kinds
+    at = np.linspace(0.0, 4.0, 201)
+    levels = (200, 400, 800, 1600)
+    errors = errors_of(scene, levels, at, exact.at(at)[0], SPREAD[:3])
+    assert slope(levels, errors) >= 1.9
+
+
+def heave(t, q, v, p, out):
+    """Distance of the first mass from the second one: its mass pulls the second up and lets it down again."""
+    w = 2.0
+    out[0, 0] = p[0] * (1.0 - math.cos(w * t)) / w**2 * 2.0
+    out[0, 1] = p[0] * math.sin(w * t) / w * 2.0
+    out[0, 2] = p[0] * math.cos(w * t) * 2.0
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_joint_and_a_floor_hold_a_mass_in_balance():
+    # on the line x = y, above the floor 0.6 x + 0.8 y = 0: 1.4 lambda = g
+    h = 1e-2
+    scene = Scene(
+        LinearSystem(M=np.eye(2), force=[0.0, -G0]), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0),
+        joints=LinearJoints([[1.0, -1.0]]), contacts=LinearContacts([[0.6, 0.8]], restitution=0.5),
+    )  # fmt: skip
+    m = simulate(scene, Located(h))
+    assert np.max(np.abs(m.q)) < 1e-13
+    np.testing.assert_allclose(m.impulse[1:, 0], h * G0 / 1.4, rtol=1e-10)
+    np.testing.assert_allclose(m.joint_impulse[1:, 0], -0.6 * h * G0 / 1.4, rtol=1e-10)
+
+
+# --- joints that move, masses that depend on the position
+
+
+def locked(t, q, v, p, out):
+    out[0] = math.sin(q[0] - q[1])
+
+
+def locked_jacobian(t, q, v, p, out):
+    out[0, 0], out[0, 1] = math.cos(q[0] - q[1]), -math.cos(q[0] - q[1])
+
+
+@pytest.mark.usefixtures("plain")
+@pytest.mark.parametrize("curved", [False, True])
+def test_a_joint_locks_a_mechanism_whose_mass_depends_on_its_position(curved):
+    # a double pendulum with its hinge locked: one rigid pendulum with (1 + 4) w' = -(1 + 2) g sin
+    joints = Joints(1, locked, locked_jacobian) if curved else LinearJoints([[1.0, -1.0]])
+    free = scenes.double_pendulum()
+    scene = Scene(free.system, [1.0, 1.0], [0.0, 0.0], (0.0, 2.0), joints=joints, p=free.p)
+    at, levels = np.linspace(0.0, 2.0, 101), (100, 200, 400)
+    errors = errors_of(scene, levels, at, swing(at, 1.0, math.sqrt(0.6 * G0))[0][:, None])
+    assert slope(levels, errors) >= 1.9
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_bead_flies_out_along_a_turning_wire():
+    w, t_end = 1.5, 1.5
+    scene = Scene(
+        LinearSystem(M=np.eye(2)), [1.0, 0.0], [0.0, w], (0.0, t_end),
+        joints=Joints(1, wire, wire_jacobian, wire_rate), p=[w],
+    )  # fmt: skip
+    at, levels = np.linspace(0.0, t_end, 101), (75, 150, 300)
+    r = np.cosh(w * at)
+    known = np.stack([r * np.cos(w * at), r * np.sin(w * at)], axis=1)
+    assert slope(levels, errors_of(scene, levels, at, known)) >= 1.9
+    forces = []
+    for n in levels:
+        m = simulate(scene, Located(t_end / n))
+        middle = 0.5 * (m.t[1:] + m.t[:-1])
+        coriolis = 2.0 * w * w * np.sinh(w * middle)
+        forces.append(np.max(np.abs(m.joint_impulse[1:, 0] / (t_end / n) - coriolis)))
+    assert slope(levels, forces) >= 1.9
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_driven_support_shakes_a_mass_on_a_spring():
+    # x'' = -(x - sin 2t) from rest: x = (2 sin t - sin 2t) / 3
+    scene = Scene(
+        LinearSystem(M=np.eye(2), K=[[1.0, -1.0], [-1.0, 1.0]]), [0.0, 0.0], [2.0, 0.0], (0.0, 5.0),
+        joints=LinearJoints([[1.0, 0.0]], motion=shaker),
+    )  # fmt: skip
+    at, levels = np.linspace(0.0, 5.0, 101), (100, 200, 400)
+    known = np.stack([np.sin(2.0 * at), (2.0 * np.sin(at) - np.sin(2.0 * at)) / 3.0], axis=1)
+    assert slope(levels, errors_of(scene, levels, at, known)) >= 1.9
+
+
+# --- joints that say the same, or the contrary
+
+
+@pytest.mark.usefixtures("plain")
+def test_a_platform_on_three_parallel_rods_is_not_locked_by_the_third():
+    # it moves along a circle without turning, as a pendulum; two rods would do
+    scene = Scene(
+        LinearSystem(M=np.diag([1.0, 1.0, 0.2]), force=[0.0, -G0, 0.0]), [math.sin(1.0), -math.cos(1.0), 0.0],
+        np.zeros(3), (0.0, 3.0), joints=Joints(3, platform, platform_jacobian), p=[-1.0, 0.3, 1.0],
+    )  # fmt: skip
+    at, levels = np.linspace(0.0, 3.0, 101), (100, 200, 400)
+    angle, _ = swing(at, 1.0, math.sqrt(G0))
+    known = np.stack([np.sin(angle), -np.cos(angle), 0.0 * angle], axis=1)
+    assert slope(levels, errors_of(scene, levels, at, known)) >= 1.9
+
+
+@pytest.mark.usefixtures("plain")
+def test_redundant_joints_share_the_force_and_change_no_motion():
+    # the same joint three times, once doubled, once reversed: each carries a third, in its own unit
+    def pair(G):
+        return Scene(
+            LinearSystem(M=np.diag([1.0, 2.0]), force=[1.0, 0.0]), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0),
+            joints=LinearJoints(G),
+        )  # fmt: skip
+
+    h = 1e-2
+    one, three = (simulate(pair(G), Located(h)) for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]]))
+    np.testing.assert_allclose(three.q, one.q, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(one.q[-1], 1 / 6, rtol=1e-12)
+    np.testing.assert_allclose(one.joint_impulse[1:, 0], -2 / 3 * h, rtol=1e-12)
+    np.testing.assert_allclose(
+        three.joint_impulse[1:], np.tile(np.array([-2, -1, 2]) / 9 * h, (100, 1)), rtol=1e-12
+    )
+
+
+@pytest.mark.usefixtures("plain")
+def test_contradicting_joints_end_the_run():
+    scene = Scene(
+        LinearSystem(M=np.eye(3)), np.zeros(3), [0.0, 1.0, 0.0], (0.0, 1.0),
+        joints=LinearJoints([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], motion=three_parting),
+    )  # fmt: skip
+    m = simulate(scene, Located(1e-2))
+    assert m.status.name in ("JOINTS_FAILED", "PROJECTION_FAILED")
+    assert m.t[-1] == pytest.approx(0.5, abs=2e-2)
+    assert np.all(np.isfinite(m.q))
+
+
+# --- what is refused
+
+
+@pytest.mark.parametrize("options", [{"order": 4}, {"order": "exact"}, {"tolerance": 1e-6}])
+def test_joints_are_refused_where_they_are_not_treated(options):
+    with pytest.raises(LcpStepError, match="joints"):
+        simulate(scenes.pendulum_stop(form="rod"), Located(1e-2, **options))
