@@ -7,7 +7,12 @@ import math
 import numpy as np
 
 from lagrangian import scenes
-from lagrangian.scenes.double_pendulum import REFERENCE_IMPACTS, REFERENCE_STATES, REFERENCE_TIMES
+from lagrangian.scenes.double_pendulum import (
+    REFERENCE_IMPACTS,
+    REFERENCE_STATES,
+    REFERENCE_TIMES,
+    as_points,
+)
 from lagrangian.scenes.pendulum import tension
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.slider_crank import energy
@@ -87,6 +92,32 @@ def rod_tension(solve: Solver) -> float:
 def double_states(solve: Solver) -> float:
     run = solve(scenes.double_pendulum(), keep=REFERENCE_TIMES)
     return float(np.max(np.abs(np.hstack([run.q, run.v]) - REFERENCE_STATES)))
+
+
+@check(
+    "double-pendulum",
+    "states, as two points on rods",
+    period=SWING,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+    moreau=FIRST_ORDER,
+)
+def double_rods(solve: Solver) -> float:
+    run = solve(scenes.double_pendulum(form="rods"), keep=REFERENCE_TIMES)
+    return float(np.max(np.abs(np.hstack([run.q, run.v]) - as_points(REFERENCE_STATES))))
+
+
+@check(
+    "double-pendulum",
+    "length of the rods",
+    period=SWING,
+    event_driven=1e-12,
+    located=1e-12,
+    moreau=FIRST_ORDER,
+)
+def double_lengths(solve: Solver) -> float:
+    q = solve(scenes.double_pendulum(form="rods")).q
+    return float(np.max(np.abs([np.hypot(*q[:, :2].T) - 1.0, np.hypot(*(q[:, 2:] - q[:, :2]).T) - 1.0])))
 
 
 @check(

@@ -9,6 +9,8 @@ REASONS: dict[tuple[str, str, str], str] = {
     (EVENT, "bowl", "gap"): "the steps end on the wall; between them the gap is that of the dense output",
     (LOCATED, "bouncing-ball", "steps"): "rounding of 5e5 steps",
     (LOCATED, "slider-crank", "energy"): "order two: the free mechanism gains as much at this step",
+    (LOCATED, "pendulum-stop", "tension"): "order two: the phase that 100 steps a period lose, as tension",
+    (LOCATED, "double-pendulum", "states"): "order two, times the growth of errors in a chaotic motion",
     (LOCATED, "bowl", "gap"): "between the ends of steps the gap is that of the interpolation",
     (
         LOCATED,

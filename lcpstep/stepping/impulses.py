@@ -183,6 +183,8 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
             w.num[Z, n_k] = 0.5 * tau * w.num[FORCE_NOW, c]
             w.num[B, n_k] = product(w.G, w.vec[V], c) + w.num[GAP_T, c]
             n_k += 1
+    if n_k == 0:
+        return True
     if not solve_chosen(m, plan, w, w.W, INERTIA, n_k, count):
         return False
     for k in range(n_k):
