@@ -65,7 +65,7 @@ def test_a_point_on_a_rod_strikes_a_stop_as_the_angle_does(restitution):
     assert slope(levels, errors) >= 1.9
     for n in levels[::2]:
         a, b = (simulate(scene, Located(5.0 / n), keep=at) for scene in (rod, angle))
-        assert len(a.impacts) == len(b.impacts)
+        assert np.sum(a.impacts.before < -1e-6) == np.sum(b.impacts.before < -1e-6)
         assert np.max(np.abs(np.arctan2(a.q[:, 0], -a.q[:, 1]) - b.q[:, 0])) < 3.0 * errors[levels.index(n)]
 
 
