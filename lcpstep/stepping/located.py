@@ -121,7 +121,7 @@ def require_linear(scene: Scene) -> None:
 
 # What steps with joints never reach: the ways of the trapezoidal rule
 UNJOINED = (
-    loop.glide, loop.pressed, loop.straighten, smooth.invert_rest, smooth.shift,
+    loop.glide, loop.race, loop.pressed, loop.straighten, smooth.invert_rest, smooth.shift,
     refine.solve_several, refine.keep_closed,
 )  # fmt: skip
 
@@ -168,7 +168,7 @@ def polynomial(n_q: int, n_c: int) -> work.Polynomial:
     )  # fmt: skip
 
 
-def start(scene: Scene, fast: bool, joints: Joined | None) -> work.Work:
+def start(scene: Scene, m: Model, p: work.Plan, fast: bool, joints: Joined | None) -> work.Work:
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
     vec = np.zeros((work.N_VEC, n_q))
@@ -217,7 +217,7 @@ class _Run:
         self.fast = fast and not jit_disabled()
         self.never = (*HOOKS, refine.solve_unrefined) if joints is None else UNJOINED
         self.plan = plan(scene, self.model, method, method.h)
-        self.work = start(scene, self.fast, joints)
+        self.work = start(scene, self.model, self.plan, self.fast, joints)
         respond(self.model, self.plan, self.work)
         run: Callable[..., int] = loop.run if method.order == 2 else polynomial_loop.run
         self.run = compiled(run, self.never) if self.fast else run
