@@ -197,7 +197,7 @@ def test_sliding_in_a_moving_hollow_converges_with_order_two():
     assert slope(levels, errors) >= 1.8
 
 
-@pytest.mark.parametrize("order", [2, "exact"])
+@pytest.mark.parametrize("order", [2, pytest.param("exact", marks=pytest.mark.slow)])
 def test_the_bound_on_events_ends_a_run_with_all_that_came_before(order):
     scene, _ = tonks(20, 0.5)
     whole = simulate(scene, Located(0.05, order))
