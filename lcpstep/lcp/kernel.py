@@ -40,6 +40,7 @@ __all__ = ["Workspace", "solve_small", "workspace"]
 
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
+SPREADING = 4, 200  # more of them per unknown, and at most: what is violated by rounding may spread from row to row
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again for more unknowns than TINY
 STARTS = 12  # times that Lemke's method is started
@@ -117,7 +118,8 @@ def pivot_on(W: Any, b: Any, z: Any, tolerance: float, max_pivots: int, work: An
         choose_start(attempt, n, work)
         smallest = SMALLEST_PIVOTS[attempt % len(SMALLEST_PIVOTS)]
         ended = lemke(n, max_pivots, smallest, attempt == 0, work)
-        if ended == SOLVED and exchange_indices(W, b, z, strict, EXCHANGES, work) == SOLVED:
+        granted = EXCHANGES + (min(SPREADING[0] * n, SPREADING[1]) if attempt == 0 else 0)
+        if ended == SOLVED and exchange_indices(W, b, z, strict, granted, work) == SOLVED:
             return SOLVED
         if work.report[BEST_RESIDUAL] < tolerance:
             break

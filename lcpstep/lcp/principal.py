@@ -34,7 +34,7 @@ REFINEMENTS = 3
 ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine
 UNDECIDED = 1e-9  # the same while the set is still changing
 NOISE = 1e-13  # a scaled z this small next to the largest may be rounding
-PATIENCE = 2  # exchanges that may pass without fewer indices on the wrong side
+PATIENCE = 6  # one in so many of the exchanges granted may pass in a row without fewer indices on the wrong side
 
 
 def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
@@ -44,7 +44,7 @@ def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work:
     """
     n = b.shape[0]
     copy(work.vectors[TRIAL], b, n)
-    fewest, patience = n + 1, PATIENCE
+    fewest, patience = n + 1, limit // PATIENCE
     for _ in range(limit):
         work.report[ITERATIONS] += 1.0
         if not solve_chosen(W, b, z, tolerance, work):
@@ -55,7 +55,7 @@ def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work:
         if work.report[RESIDUAL] <= work.report[BEST_RESIDUAL]:
             keep_best(W, b, z, work)
         if wrong < fewest:
-            fewest, patience = wrong, PATIENCE
+            fewest, patience = wrong, limit // PATIENCE
         elif patience == 0:
             return FAILED
         else:
@@ -94,7 +94,7 @@ def solve_chosen(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> bool:
 def drop_noise(W: Any, b: Any, z: Any, k: int, work: Any) -> None:
     """Set z to zero where it is rounding next to the others: a row of such terms alone has no sign.
 
-    Only if the judge does not object.
+    Only if the judge finds the answer better for it: a small z may also be what other rows wait for.
     """
     largest, some, kept, before = 0.0, False, work.vectors[LEFT], work.report[RESIDUAL]
     for q in range(k):
@@ -108,7 +108,7 @@ def drop_noise(W: Any, b: Any, z: Any, k: int, work: Any) -> None:
     if not some:
         return
     work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    if work.report[RESIDUAL] > before:
+    if work.report[RESIDUAL] >= before:
         for q in range(k):
             z[work.indices[ACTIVE, q]] = kept[q]
         work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lcpstep.compiled import compiled
-from lcpstep.lcp import Status, residual
+from lcpstep.lcp import Status, residual, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 
 
@@ -62,3 +62,27 @@ def test_the_same_source_runs_as_plain_python():
         work, other = workspace(n), workspace(n)
         assert solve_small(W, b, plain, work) == compiled(solve_small)(W, b, fast, other)
         assert plain == pytest.approx(fast, rel=1e-12, abs=1e-14)
+
+
+def rounded_chain(n, b):
+    """Bodies in a column of which some rows hold nothing but what rounding left there."""
+    W = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    full = np.zeros(n)
+    full[list(b)] = list(b.values())
+    return W, full
+
+
+@pytest.mark.parametrize(
+    ("n", "b"),
+    [
+        (12, {0: -1.0, 1: 3.0, 7: -1e-15}),
+        (18, {0: -0.01, 5: 0.33, 7: -1e-15, 9: 0.02, 10: 2e-11, 11: 2e-14, 13: 2e-8, 16: -0.044, 17: 4e-3}),
+        (30, {3: -1.0, 5: 5.0, 20: -1e-300}),
+    ],
+)
+def test_what_rounding_left_in_rows_of_its_own_is_solved_too(n, b):
+    W, b = rounded_chain(n, b)
+    W[0, 0] = 1.0
+    solution = solve_lcp(W, b)
+    assert solution.solved
+    assert residual(W, b, solution.z) <= 1e-15
