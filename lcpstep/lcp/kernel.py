@@ -40,7 +40,10 @@ __all__ = ["Workspace", "solve_small", "workspace"]
 
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
-SPREADING = 4, 200  # more of them per unknown, and at most: what is violated by rounding may spread from row to row
+SPREADING = (
+    4,
+    200,
+)  # more of them per unknown, and at most: what is violated by rounding may spread from row to row
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again for more unknowns than TINY
 STARTS = 12  # times that Lemke's method is started

@@ -34,7 +34,9 @@ REFINEMENTS = 3
 ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine
 UNDECIDED = 1e-9  # the same while the set is still changing
 NOISE = 1e-13  # a scaled z this small next to the largest may be rounding
-PATIENCE = 6  # one in so many of the exchanges granted may pass in a row without fewer indices on the wrong side
+PATIENCE = (
+    6  # one in so many of the exchanges granted may pass in a row without fewer indices on the wrong side
+)
 
 
 def exchange_indices(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
