@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
@@ -38,6 +38,7 @@ def test_iterating_a_linear_map_is_a_power_of_its_matrix():
     phase=st.sampled_from([0.0, 0.37]),
     h=st.sampled_from([1e-3, 0.7e-3]),
 )
+@example(starts=[(0.1875, 12.0)], phase=0.0, h=1e-3)
 @settings(max_examples=15, deadline=None)
 def test_time_stepping_in_lockstep_is_single_runs_bit_for_bit(coordinates, starts, phase, h):
     scene, x = scenes.cam_follower(rpm=358.5, coordinates=coordinates), np.array(starts)
@@ -50,12 +51,16 @@ def test_time_stepping_in_lockstep_is_single_runs_bit_for_bit(coordinates, start
     x[:, 0] += 1e-12
     found = periods(scene, Moreau(h=h), x, 2, phase=phase)
     for i, start in enumerate(x):
+        touching = False
         for k in range(2):
             span = (t, t + scene.period)
             run = simulate(continued(scene, start, span), Moreau(h=h))
             start = np.concatenate([run.q[-1], run.v[-1]])
             assert np.array_equal(found.states[i, k], start)
             impacts = run.impacts[run.impacts.kind == Kind.IMPACT]
+            if touching and len(impacts) and impacts.time[0] < t + 1.5 * h:
+                impacts = impacts[1:]  # contact that lasts from one period into the next is no second impact
+            touching = run.impulse[-1, 0] > 0.0
             assert found.impacts[i, k] == len(impacts)
             for name, values in {"time": found.time, "before": found.before, "after": found.after}.items():
                 assert np.array_equal(values[i, k, : len(impacts)], impacts[name])
