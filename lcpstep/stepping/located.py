@@ -24,7 +24,7 @@ from lcpstep.stepping import located_work as work
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
-from lcpstep.stepping.steps import WHOLE, check_resolved
+from lcpstep.stepping.steps import WHOLE, check_resolved, divided
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -246,17 +246,11 @@ class _Run:
 
     def even(self, progress: Callable[[float], None]) -> Status:
         """The whole run in steps of one size, and a last one where that does not divide the span."""
-        (t_start, t_end), h = self.scene.t_span, self.method.h
-        steps = (t_end - t_start) / h
-        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
         status = Status.DONE
-        if whole > 0:
-            self.prepare((t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h)
-            status = self.portions(t_start, 0, whole, progress)
-        if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
-            t_last = t_start + whole * h
-            self.prepare(t_end - t_last)
-            status = self.portions(t_last, whole, whole + 1, progress)
+        for h, t0, first, last in divided(self.scene.t_span, self.method.h):
+            if status == Status.DONE:
+                self.prepare(h)
+                status = self.portions(t0, first, last, progress)
         return status
 
     def prepare(self, h: float) -> None:

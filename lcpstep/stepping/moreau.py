@@ -24,7 +24,7 @@ from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
-from lcpstep.stepping.steps import RESTING, WHOLE, check_resolved
+from lcpstep.stepping.steps import RESTING, WHOLE, check_resolved, divided
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -198,16 +198,10 @@ class _Run:
 
     def even(self, progress: Callable[[float], None]) -> Status:
         """The whole run in steps of one size, and a last one where that does not divide the span."""
-        (t_start, t_end), h = self.scene.t_span, self.method.h
-        steps = (t_end - t_start) / h
-        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
         status = Status.DONE
-        if whole > 0:
-            exact = (t_end - t_start) / whole if abs(steps - whole) <= WHOLE else h
-            status = self.portions(self.plan_for(exact), t_start, 0, whole, progress)
-        if status == Status.DONE and (whole == 0 or abs(steps - whole) > WHOLE):
-            t_last = t_start + whole * h
-            status = self.portions(self.plan_for(t_end - t_last), t_last, whole, whole + 1, progress)
+        for h, t0, first, last in divided(self.scene.t_span, self.method.h):
+            if status == Status.DONE:
+                status = self.portions(self.plan_for(h), t0, first, last, progress)
         return status
 
     def plan_for(self, h: float) -> loop.Plan:

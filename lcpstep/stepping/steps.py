@@ -5,6 +5,8 @@ Steps that are lost in the rounding of the times they are added to are refused: 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from lcpstep.errors import LcpStepError
 
 RESOLUTION = 2.0**-52
@@ -21,3 +23,16 @@ def check_resolved(h: float, span: tuple[float, float]) -> None:
             f"h: steps of {h:g} s are lost in the rounding of times up to {max(abs(start), abs(end)):g} s; "
             f"expected at least {least:.2g} s"
         )
+
+
+def divided(span: tuple[float, float], h: float) -> Iterator[tuple[float, float, int, int]]:
+    """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
+    start, end = span
+    steps = (end - start) / h
+    fits = abs(steps - round(steps)) <= WHOLE
+    whole = round(steps) if fits else int(steps)
+    if whole > 0:
+        yield (end - start) / whole if fits else h, start, 0, whole
+    if whole == 0 or not fits:
+        last = start + whole * h
+        yield end - last, last, whole, whole + 1
