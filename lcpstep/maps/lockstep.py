@@ -19,7 +19,7 @@ from lcpstep.dynamics import external_force, obstacle
 from lcpstep.maps.follow import INSIDE, Task
 from lcpstep.model import model
 from lcpstep.stepping.moreau import Moreau, plan
-from lcpstep.stepping.steps import RESTING, WHOLE
+from lcpstep.stepping.steps import RESTING, divided
 from lcpstep.stepping.theta import Plan
 from lcpstep.trajectory import Status
 
@@ -155,12 +155,5 @@ class Lockstep:
 
     def stretches(self, t_start: float, t_end: float) -> Iterator[tuple[Plan, float, int, int]]:
         """The steps of a span, as `Moreau` takes them: whole ones, and a shorter last one where they do not fit."""
-        h, theta = self.method.h, self.method.theta
-        steps = (t_end - t_start) / h
-        whole = round(steps) if abs(steps - round(steps)) <= WHOLE else int(steps)
-        fits = abs(steps - whole) <= WHOLE
-        if whole > 0:
-            yield plan(self.model, (t_end - t_start) / whole if fits else h, theta, 0.0), t_start, 0, whole
-        if not fits:
-            t_last = t_start + whole * h
-            yield plan(self.model, t_end - t_last, theta, 0.0), t_last, whole, whole + 1
+        for h, t0, first, last in divided((t_start, t_end), self.method.h):
+            yield plan(self.model, h, self.method.theta, 0.0), t0, first, last

@@ -28,7 +28,7 @@ from lcpstep.lcp.saddle import Point, Problem, Saddle
 from lcpstep.model import culprit, with_addresses
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
-from lcpstep.stepping.steps import RESTING, WHOLE
+from lcpstep.stepping.steps import RESTING, WHOLE, divided
 from lcpstep.stepping.theta import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
@@ -151,24 +151,14 @@ class Run:
         self.rows = self.events = self.all_events = self.steps = self.problems = self.forces = 0
         self.next_time, self.last_kept = 0, -np.inf
 
-    def pieces(self) -> list[tuple[float, float, int]]:
-        """Start, h and number of the steps of one size: whole ones, then a shorter one where h does not divide."""
-        (t_start, t_end), h = self.scene.t_span, self.method.h
-        steps = (t_end - t_start) / h
-        whole = round(steps)
-        if whole > 0 and abs(steps - whole) <= WHOLE:
-            return [(t_start, (t_end - t_start) / whole, whole)]
-        t_last = t_start + int(steps) * h
-        return [(t_start, h, int(steps)), (t_last, t_end - t_last, 1)]
-
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
         status = Status.DONE
         try:
             self.begin()
-            for start, h, steps in self.pieces():
+            for h, start, first, last in divided(self.scene.t_span, self.method.h):
                 step = Step(self.equations, h, self.method.theta)
-                for k in range(steps):
+                for k in range(last - first):
                     status = self.advance(step, start + h * k, start + h * (k + 1))
                     if status != Status.DONE:
                         break
