@@ -14,6 +14,7 @@ serves every scene. Nothing here imports numba before something is compiled.
 
 from __future__ import annotations
 
+import abc
 import dis
 import functools
 import hashlib
@@ -29,6 +30,7 @@ import numpy as np
 LOG = logging.getLogger(__name__)
 Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
+C = TypeVar("C", bound=type[Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
 OPTIONS = {"error_model": "numpy", "_nrt": False}
 ALL_ONES = 0xFF  # the bytes of a not-a-number
@@ -55,6 +57,16 @@ def call_first_order(f: Any, t: float, x: Any, p: Any, out: Any) -> None:
     """Evaluate a function of a first-order system from within a kernel; otherwise as `call`."""
     out.fill(np.nan)
     f(t, x, p, out)
+
+
+class ByAddress(abc.ABC):  # noqa: B024  (numba asks by this class which tuples are marked)
+    """All classes marked with `by_address`."""
+
+
+def by_address(cls: C) -> C:
+    """Mark a class of named tuples to be handed from kernel to kernel as one pointer, not field by field."""
+    ByAddress.register(cls)
+    return cls
 
 
 def inline(f: F) -> F:
@@ -94,6 +106,8 @@ def entry_point(f: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
         return f
     from numba import typeof
 
+    from lcpstep import addresses  # noqa: F401
+
     dispatcher: Any = compiled(f)
     return cast(Callable[..., Any], dispatcher.compile(tuple(map(typeof, arguments))))
 
@@ -128,6 +142,8 @@ def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
     """Address of f compiled for the types of the given arguments and of the value returned."""
     from numba import typeof
 
+    from lcpstep import addresses  # noqa: F401
+
     types = tuple(typeof(x) for x in arguments)
     function = cast(FunctionType, f)
     return cast(int, _cfunc(function, types, typeof(returned), _dependencies(function)).address)
@@ -141,6 +157,8 @@ def absent(*arguments: Any) -> int:
 @functools.cache
 def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     import numba
+
+    from lcpstep import addresses  # noqa: F401
 
     copy = _with_compiled_callees(f, without)
     dispatcher = numba.njit(nogil=not hasattr(f, "brief"), **OPTIONS)(copy)
@@ -156,10 +174,12 @@ def _callee(f: FunctionType, without: frozenset[FunctionType]) -> Any:
         return _intrinsics()[f]
     import numba
 
+    from lcpstep.linking import Callee
+
     inlined = hasattr(f, "inline")
     wrappers = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     copy = _with_compiled_callees(f, without)
-    return numba.njit(nogil=True, forceinline=inlined, **wrappers, **OPTIONS)(copy)
+    return numba.njit(nogil=True, forceinline=inlined, pipeline_class=Callee, **wrappers, **OPTIONS)(copy)
 
 
 @functools.cache
@@ -199,7 +219,8 @@ def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) ->
     linked by name, and judged by the age of f's own file alone: two variants must never share a name.
     """
     callees = {
-        name: _callee(*((absent, frozenset()) if g in without else (g, without))) for name, g in _callees(f)
+        name: _callee(absent, frozenset()) if g in without else _callee(g, without & _reached(g))
+        for name, g in _callees(f)
     }
     copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)
     copy.__kwdefaults__ = f.__kwdefaults__
@@ -224,14 +245,19 @@ def _global_names(f: FunctionType) -> list[str]:
 
 def _dependencies(f: FunctionType) -> str:
     """All that the machine code of f depends on, as a text: the code of f and its callees, and what they read."""
-    seen: dict[FunctionType, None] = {}
+    return "\n".join(sorted(map(_code_text, _reached(f))))
+
+
+def _reached(f: FunctionType) -> frozenset[FunctionType]:
+    """F, its callees, theirs, and so on."""
+    seen: set[FunctionType] = set()
     todo = [f]
     while todo:
         g = todo.pop()
         if g not in seen:
-            seen[g] = None
+            seen.add(g)
             todo += [callee for _, callee in _callees(g)]
-    return "\n".join(sorted(map(_code_text, seen)))
+    return frozenset(seen)
 
 
 def _code_text(f: FunctionType) -> str:

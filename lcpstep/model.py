@@ -17,6 +17,7 @@ from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
 from lagrangian.checks import Callback
 from lagrangian.system import Harmonic
 from lcpstep import compiled
+from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
 
 Array = NDArray[np.float64]
@@ -48,6 +49,7 @@ def dense(name: str, matrix: Any) -> Array:
     return np.ascontiguousarray(matrix.toarray())
 
 
+@by_address
 class Model(NamedTuple):
     """Everything a kernel needs to evaluate a scene's equations; see `lagrangian` for the symbols."""
 

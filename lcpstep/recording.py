@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lcpstep.compiled import by_address
 from lcpstep.trajectory import IMPACT_DTYPE
 
 Array = NDArray[np.float64]
@@ -58,6 +59,7 @@ class Kept:
         return self.every == 1
 
 
+@by_address
 class Record(NamedTuple):
     """Where kept states and events go, as kernels see it."""
 

@@ -1,13 +1,14 @@
 """Kernels are compiled once: one signature for all scenes, kept on disk for the next process."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Moreau, simulate
-from lcpstep.compiled import compiled, jit_disabled
+from lcpstep.compiled import by_address, compiled, jit_disabled
 from lcpstep.events import integrator, single
 from lcpstep.stepping import theta
 from tests.models import ball_on_table, bowl_scene, pendulum
@@ -125,3 +126,57 @@ def test_a_callback_kept_on_disk_is_not_taken_for_another(tmp_path, expression):
     )
     for number in ("2.0", "3.0", "2.0"):
         assert float(python(run, NUMBER=number).split("\n")[-1]) == float(number)
+
+
+@by_address
+class Inner(NamedTuple):
+    x: np.ndarray
+    count: int
+
+
+@by_address
+class Outer(NamedTuple):
+    inner: Inner
+    y: np.ndarray
+    scale: float
+    whole: bool
+
+
+def gather(o, times):
+    total = 0
+    for i in range(times):
+        for j in range(len(o.inner.x)):
+            o.inner.x[j] += o.scale * o.y[i % 2, j]
+        total += weigh_rows(o)
+    return total
+
+
+def weigh_rows(o):
+    o.y[1, 0] += o.y[0, 0]
+    return o.inner.count if o.whole else -o.inner.count
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_a_tuple_handed_on_by_address_is_read_and_its_arrays_written_as_in_plain_python(whole):
+    def made():
+        return Outer(Inner(np.arange(3.0), 7), np.arange(6.0).reshape(2, 3), 0.5, whole)
+
+    plain, fast = made(), made()
+    for times in (4, 3):  # the second call reads its own tuple, not the first one's
+        assert compiled(gather)(fast, times) == gather(plain, times)
+    np.testing.assert_array_equal(fast.inner.x, plain.inner.x)
+    np.testing.assert_array_equal(fast.y, plain.y)
+    other = made()._replace(scale=2.0)
+    compiled(gather)(other, 1)
+    np.testing.assert_array_equal(other.inner.x, np.arange(3.0) + 2.0 * np.arange(3.0))
+
+
+def test_the_type_of_a_tuple_by_address_has_a_short_name_and_tells_kinds_apart():
+    from numba import typeof
+
+    compiled(gather)
+    first = typeof(Inner(np.zeros(2), 1))
+    assert first == typeof(Inner(np.ones(5), 2))
+    assert first != typeof(Inner(np.ones(5), 2.0))
+    assert first != typeof(Inner(np.ones((2, 2)), 2))
+    assert len(first.name) < 30

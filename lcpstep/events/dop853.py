@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lcpstep.compiled import by_address
+
 STAGES = 12
 EXTRA_STAGES = 3  # of the dense output
 UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
@@ -29,6 +31,7 @@ class Tableau(NamedTuple):
     D: Any  # (4, 16)
 
 
+@by_address
 class Work(NamedTuple):
     """Stages of a step from y to y_new, m = len(y), and its dense output."""
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call
+from lcpstep.compiled import by_address, call
 from lcpstep.dense import assign, grow_factor, solve_definite, solve_factored
 from lcpstep.dynamics import gap_rates, gaps, product, total_force
 from lcpstep.events.flow import DIFFERENCE, free_acceleration, inside
@@ -46,6 +46,7 @@ PARTED = 1e3  # tolerances by which joints that say the same may differ
 CONTRADICTION = 1e-8  # relative acceleration that joints may not agree about
 
 
+@by_address
 class Several(NamedTuple):
     """State, Jacobians and multipliers of a system with several contacts and joints, and work space."""
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call, inline
+from lcpstep.compiled import by_address, call, inline
 from lcpstep.events.oscillator import fundamental
 from lcpstep.model import ABSENT
 
@@ -53,6 +53,7 @@ WORTH = 0.5  # of the scan interval: shorter leaps are not made
 GAUSS = (0.1127016653792583, 0.5, 0.8872983346207417)  # nodes on [0, 1]
 
 
+@by_address
 class Flight(NamedTuple):
     """One linear degree of freedom and its obstacle, as kernels see them."""
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call, inline
+from lcpstep.compiled import by_address, call, inline
 from lcpstep.dense import assign, positive_definite, solve_definite, split
 from lcpstep.dynamics import gap_rates, gaps, mass, product, total_force
 from lcpstep.events.dop853 import STAGES, combine, interpolant, interpolate
@@ -33,6 +33,7 @@ GAUSS = (  # nodes and weights on [0, 1]
 )
 
 
+@by_address
 class Piece(NamedTuple):
     """A piece of smooth motion, the state last asked for, and work space."""
 

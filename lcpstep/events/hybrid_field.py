@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call_first_order
+from lcpstep.compiled import by_address, call_first_order
 from lcpstep.dense import assign
 
 # What a guard is: the user's; a surface reached; the end of sliding, below and above
@@ -22,6 +22,7 @@ RESOLUTION = 2.0**-52
 TINY = 1e-300  # a band is never empty
 
 
+@by_address
 class Machine(NamedTuple):
     """Everything that a kernel needs to evaluate a system with modes."""
 
@@ -41,6 +42,7 @@ class Machine(NamedTuple):
     dt: float  # step of differences in time
 
 
+@by_address
 class Space(NamedTuple):
     """Work space for a state of n numbers."""
 

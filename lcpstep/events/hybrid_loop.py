@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call_first_order
+from lcpstep.compiled import by_address, call_first_order
 from lcpstep.dense import assign
 from lcpstep.events.dop853 import (
     EXTRA_STAGES,
@@ -57,6 +57,7 @@ RESOLUTION = 2.0**-52
 JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
 
+@by_address
 class Flow(NamedTuple):
     """Span, tolerances and bounds."""
 
@@ -67,6 +68,7 @@ class Flow(NamedTuple):
     max_events: int
 
 
+@by_address
 class Memory(NamedTuple):
     """What a run knows of its guards, and where it writes."""
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lcpstep.compiled import by_address
 from lcpstep.dense import assign
 
 DEGREE = 9
@@ -24,6 +25,7 @@ MAX_ITERATIONS = 60
 RESOLUTION = 2.0**-52
 
 
+@by_address
 class Scan(NamedTuple):
     """Sample points, conversion to Bernstein form, and work space."""
 

@@ -17,6 +17,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from lcpstep.compiled import by_address
 from lcpstep.dense import assign, join
 from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, error_norm, factor
@@ -90,6 +91,7 @@ SMALLEST = 2.0**-20  # of the scan interval: what is still rough then is a jump 
 REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
 
 
+@by_address
 class Flow(NamedTuple):
     """How the smooth motion is computed, and to what tolerance."""
 
@@ -561,6 +563,7 @@ def evaluate(model: Any, flow: Any, piece: Any, w: Any, kept: Any, dense: Any, w
         assign(wanted.v[k], piece.v)
 
 
+@by_address
 class Wanted(NamedTuple):
     """Times asked for, and the states found there."""
 

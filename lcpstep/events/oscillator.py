@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import inline
+from lcpstep.compiled import by_address, inline
 
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
 # Ratios of the coefficients of sin x / x in x^2, and of 2 (1 - cos x) / x^2
@@ -30,6 +30,7 @@ NOTHING = 1e-100  # an exponent that is zero for every purpose
 NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
 
 
+@by_address
 class Oscillator(NamedTuple):
     """Coefficients of the equation, per unit mass, and of its steady oscillation."""
 

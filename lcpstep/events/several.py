@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from lcpstep.compiled import by_address
 from lcpstep.dense import assign, join, split
 from lcpstep.dynamics import product
 from lcpstep.events.dop853 import (
@@ -128,6 +129,7 @@ START = 64 * RESOLUTION  # an initial gap this small, relative to the state, is 
 ROUNDS = 1000  # problems of impacts at one instant
 
 
+@by_address
 class Plan(NamedTuple):
     """How the smooth motion is computed, and to what tolerance."""
 
@@ -143,6 +145,7 @@ class Plan(NamedTuple):
     max_events: int
 
 
+@by_address
 class Tools(NamedTuple):
     """Runge-Kutta coefficients and stages, and the solver of complementarity problems."""
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import inline
+from lcpstep.compiled import by_address, inline
 from lcpstep.events.flight import (
     ALPHA0,
     ATOL,
@@ -241,7 +241,6 @@ def leap(s: Any, record: Any, count: Any) -> bool:
     return True
 
 
-@inline
 def suspect(x: Any, length: float, g: float, u: float, alpha: float) -> bool:
     """Whether the gap may close in an interval, by what is known at its start (EDGE) and at its end.
 
@@ -308,7 +307,6 @@ def small_hop(s: Any, a: float, b: float, g_b: float) -> float:
     return NONE
 
 
-@inline
 def pass_end(s: Any, record: Any, count: Any, end: float) -> None:
     """Go on beyond the end of a scan interval; s.q, s.v hold the state there."""
     x = s.x
@@ -432,7 +430,6 @@ def impact(s: Any, record: Any, count: Any, u: float) -> None:
     keep_event(s, record, count)
 
 
-@inline
 def settle(s: Any, record: Any, count: Any, u: float) -> None:
     """On the obstacle now, leaving it with gap velocity u >= 0: which mode comes next."""
     x = s.x
@@ -457,7 +454,6 @@ def settle(s: Any, record: Any, count: Any, u: float) -> None:
             stick(s, record, count, t + T)
 
 
-@inline
 def chatter_is_over(s: Any, u: float, alpha: float, T: float, y: float, w: float) -> bool:
     """Whether taking the remaining impacts as one is within the tolerance.
 
@@ -472,7 +468,6 @@ def chatter_is_over(s: Any, u: float, alpha: float, T: float, y: float, w: float
     return bool(later < 0.0 and abs(later - alpha) * T * max(1.0, abs(x[V0])) <= -alpha * tolerance)
 
 
-@inline
 def stick(s: Any, record: Any, count: Any, t_log: float) -> None:
     """From now on the contact is closed; t_log: when the log says so (the end of a chattering sequence)."""
     x = s.x
@@ -483,14 +478,12 @@ def stick(s: Any, record: Any, count: Any, t_log: float) -> None:
     log(s, record, count, t_log, STICK, 0.0, 0.0, 0.0)
 
 
-@inline
 def settle_again(s: Any, record: Any, count: Any) -> None:
     """The contact that seemed to open did so by less than rounding."""
     stick(s, record, count, s.x[NOW])
     keep_event(s, record, count)
 
 
-@inline
 def release(s: Any, record: Any, count: Any, alpha: float) -> None:
     """The closed contact opens now, with the gap acceleration alpha."""
     x = s.x
@@ -503,7 +496,6 @@ def release(s: Any, record: Any, count: Any, alpha: float) -> None:
     keep_event(s, record, count)
 
 
-@inline
 def turn_corner(s: Any, record: Any, count: Any) -> None:
     """Enter the next smooth interval, with the accelerations of its side.
 
@@ -553,7 +545,6 @@ def log(s: Any, record: Any, count: Any, t: float, kind: int, before: float, aft
     count[EVENTS] += 1
 
 
-@inline
 def state_at(s: Any, t: float) -> None:
     """The state at time t of the flight or rest at hand, into s.q, s.v."""
     if t > s.x[HIGH]:
@@ -564,7 +555,6 @@ def state_at(s: Any, t: float) -> None:
         free(s, t - s.x[T0])
 
 
-@inline
 def keep_times(s: Any, record: Any, count: Any, stop: float, last: bool) -> None:
     """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
     while count[NEXT_TIME] < len(record.times) and count[ROW] < len(record.rows):
@@ -576,7 +566,6 @@ def keep_times(s: Any, record: Any, count: Any, stop: float, last: bool) -> None
         count[NEXT_TIME] += 1
 
 
-@inline
 def keep_event(s: Any, record: Any, count: Any) -> None:
     """Keep the state after an event, if these are kept; events at one time share a row."""
     if not record.on_events and record.every != 1:
@@ -597,6 +586,7 @@ def keep(s: Any, record: Any, count: Any, t: float) -> None:
     count[ROW] += 1
 
 
+@by_address
 class Wanted(NamedTuple):
     """Times asked for, and the states found there."""
 

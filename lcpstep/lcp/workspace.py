@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lcpstep.compiled import by_address
+
 # rows of Workspace.vectors
 SCALED_B = 0  # b of the scaled problem
 ROW_SCALE = 1  # powers of two that the rows were multiplied by
@@ -44,6 +46,7 @@ NONBASIC, PLACE = 8, 9  # of the tableau: variable by column; column by variable
 INDICES = 10
 
 
+@by_address
 class Workspace(NamedTuple):
     """Work arrays for problems of up to n unknowns.
 

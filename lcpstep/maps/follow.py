@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.compiled import call, compiled
+from lcpstep.compiled import by_address, call, compiled
 from lcpstep.events import EventDriven
 from lcpstep.events.closed_form import flight_of, numbers, oscillator_of
 from lcpstep.events.flight import CONTACT, NOW, OFFSET, T_END, G
@@ -36,6 +36,7 @@ INSIDE = -1  # among the codes: a start inside of the obstacle
 IMPACTS, ENDS = 0, 1  # places in the counts of a period: impacts, chattering sequences or landings
 
 
+@by_address
 class Task(NamedTuple):
     """What to follow, how far, and where the answers go; m runs, `kept` periods of each."""
 

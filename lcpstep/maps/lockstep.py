@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.compiled import compiled, inline
+from lcpstep.compiled import by_address, compiled, inline
 from lcpstep.dynamics import external_force, obstacle
 from lcpstep.maps.follow import INSIDE, Task
 from lcpstep.model import model
@@ -31,6 +31,7 @@ ROUNDING = 64 * np.finfo(float).eps
 CODES = {DONE: Status.DONE, NOT_FINITE: Status.NOT_FINITE}
 
 
+@by_address
 class Lanes(NamedTuple):
     """States of all runs, each of shape (m,)."""
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from lcpstep.compiled import inline
+from lcpstep.compiled import by_address, inline
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 
 # Why a loop returned, besides its method's own reasons: to have its buffers emptied, and for good
@@ -38,6 +38,7 @@ POSITION, LEVEL, END, FINEST = range(4)
 START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED = range(9)
 
 
+@by_address
 class Control(NamedTuple):
     """Where the run is, and what it allows."""
 

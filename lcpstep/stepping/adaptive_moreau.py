@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lcpstep.compiled import compiled, inline
+from lcpstep.compiled import by_address, compiled, inline
 from lcpstep.model import Model
 from lcpstep.recording import Record, write_row
 from lcpstep.stepping.adaptive import (
@@ -72,6 +72,7 @@ WANTED = -3  # why the loop returned: for the matrices of a level
 MATRICES = ("A_q", "A_v", "A_f", "A_g", "W")  # of a plan, that depend on h
 
 
+@by_address
 class Levels(NamedTuple):
     """What steps of every level multiply with, as in `theta.Plan`; one room for all where that changes anyhow."""
 
@@ -86,6 +87,7 @@ class Levels(NamedTuple):
     W: Any
 
 
+@by_address
 class Motion(NamedTuple):
     """What steps change of a `theta.State`: the same arrays, few enough to hand from function to function."""
 
@@ -101,6 +103,7 @@ class Motion(NamedTuple):
     restitution: Any  # that the kernels of the steps see
 
 
+@by_address
 class Saved(NamedTuple):
     """What a step and its parts begin with."""
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import inline
+from lcpstep.compiled import by_address, inline
 from lcpstep.dense import assign, solve
 from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.stepping.friction import solve_contacts
@@ -62,6 +62,7 @@ from lcpstep.stepping.theta import (
 JOINTS_FAILED, PROJECTION_FAILED = 6, 7  # why the loop returned, besides the reasons in `theta`
 
 
+@by_address
 class Constraints(NamedTuple):
     """Joints and tangents of a scene, and the rows of a step: all normals first, then tangents, then joints.
 

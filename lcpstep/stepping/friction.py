@@ -23,12 +23,13 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call_solver
+from lcpstep.compiled import by_address, call_solver
 
 DEGENERATE = 1e-13  # determinant, relative to its terms, below which normal and tangent are one direction
 ROUNDING = 1e-13  # relative: a sliding velocity this small has no sign
 
 
+@by_address
 class Problem(NamedTuple):
     """The contacts of a step, the joints eliminated, and where their complementarity problem is written."""
 

@@ -82,7 +82,6 @@ def log(record: Any, count: Any, t: float, c: int, before: float, after: float, 
 # --- contact forces -------------------------------------------------------------------------------------------
 
 
-@inline
 def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, count: Any) -> bool:
     """Forces of the closed contacts from w.num[ALPHA], and the acceleration with them; who needs none opens."""
     n, n_c, n_k = w.vec.shape[1], w.num.shape[1], 0
@@ -128,7 +127,6 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
     return True
 
 
-@inline
 def zero_rounding(plan: Any, w: Any) -> None:
     """What is but rounding of the sums in w.vec[A_TRY] is zero: accelerations, and velocities that they made."""
     for i in range(w.vec.shape[1]):
@@ -138,7 +136,6 @@ def zero_rounding(plan: Any, w: Any) -> None:
                 w.vec[V, i] = 0.0
 
 
-@inline
 def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
     """A contact stays closed from here on."""
     w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
@@ -159,7 +156,6 @@ def release_time(w: Any, c: int, t: float, rest: float, deficit: float) -> float
     return min(max(found, w.num[OLDER_TIME, c]), t + rest)
 
 
-@inline
 def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: float) -> None:
     """A closed contact opens."""
     w.mark[STATUS, c], w.mark[GROUNDED, c] = OPEN, 1
@@ -170,7 +166,6 @@ def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: fl
     x[EVENTS] += 1
 
 
-@inline
 def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, count: Any) -> bool:
     """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
 
@@ -211,7 +206,6 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
 # --- impacts --------------------------------------------------------------------------------------------------
 
 
-@inline
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
     """The impact of contact `first`, and of those that fire with it, or (CORNER) of those whose velocity jumps.
 
@@ -245,7 +239,6 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
     return n_s
 
 
-@inline
 def choose_struck(plan: Any, w: Any, first: int) -> int:
     """Contacts that fire now; their number.
 
@@ -267,7 +260,6 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
     return n_s
 
 
-@inline
 def choose_connected(w: Any, n_s: int) -> int:
     """Add the closed contacts that a chain of closed contacts connects with the chosen ones."""
     n_c = w.num.shape[1]
@@ -286,7 +278,6 @@ def choose_connected(w: Any, n_s: int) -> int:
     return n_s
 
 
-@inline
 def closes(m: Any, plan: Any, w: Any, x: Any, c: int, alone: bool) -> bool:
     """Whether the contact that fires is closed: its next hops are too short to be followed."""
     r = m.restitution[c]
@@ -312,7 +303,6 @@ def closes(m: Any, plan: Any, w: Any, x: Any, c: int, alone: bool) -> bool:
     ) or hop < COLLAPSE * SHORT * plan.h
 
 
-@inline
 def jump(w: Any, n_s: int) -> None:
     """Velocities after the impulses z of the chosen contacts; what rounding leaves of zero is zero."""
     n, n_c = w.vec.shape[1], w.num.shape[1]
@@ -335,7 +325,6 @@ def jump(w: Any, n_s: int) -> None:
                 w.num[RATE, c] += w.W[c, d] * p
 
 
-@inline
 def after_impact(
     m: Any, w: Any, x: Any, record: Any, c: int, p: float, t: float, still: float, count: Any
 ) -> None:

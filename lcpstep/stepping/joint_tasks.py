@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lagrangian import Scene
+from lcpstep.compiled import by_address
 from lcpstep.dynamics import bias, gap_rates, gaps, product
 from lcpstep.model import ABSENT, Model
 from lcpstep.stepping.joints import Elimination, factorise_joints, solve_joints
@@ -42,6 +43,7 @@ TURNING, STRETCH, CURVATURE, FREE, LOAD, PIECE, IMPULSE, ANSWER, PUSH, VALUES, S
 N_NUM = 15
 
 
+@by_address
 class Rows(NamedTuple):
     """The part of a model that its gaps are evaluated with; see `model.Model`."""
 
@@ -57,6 +59,7 @@ class Rows(NamedTuple):
     motion_now: Any
 
 
+@by_address
 class Joints(NamedTuple):
     """Joints at the state last looked at, and work space; few arrays, for every kernel of a step carries them."""
 
@@ -83,6 +86,7 @@ def joints_of(scene: Scene, m: Model, rows: Model) -> Joints:
     )  # fmt: skip
 
 
+@by_address
 class Task(NamedTuple):
     """The arrays of `Joints` by their names."""
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lcpstep.compiled import by_address
 from lcpstep.dense import assign, factorise, solve
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
@@ -28,6 +29,7 @@ SWEEPS = 30
 REDUNDANT = 0  # place in `kind`: 1 where S is singular
 
 
+@by_address
 class Elimination(NamedTuple):
     """Work space for the joints of a step."""
 

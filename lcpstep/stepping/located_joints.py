@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.compiled import call_solver, solver_address
+from lcpstep.compiled import by_address, call_solver, solver_address
 from lcpstep.dense import assign
 from lcpstep.model import Model
 from lcpstep.recording import LEAD
@@ -48,6 +48,7 @@ from lcpstep.stepping.joint_tasks import (
 from lcpstep.stepping.located_work import FINISHED, FORCE_NOW, JOINTS_FAILED, NO_POSITION, ROW, V_TRY, Q, V
 
 
+@by_address
 class Joined(NamedTuple):
     """The joints of a scene, and who does what is to be done with them."""
 

@@ -298,14 +298,12 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                 return code
 
 
-@inline
 def racing(w: Any, x: Any, record: Any, count: Any, t: float) -> bool:
     """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
     wanted = count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] <= t + x[END]
     return w.num.shape[1] > 1 and x[CLOSED_NOW] == 0 and not wanted
 
 
-@inline
 def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> bool:
     """The smooth interval from x[SIGMA] to the next corner or the end of the step; forces at its ends.
 
@@ -374,7 +372,6 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     return True
 
 
-@inline
 def flat_accelerations(m: Any, plan: Any, w: Any, t: float, x: Any) -> None:
     """Mean accelerations of the gaps of flat contacts over the piece without contact forces.
 
@@ -402,7 +399,6 @@ def pressed(w: Any, place: int) -> None:
                 w.num[HALF, c] += 0.5 * w.WA[place, c, d] * force
 
 
-@inline
 def fitted(m: Any, w: Any, t: float, rest: float) -> None:
     """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
     for i in range(w.vec.shape[1]):
@@ -515,7 +511,6 @@ def penetrates(plan: Any, w: Any) -> bool:
     return not plan.plain and lowest < -ON_THE_SURFACE * plan.slack
 
 
-@inline
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
     """The impact of contact c at x[SIGMA], or that of a corner, and what it changes."""
     now = t + x[SIGMA]
@@ -548,7 +543,6 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
     return FINISHED
 
 
-@inline
 def straighten(m: Any, plan: Any, w: Any, d: int) -> None:
     """The velocities that gap d has left with, and the gap velocities of the contacts in flight that go with them.
 
@@ -586,7 +580,6 @@ def finite(w: Any) -> bool:
 # --- what is kept ---------------------------------------------------------------------------------------------
 
 
-@inline
 def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
     while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < before:
@@ -644,7 +637,6 @@ def keep_between(
         refactor(m, w, base + tau)
 
 
-@inline
 def keep(w: Any, record: Any, count: Any, t: float) -> None:
     """Keep the current state; states at one time share a row."""
     if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:

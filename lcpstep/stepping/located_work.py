@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from lcpstep.compiled import by_address
+
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION = range(7)
 # Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact, contacts
@@ -97,6 +99,7 @@ RATE_NOW = 4
 N_PIECE_NUM = 5
 
 
+@by_address
 class Plan(NamedTuple):
     """Constants of a run."""
 
@@ -122,6 +125,7 @@ class Plan(NamedTuple):
     pivots: Any
 
 
+@by_address
 class Work(NamedTuple):
     """The piece of motion that began at the last event or step, and work space.
 
@@ -146,6 +150,7 @@ class Work(NamedTuple):
     joints: Any  # `located_joints.Joined`, or None
 
 
+@by_address
 class Polynomial(NamedTuple):
     """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events."""
 

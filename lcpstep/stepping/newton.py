@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call, inline
+from lcpstep.compiled import by_address, call, inline
 from lcpstep.dense import add, assign, factorise, positive_definite, solve
 from lcpstep.dynamics import mass, product, total_force
 from lcpstep.model import ABSENT
@@ -24,6 +24,7 @@ FORCES, ITERATION = 4, 5  # places in the array of counters
 REFRESH = 5  # iterations with one A
 
 
+@by_address
 class Newton(NamedTuple):
     """Work space."""
 

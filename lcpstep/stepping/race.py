@@ -104,7 +104,6 @@ def next_zero(num: Any, c: int, end: float) -> float:
     return num[SINCE, c] + first_zero(g, u, half)
 
 
-@inline
 def ordinary(
     num: Any, mark: Any, W: Any, restitution: Any, c: int, tau: float, h: float, slack: float, many: int
 ) -> bool:
@@ -124,7 +123,6 @@ def ordinary(
     return True
 
 
-@inline
 def hit(
     vec: Any,
     num: Any,

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import call_solver, inline
+from lcpstep.compiled import call_solver
 from lcpstep.dense import assign, grow_factor, solve_definite, solve_factored
 from lcpstep.dynamics import product
 from lcpstep.model import ABSENT
@@ -42,7 +42,6 @@ EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of b
 PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
-@inline
 def solve_chosen(m: Any, plan: Any, w: Any, W: Any, place: int, n: int, count: Any) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
 
@@ -113,7 +112,6 @@ def solve_several(
     return refine(inverse, factored, G, W, vec, num, mark, P, n, solved)
 
 
-@inline
 def right(inverse: Any, factored: bool, G: Any, vec: Any, num: Any, mark: Any, n: int) -> bool:
     """Whether the guess, positive for all, is the answer: what rests keeps its forces from step to step."""
     if n == 1:

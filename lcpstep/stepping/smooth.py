@@ -203,7 +203,6 @@ def shift(w: Any, tau: float) -> None:
             w.num[RATE, c] += 2.0 * tau * w.num[HALF, c]
 
 
-@inline
 def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
     for _ in range(LANDINGS):
@@ -264,7 +263,6 @@ def newton_step(w: Any, x: Any) -> bool:
     return True
 
 
-@inline
 def lift(m: Any, plan: Any, w: Any, x: Any, c: int, distance: float) -> None:
     """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
     if not plan.constant:

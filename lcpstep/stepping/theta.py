@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import call_solver, inline
+from lcpstep.compiled import by_address, call_solver, inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, obstacle, product, total_force
 from lcpstep.lcp.small import solve_one
@@ -38,6 +38,7 @@ CONVERGED = 1e-12  # change of the velocity, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
 
 
+@by_address
 class Plan(NamedTuple):
     """What a step multiplies with. Constant for linear systems, made anew in each step for the others."""
 
@@ -51,6 +52,7 @@ class Plan(NamedTuple):
     slack: float  # a predicted gap this small is closed: rounding must not open what rests
 
 
+@by_address
 class State(NamedTuple):
     """Where the motion is, and the work space of a step."""
 
