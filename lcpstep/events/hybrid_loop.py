@@ -7,6 +7,7 @@ touches the band and turns back is not transversal: tolerances decide whether it
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import by_address, call_first_order
@@ -52,7 +53,7 @@ MAX_STALLED = 100  # switches at one instant
 NEVER_LEFT = 10  # how many of them a switch counts for by a guard whose band was not left
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value
-REFINEMENTS = 4  # of an event's time by repeated steps
+REFINEMENTS = 8  # of an event's time by repeated steps
 RESOLUTION = 2.0**-52
 JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
@@ -263,16 +264,18 @@ def locate(
     x: Any,
     most: float,
 ) -> float:
-    """Time after t at which guard k acts: Newton's method on steps of that length, whose last one is left in w."""
-    tau = min(at * h, most)
+    """Time after t at which guard k acts: secants on steps of that length, whose last one is left in w."""
+    tau, rate, change, before = min(at * h, most), slope / h, 0.0, math.nan
     step(m, sp, tab, w, mode, t, tau, False)
     for _ in range(REFINEMENTS):
         g = guard(m, sp, mode, k, t + tau, w.y_new) - x[EVENT_AT]
-        change = -g * h / slope if slope > 0.0 else 0.0
+        if g * before < 0.0 or abs(g) < 0.5 * abs(before):  # the slope that the last change has met
+            rate = (g - before) / change
+        change, before = (-g / rate if rate > 0.0 else 0.0), g
         new = min(max(tau + change, 0.0), most)
         if abs(new - tau) <= RESOLUTION * tau or abs(change) > 0.01 * h:
             break
-        tau = new
+        change, tau = new - tau, new
         step(m, sp, tab, w, mode, t, tau, False)
     if abs(guard(m, sp, mode, k, t + tau, w.y_new) - x[EVENT_AT]) > JUMP * slope:
         tau = min(bisect(m, sp, w, mode, k, t, h, at, x[EVENT_AT]), most)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
@@ -128,6 +128,7 @@ def narrow_bump(t, x, p, out):
 
 
 @settings(max_examples=60, deadline=None)
+@example(depth=-9.0, rate=3.0, place=2.90341288222328, tilt=-1.5)
 @given(st.floats(-9.0, -3.0), st.floats(0.3, 3.0), st.floats(0.2, 3.0), st.floats(-2.0, 2.0))
 def test_a_pair_of_roots_inside_one_step_is_not_missed(depth, rate, place, tilt):
     """A guard that rises above zero for a moment only; the motion itself takes steps of any length."""
@@ -141,9 +142,7 @@ def test_a_pair_of_roots_inside_one_step_is_not_missed(depth, rate, place, tilt)
     root = brentq(
         lambda y: d - y * y * (1.0 + 0.1 * math.tanh(tilt * y)), -2.0 * math.sqrt(d), 0.0, xtol=1e-15
     )
-    assert run.switches.time == pytest.approx(
-        [3.0 * place + root / rate], abs=1e-14 / math.sqrt(d) / rate + 1e-12
-    )
+    assert run.switches.time == pytest.approx([3.0 * place + root / rate], abs=1e-12)
 
 
 def test_no_switch_is_lost_or_added_in_a_long_run():
