@@ -114,10 +114,14 @@ def grow_factor(D: Any, L: Any, rows: Any, doubt: Any, k: int) -> bool:
     """
     i = rows[k]
     pivot = size_of_pivot = D[i, i]
-    for m in range(k):
+    first = 0  # of the rows that this one is coupled with; those of a chain are few
+    while first < k and D[i, rows[first]] == 0.0:
+        L[k, first] = 0.0
+        first += 1
+    for m in range(first, k):
         total = D[i, rows[m]]
         size = abs(total)
-        for n in range(m):
+        for n in range(first, m):
             total -= L[k, n] * L[m, n]
             size += abs(L[k, n] * L[m, n])
         x = total / L[m, m]

@@ -82,6 +82,16 @@ def write_row(row: Any, t: float, mode: float, q: Any, v: Any, impulse: Any) -> 
         impulse[c] = 0.0
 
 
+def quiet_until(record: Any, step: int, next_time: int, h: float, t0: float, first: int, last: int) -> int:
+    """Kernel: the step, at most `last`, up to which none keeps a state; step `first` begins at t0."""
+    end = last
+    if record.every > 0:
+        end = min(end, step + record.every - 1 - step % record.every)
+    if next_time < len(record.times):
+        end = min(end, first + int((record.times[next_time] - t0) / h) - 1)
+    return end
+
+
 def write_event(event: Any, t: float, contact: int, before: float, after: float, p: float, kind: int) -> None:
     """Kernel: one line of the impact log."""
     event[0], event[1], event[5] = t, contact, kind

@@ -174,6 +174,7 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool, joints: Joined | Non
     vec = np.zeros((work.N_VEC, n_q))
     vec[work.Q], vec[work.V] = scene.q0, scene.v0
     mark = np.zeros((work.N_MARK, n_c), dtype=np.int64)
+    mark[work.LAST_COORDINATE], mark[work.LAST_CONTACT] = n_q - 1, n_c - 1
     if p.plain and n_c > 0:
         mark[work.FIRST_COORDINATE :] = ranges(m)
     lcp = workspace(max(n_c, 1))

@@ -15,7 +15,7 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, obstacle, product
 from lcpstep.model import ABSENT
-from lcpstep.recording import LEAD, write_row
+from lcpstep.recording import LEAD, quiet_until, write_row
 from lcpstep.recording import TIME as ROW_TIME
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import hold, land, settle_rest, stick, strike
@@ -148,13 +148,11 @@ def run(
 ) -> int:
     """Steps count[STEP] .. last - 1, step `first` beginning at t0; says why it returned."""
     n_c = w.num.shape[1]
-    single = plan.trapezoidal and model.flat and n_c <= 1 and w.vec.shape[1] == 1 and len(record.times) == 0
+    single = plan.trapezoidal and model.flat and n_c <= 1 and w.vec.shape[1] == 1
     while count[STEP] < last:
         if x[UNDER_WAY] == 0.0:
             if single and (n_c == 0 or w.mark[STATUS, 0] == OPEN):
-                end = last
-                if record.every > 0:
-                    end = min(last, count[STEP] + record.every - 1 - count[STEP] % record.every)
+                end = quiet_until(record, count[STEP], count[NEXT_TIME], plan.h, t0, first, last)
                 glide(model, plan, w, x, count, t0, first, end)
                 if count[STEP] >= last:
                     return FINISHED
@@ -181,7 +179,7 @@ def run(
 def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: int, last: int) -> None:
     """Steps of one linear degree of freedom without events, up to the first that may have one.
 
-    The arithmetic is that of `step`; only the state stays in registers, which halves the time.
+    The arithmetic is that of `step` to the last bit; only the state stays in registers, which halves the time.
     """
     h = plan.h
     A_inverse, C, K = plan.A_inverse[WHOLE, 0, 0], model.C[0, 0], model.K[0, 0]
@@ -195,21 +193,21 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
             s = model.motion_now[0, 2]
     k = start = count[STEP]
     while k < last:
-        t = t0 + h * (k + 1 - first)
+        t = t0 + h * (k - first) + h
         if t > x[HIGH]:
             break
         inner = within(plan, x, t)
         external_force(model, inner, w.vec[Q], w.vec[V], w.vec[NEXT_FORCE])
         f_next = w.vec[NEXT_FORCE, 0]
-        a = A_inverse * (0.5 * (f + f_next) - C * v - K * (q + 0.5 * h * v))
+        a = A_inverse * (0.5 * (f + f_next) - (C * v + K * (q + 0.5 * h * v)))
         if a - a != 0.0:
             break
         if contact:
-            half, s_next = 0.5 * G * a, 0.0
+            half, s_next = 0.5 * (G * a), 0.0
             if moving:
                 obstacle(model, inner, w.vec[Q], w.vec[V])
                 s_next = model.motion_now[0, 2]
-                half -= s / 3.0 + s_next / 6.0
+                half = 0.5 * ((G * a - 0.5 * (s + s_next)) + (s_next - s) / 6.0)
             latest = h + SAME_TIME * (abs(t) + h)
             if may_reach_zero(g, u, half, latest) and first_zero(g, u, half) <= latest:
                 break
@@ -217,7 +215,7 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
                 if inner != t:
                     obstacle(model, t, w.vec[Q], w.vec[V])
                 q_next, v_next = q + h * (v + 0.5 * h * a), v + h * a
-                g_next = G * q_next + offset - model.motion_now[0, 0]
+                g_next = offset - model.motion_now[0, 0] + G * q_next
                 if not g_next > 0.0:
                     break
                 g, u, s = g_next, G * v_next - model.motion_now[0, 1], s_next

@@ -22,7 +22,7 @@ from lcpstep.dynamics import external_force, gap_rates, gaps, obstacle, product,
 from lcpstep.lcp.small import solve_one
 from lcpstep.lcp.status import FAILED, SOLVED, TOLERANCE
 from lcpstep.lcp.workspace import SIZE, SLACK
-from lcpstep.recording import write_event, write_row
+from lcpstep.recording import quiet_until, write_event, write_row
 from lcpstep.stepping.newton import linearise
 
 # Why the loop returned
@@ -119,14 +119,12 @@ def run(
     `external`: active problems are handed out (NEED_LCP) and come back in state.z (solved = True).
     """
     n_c = len(state.u)
-    single = model.linear and model.flat and n_c == 1 and len(state.q) == 1 and len(record.times) == 0
+    single = model.linear and model.flat and n_c == 1 and len(state.q) == 1
     while count[STEP] < last:
         if count[EVENT] + 2 * n_c > len(record.events):
             return LOG_FULL
         if single and state.closed[0] == 0:
-            end = last
-            if record.every > 0:
-                end = min(last, count[STEP] + record.every - 1 - count[STEP] % record.every)
+            end = quiet_until(record, count[STEP], count[NEXT_TIME], plan.h, t0, first, last)
             coast(model, plan, state, count, t0, first, end)
             if count[STEP] >= last:
                 return FINISHED

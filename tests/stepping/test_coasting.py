@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, simulate
+from lcpstep import Located, Moreau, simulate
 
 SCENES = [
     scenes.bouncing_ball(),
@@ -26,3 +26,15 @@ def test_coasting_changes_no_bit(scene, every):
     np.testing.assert_array_equal(slow.impacts, fast.impacts)
     assert slow.counts == fast.counts
     np.testing.assert_allclose(fast.impulse.sum(axis=0), slow.impulse.sum(axis=0), rtol=1e-12)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda s: s.name)
+@pytest.mark.parametrize("method", [Moreau(1e-3), Located(1e-3)], ids=["moreau", "located"])
+@pytest.mark.parametrize("shift", [0.0, 0.5, 1e-12])
+def test_states_asked_for_now_and_then_are_those_asked_for_in_every_step(scene, method, shift):
+    times = scene.t_span[0] + 1e-3 * (np.arange(round((scene.t_span[1] - scene.t_span[0]) / 1e-3)) + shift)
+    slow, fast = (simulate(scene, method, keep=kept) for kept in (times, times[3::41]))
+    np.testing.assert_array_equal(fast.t, slow.t[3::41])
+    np.testing.assert_array_equal(fast.q, slow.q[3::41])
+    np.testing.assert_array_equal(fast.v, slow.v[3::41])
+    np.testing.assert_array_equal(fast.impacts, slow.impacts)
