@@ -54,7 +54,7 @@ CASES = (
     Case(
         "sticking oscillator, 100 s",
         scenes.sticking_oscillator(),
-        (*THREE_DECADES, 3e-5),
+        THREE_DECADES,
         THREE_DECADES,
         math.inf,
     ),

@@ -49,6 +49,8 @@ def questions() -> Iterator[tuple[str, Scene, float]]:
     yield "double pendulum and wall", scenes.double_pendulum(), 1e-3
     for h in (1e-3, 1e-2, 5e-2):
         yield "elastic gas, 20 beads", scenes.elastic_gas(n=20), h
+    for h in (1e-1, 2.5e-1):
+        yield "elastic gas, 20 beads, 100 s", scenes.elastic_gas(n=20, t_end=100.0), h
     for h in (1e-3, 1e-2):
         yield "column of 20 that comes to rest", scenes.column(n=20, t_end=2.0), h
 

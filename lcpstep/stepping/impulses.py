@@ -108,10 +108,8 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
                 w.vec[A, i] += MG[c, i] * force
                 w.vec[A_TRY, i] += abs(MG[c, i] * force)
     zero_rounding(plan, w)
-    if plan.plain and n_k > 1:
-        L = w.problem[: n_k * n_k].reshape((n_k, n_k))
-        if keep_closed(w.G, W, MG, w.vec, w.num, w.mark, L, n_k):
-            zero_rounding(plan, w)
+    if plan.plain and n_k > 1 and keep_closed(w, W, MG, n_k):
+        zero_rounding(plan, w)
     for k in range(n_k):
         c, force = w.mark[CHOSEN, k], w.num[Z, k]
         if force == 0.0:

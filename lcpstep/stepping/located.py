@@ -23,7 +23,11 @@ from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
+from lcpstep.stepping.located_event import straighten
+from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
+from lcpstep.stepping.located_piece import pressed
+from lcpstep.stepping.race import race
 from lcpstep.stepping.steps import WHOLE, check_resolved, divided
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
@@ -121,7 +125,7 @@ def require_linear(scene: Scene) -> None:
 
 # What steps with joints never reach: the ways of the trapezoidal rule
 UNJOINED = (
-    loop.glide, loop.race, loop.pressed, loop.straighten, smooth.invert_rest, smooth.shift,
+    glide, race, pressed, straighten, smooth.invert_rest, smooth.shift,
     refine.solve_several, refine.keep_closed,
 )  # fmt: skip
 
@@ -216,7 +220,7 @@ class _Run:
         else:
             self.model, fast = model(scene)
         self.fast = fast and not jit_disabled()
-        self.never = (*HOOKS, refine.solve_unrefined) if joints is None else UNJOINED
+        self.never = HOOKS if joints is None else UNJOINED
         self.plan = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, self.plan, self.fast, joints)
         respond(self.model, self.plan, self.work)

@@ -25,6 +25,8 @@ WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest o
 INERTIA = 2  # in their place: M alone
 
 EPS = 2.0**-52
+SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
+LATE = 1e-9  # of a step: what rounding may take from the last one's end
 ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size
 
 # Rows of Work.vec: the state at the base of the piece, accelerations and forces there, work space
@@ -130,7 +132,7 @@ class Work(NamedTuple):
     """The piece of motion that began at the last event or step, and work space.
 
     Over the piece q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2. Vectors and numbers
-    of one kind lie in one array, whose rows have names: a kernel is called the faster the fewer arrays it takes.
+    of one kind lie in one array, whose rows have names.
     """
 
     vec: Any  # (N_VEC, n_q)

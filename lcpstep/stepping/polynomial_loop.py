@@ -14,14 +14,9 @@ from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import hold, release, settle_rest, stick, strike
-from lcpstep.stepping.located_loop import (
-    LATE,
-    SAME_TIME,
-    begin_step,
-    finite,
-    keep,
-    penetrates,
-)
+from lcpstep.stepping.located_keep import keep
+from lcpstep.stepping.located_loop import begin_step, finite
+from lcpstep.stepping.located_piece import penetrates
 from lcpstep.stepping.located_work import (
     ALPHA,
     BIAS,
@@ -46,6 +41,7 @@ from lcpstep.stepping.located_work import (
     HIGH,
     IMPULSE,
     LAST,
+    LATE,
     LCP_FAILED,
     LOW,
     NEXT_TIME,
@@ -54,6 +50,7 @@ from lcpstep.stepping.located_work import (
     OPEN,
     RATE,
     ROW,
+    SAME_TIME,
     SIGMA,
     STATUS,
     STEP,

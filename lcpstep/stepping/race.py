@@ -51,13 +51,13 @@ SHORT = 1e-7  # and hops as short as this, are left to the general treatment
 
 
 def race(
-    vec: Any, num: Any, mark: Any, G: Any, MG: Any, W: Any, restitution: Any, offset: Any, record: Any, count: Any,
-    t: float, sigma: float, end: float, h: float, slack: float, most: int, many: int,
-) -> int:  # fmt: skip
-    """Impacts in (sigma, end] of the step of length h that began at t, at most so many; how many there were.
+    m: Any, plan: Any, w: Any, record: Any, count: Any, t: float, sigma: float, end: float, most: int
+) -> int:
+    """Impacts in (sigma, end] of the step that began at t, at most so many; how many there were.
 
-    All stand at the time of the last of them, vec[Q_TIME, 0].
+    All stand at the time of the last of them, w.vec[Q_TIME, 0].
     """
+    vec, num = w.vec, w.num
     n, n_c, done, struck, now = vec.shape[1], num.shape[1], 0, -1, sigma
     for i in range(n):
         vec[Q_TIME, i] = sigma
@@ -70,29 +70,33 @@ def race(
             if num[NEXT_ZERO, d] < num[NEXT_ZERO, c]:
                 c = d
         tau = num[NEXT_ZERO, c]
-        if not tau <= end or not ordinary(num, mark, W, restitution, c, tau, h, slack, many):
+        if not tau <= end or not ordinary(m, plan, w, c, tau):
             break
-        hit(vec, num, mark, G, MG, W, restitution[c], offset[c], c, tau, end)
+        hit(m, w, c, tau, end)
         write_event(record.events[count[EVENT]], t + tau, c, num[BEFORE, c], num[RATE, c], num[P, c], IMPACT)
         count[EVENT] += 1
         count[LCP_CALLS] += 1
         done, struck, now = done + 1, c, tau
         if record.on_events or record.every == 1:
-            for i in range(n):
-                s = tau - vec[Q_TIME, i]
-                vec[Q_TRY, i] = vec[Q, i] + s * (vec[V, i] + 0.5 * s * vec[A, i])
-                vec[V_TRY, i] = vec[V, i] + s * vec[A, i]
-            if (
-                count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t + tau
-            ):  # states at one time share a row
-                count[ROW] -= 1
-                for d in range(n_c):
-                    num[IMPULSE, d] += record.rows[count[ROW], LEAD + 2 * n + d]
-            write_row(record.rows[count[ROW]], t + tau, 0.0, vec[Q_TRY], vec[V_TRY], num[IMPULSE])
-            count[ROW] += 1
+            keep_impact(w, record, count, t, tau)
     if done > 0:
-        gather(vec, num, mark, now, struck)
+        gather(w, now, struck)
     return done
+
+
+def keep_impact(w: Any, record: Any, count: Any, t: float, tau: float) -> None:
+    """Keep the state at tau; states at one time share a row."""
+    vec, num, n = w.vec, w.num, w.vec.shape[1]
+    for i in range(n):
+        s = tau - vec[Q_TIME, i]
+        vec[Q_TRY, i] = vec[Q, i] + s * (vec[V, i] + 0.5 * s * vec[A, i])
+        vec[V_TRY, i] = vec[V, i] + s * vec[A, i]
+    if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t + tau:
+        count[ROW] -= 1
+        for d in range(num.shape[1]):
+            num[IMPULSE, d] += record.rows[count[ROW], LEAD + 2 * n + d]
+    write_row(record.rows[count[ROW]], t + tau, 0.0, vec[Q_TRY], vec[V_TRY], num[IMPULSE])
+    count[ROW] += 1
 
 
 @inline
@@ -104,43 +108,31 @@ def next_zero(num: Any, c: int, end: float) -> float:
     return num[SINCE, c] + first_zero(g, u, half)
 
 
-def ordinary(
-    num: Any, mark: Any, W: Any, restitution: Any, c: int, tau: float, h: float, slack: float, many: int
-) -> bool:
+def ordinary(m: Any, plan: Any, w: Any, c: int, tau: float) -> bool:
     """Whether contact c strikes at tau, alone among its neighbours, and rebounds for longer than a moment."""
-    r, s = restitution[c], tau - num[SINCE, c]
+    num, mark, h = w.num, w.mark, plan.h
+    r, s = m.restitution[c], tau - num[SINCE, c]
     u = num[RATE, c] + 2.0 * s * num[HALF, c]
     if not u < 0.0 or r == 0.0 or (num[LAST, c] >= 0.0 and tau - num[LAST, c] <= CLOSE * h):
         return False
-    if r < 1.0 and num[HALF, c] < 0.0 and (r * u / num[HALF, c] < SHORT * h or mark[HITS, c] >= many):
+    if r < 1.0 and num[HALF, c] < 0.0 and (r * u / num[HALF, c] < SHORT * h or mark[HITS, c] >= plan.many):
         return False
     for d in range(mark[FIRST_CONTACT, c], mark[LAST_CONTACT, c] + 1):
-        if d != c and W[d, c] != 0.0:
+        if d != c and w.W[d, c] != 0.0:
             s = tau - num[SINCE, d]
             g, v = num[GAP, d] + s * (num[RATE, d] + s * num[HALF, d]), num[RATE, d] + 2.0 * s * num[HALF, d]
-            if g <= slack and v < 0.0:
+            if g <= plan.slack and v < 0.0:
                 return False
     return True
 
 
-def hit(
-    vec: Any,
-    num: Any,
-    mark: Any,
-    G: Any,
-    MG: Any,
-    W: Any,
-    r: float,
-    offset: float,
-    c: int,
-    tau: float,
-    end: float,
-) -> None:
+def hit(m: Any, w: Any, c: int, tau: float, end: float) -> None:
     """The impact of contact c at tau; position and velocity of its bodies agree with its gap to the last digit."""
+    vec, num, mark, G, MG, W, r = w.vec, w.num, w.mark, w.G, w.MG, w.W, m.restitution[c]
     first, last = mark[FIRST_COORDINATE, c], mark[LAST_COORDINATE, c] + 1
     u = num[RATE, c] + 2.0 * (tau - num[SINCE, c]) * num[HALF, c]
     p = -(1.0 + r) * u / W[c, c]
-    g, leaves = offset, r * u
+    g, leaves = m.offset[c], r * u
     for i in range(first, last):
         s = tau - vec[Q_TIME, i]
         vec[Q, i] += s * (vec[V, i] + 0.5 * s * vec[A, i])
@@ -173,8 +165,9 @@ def hit(
             num[NEXT_ZERO, d] = next_zero(num, d, end)
 
 
-def gather(vec: Any, num: Any, mark: Any, now: float, struck: int) -> None:
+def gather(w: Any, now: float, struck: int) -> None:
     """Bring all coordinates and gaps to one time."""
+    vec, num, mark = w.vec, w.num, w.mark
     for i in range(vec.shape[1]):
         s = now - vec[Q_TIME, i]
         vec[Q, i] += s * (vec[V, i] + 0.5 * s * vec[A, i])

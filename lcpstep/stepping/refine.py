@@ -58,207 +58,176 @@ def solve_chosen(m: Any, plan: Any, w: Any, W: Any, place: int, n: int, count: A
             w.num[Z, 0] = max(0.0, -w.num[B, 0] / W[c, c])
             return True
     if plan.joined:
-        return solve_unrefined(W, w.num, w.mark, w.problem[: n * n].reshape((n, n)), w.solver, w.lcp, n)
+        return solve_unrefined(w, W, n)
     factored = place == INERTIA and m.mass != ABSENT
     inverse = w.M if factored else (m.M_inverse if place == INERTIA else plan.A_inverse[place])
-    return solve_several(
-        inverse,
-        factored,
-        w.G,
-        W,
-        w.vec,
-        w.num,
-        w.mark,
-        w.problem[: n * n].reshape((n, n)),
-        w.solver,
-        w.lcp,
-        n,
-    )
+    return solve_several(w, W, inverse, factored, n)
 
 
-def solve_unrefined(W: Any, num: Any, mark: Any, P: Any, solver: Any, lcp: Any, n: int) -> bool:
+def solve_unrefined(w: Any, W: Any, n: int) -> bool:
     """The same from W alone: with joints W is not G A^-1 G^T."""
+    P = w.problem[: n * n].reshape((n, n))
     for i in range(n):
         for j in range(n):
-            P[i, j] = W[mark[CHOSEN, i], mark[CHOSEN, j]]
-    return call_solver(solver, P, num[B, :n], num[Z, :n], lcp) == 0
+            P[i, j] = W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
+    return call_solver(w.solver, P, w.num[B, :n], w.num[Z, :n], w.lcp) == 0
 
 
-def solve_several(
-    inverse: Any,
-    factored: bool,
-    G: Any,
-    W: Any,
-    vec: Any,
-    num: Any,
-    mark: Any,
-    P: Any,
-    solver: Any,
-    lcp: Any,
-    n: int,
-) -> bool:
+def solve_several(w: Any, W: Any, inverse: Any, factored: bool, n: int) -> bool:
     """The same for any number: the guess if it is still right, or all pressed, else the solver's answer; refined.
 
     `inverse` is A^-1 or, if `factored`, Cholesky's factor of A.
     """
-    if right(inverse, factored, G, vec, num, mark, n):
+    L = w.problem[: n * n].reshape((n, n))
+    if right(w, inverse, factored, n):
         return True
-    if n > 1 and all_pressed(W, P, num, mark, n):
-        return refine(inverse, factored, G, W, vec, num, mark, P, n, n, True)
-    for i in range(n):
-        for j in range(n):
-            P[i, j] = W[mark[CHOSEN, i], mark[CHOSEN, j]]
-    solved = call_solver(solver, P, num[B, :n], num[Z, :n], lcp) == 0
+    if n > 1 and all_pressed(w, W, L, n):
+        return refine(w, W, inverse, factored, L, n, n, True)
+    solved = solve_unrefined(w, W, n)
     if n == 1:
         return solved
     if not solved:
         for k in range(n):
-            num[Z, k] = 0.0
-    return refine(inverse, factored, G, W, vec, num, mark, P, n, -1, solved)
+            w.num[Z, k] = 0.0
+    return refine(w, W, inverse, factored, L, n, -1, solved)
 
 
-def all_pressed(W: Any, L: Any, num: Any, mark: Any, n: int) -> bool:
+def all_pressed(w: Any, W: Any, L: Any, n: int) -> bool:
     """Whether W z + b = 0 has an answer with z > 0 for all; that answer, and the factor of W into L."""
-    if factor_pressed(W, L, num, mark, n, True) < n:
+    if factor_pressed(w, W, L, n, True) < n:
         return False
     for k in range(n):
-        num[Z, k] = -num[B, k]
-    solve_factored(L, n, num[Z])
+        w.num[Z, k] = -w.num[B, k]
+    solve_factored(L, n, w.num[Z])
     largest = 0.0
     for k in range(n):
-        largest = max(largest, num[Z, k])
+        largest = max(largest, w.num[Z, k])
     least = largest
     for k in range(n):
-        least = min(least, num[Z, k])
+        least = min(least, w.num[Z, k])
     return least > PULLS * largest
 
 
-def right(inverse: Any, factored: bool, G: Any, vec: Any, num: Any, mark: Any, n: int) -> bool:
+def right(w: Any, inverse: Any, factored: bool, n: int) -> bool:
     """Whether the guess, positive for all, is the answer: what rests keeps its forces from step to step."""
     if n == 1:
         return False
     size = 0.0
     for k in range(n):
-        if not num[Z, k] > 0.0:
+        if not w.num[Z, k] > 0.0:
             return False
-        size = max(size, abs(num[B, k]))
-    leftover(inverse, factored, G, vec, num, mark, n)
+        size = max(size, abs(w.num[B, k]))
+    leftover(w, inverse, factored, n)
     worst = 0.0
     for k in range(n):
-        worst = max(worst, abs(num[RESIDUAL, k]))
+        worst = max(worst, abs(w.num[RESIDUAL, k]))
     return worst <= EXACT * size
 
 
-def leftover(inverse: Any, factored: bool, G: Any, vec: Any, num: Any, mark: Any, n: int) -> None:
-    """b + G A^-1 (G^T z) of the chosen contacts, into num[RESIDUAL]; A^-1 G^T z into vec[JOLT]."""
-    n_q = vec.shape[1]
+def leftover(w: Any, inverse: Any, factored: bool, n: int) -> None:
+    """b + G A^-1 (G^T z) of the chosen contacts, into w.num[RESIDUAL]; A^-1 G^T z into w.vec[JOLT]."""
+    force, jolt, n_q = w.vec[A_TRY], w.vec[JOLT], w.vec.shape[1]
     for i in range(n_q):
-        vec[A_TRY, i] = 0.0
+        force[i] = 0.0
     for k in range(n):
-        if num[Z, k] != 0.0:
-            c = mark[CHOSEN, k]
-            for i in range(mark[FIRST_COORDINATE, c], mark[LAST_COORDINATE, c] + 1):
-                vec[A_TRY, i] += G[c, i] * num[Z, k]
+        if w.num[Z, k] != 0.0:
+            c = w.mark[CHOSEN, k]
+            for i in range(w.mark[FIRST_COORDINATE, c], w.mark[LAST_COORDINATE, c] + 1):
+                force[i] += w.G[c, i] * w.num[Z, k]
     if factored:
-        assign(vec[JOLT], vec[A_TRY])
-        solve_definite(inverse, vec[JOLT])
+        assign(jolt, force)
+        solve_definite(inverse, jolt)
     else:
         for i in range(n_q):
-            vec[JOLT, i] = 0.0
+            jolt[i] = 0.0
         for j in range(n_q):
-            if vec[A_TRY, j] != 0.0:
+            if force[j] != 0.0:
                 for i in range(n_q):
-                    vec[JOLT, i] += inverse[j, i] * vec[A_TRY, j]
+                    jolt[i] += inverse[j, i] * force[j]
     for k in range(n):
-        c, total = mark[CHOSEN, k], 0.0
-        for i in range(mark[FIRST_COORDINATE, c], mark[LAST_COORDINATE, c] + 1):
-            total += G[c, i] * vec[JOLT, i]
-        num[RESIDUAL, k] = num[B, k] + total
+        c, total = w.mark[CHOSEN, k], 0.0
+        for i in range(w.mark[FIRST_COORDINATE, c], w.mark[LAST_COORDINATE, c] + 1):
+            total += w.G[c, i] * jolt[i]
+        w.num[RESIDUAL, k] = w.num[B, k] + total
 
 
-def factor_pressed(W: Any, L: Any, num: Any, mark: Any, n: int, all_pressed: bool) -> int:
-    """Cholesky factor of W for the independent contacts with z > 0; their places in the list go to mark[HELD]."""
+def factor_pressed(w: Any, W: Any, L: Any, n: int, everybody: bool) -> int:
+    """Cholesky factor of W for the independent contacts with z > 0; their places in the list go to w.mark[HELD]."""
     n_k = 0
     for k in range(n):
-        if num[Z, k] > 0.0 or all_pressed:
-            mark[HELD, n_k] = mark[CHOSEN, k]
-            if grow_factor(W, L, mark[HELD], num[DOUBT], n_k):
-                mark[PLACE, n_k] = k
+        if w.num[Z, k] > 0.0 or everybody:
+            w.mark[HELD, n_k] = w.mark[CHOSEN, k]
+            if grow_factor(W, L, w.mark[HELD], w.num[DOUBT], n_k):
+                w.mark[PLACE, n_k] = k
                 n_k += 1
     return n_k
 
 
-def refine(
-    inverse: Any,
-    factored: bool,
-    G: Any,
-    W: Any,
-    vec: Any,
-    num: Any,
-    mark: Any,
-    L: Any,
-    n: int,
-    n_k: int,
-    solved: bool,
-) -> bool:
-    """Correct z by what it leaves; False where that is no answer either. L is the factor of n_k rows, or n_k < 0."""
+def refine(w: Any, W: Any, inverse: Any, factored: bool, L: Any, n: int, n_k: int, solved: bool) -> bool:
+    """Correct z by what it leaves; False where that is no answer either. L has n_k rows, or none yet if n_k < 0."""
     size = 0.0
     for k in range(n):
-        size = max(size, abs(num[B, k]))
-    leftover(inverse, factored, G, vec, num, mark, n)
+        size = max(size, abs(w.num[B, k]))
+    leftover(w, inverse, factored, n)
     for _ in range(REFINEMENTS):
         worst = 0.0
         for k in range(n):
-            if num[Z, k] > 0.0 or not solved:
-                worst = max(worst, abs(num[RESIDUAL, k]))
+            if w.num[Z, k] > 0.0 or not solved:
+                worst = max(worst, abs(w.num[RESIDUAL, k]))
         if worst <= EPS * size:
             break
         if n_k < 0:
-            n_k = factor_pressed(W, L, num, mark, n, not solved)
-        for i in range(n_k):
-            num[CHANGE, i] = -num[RESIDUAL, mark[PLACE, i]]
-        solve_factored(L, n_k, num[CHANGE])
-        largest = change = 0.0
-        for i in range(n_k):
-            num[Z, mark[PLACE, i]] += num[CHANGE, i]
-            largest, change = (
-                max(largest, abs(num[Z, mark[PLACE, i]])),
-                max(change, abs(num[CHANGE, i])),
-            )
-        leftover(inverse, factored, G, vec, num, mark, n)
+            n_k = factor_pressed(w, W, L, n, not solved)
+        largest, change = correct(w, L, n_k)
+        leftover(w, inverse, factored, n)
         if change <= SETTLED * largest:
             break
-    answered = solved or presses(W, num, mark, n)
+    answered = solved or presses(w, W, n)
     for k in range(n):
-        num[Z, k] = max(num[Z, k], 0.0)
+        w.num[Z, k] = max(w.num[Z, k], 0.0)
     return answered
 
 
-def keep_closed(G: Any, W: Any, MG: Any, vec: Any, num: Any, mark: Any, L: Any, n: int) -> bool:
+def correct(w: Any, L: Any, n_k: int) -> tuple[float, float]:
+    """Add to z what the residual asks for; the largest impulse and the largest correction."""
+    for i in range(n_k):
+        w.num[CHANGE, i] = -w.num[RESIDUAL, w.mark[PLACE, i]]
+    solve_factored(L, n_k, w.num[CHANGE])
+    largest = change = 0.0
+    for i in range(n_k):
+        k = w.mark[PLACE, i]
+        w.num[Z, k] += w.num[CHANGE, i]
+        largest, change = max(largest, abs(w.num[Z, k])), max(change, abs(w.num[CHANGE, i]))
+    return largest, change
+
+
+def keep_closed(w: Any, W: Any, MG: Any, n: int) -> bool:
     """Take out of the acceleration what rounding leaves of G a on the pressed contacts; whether there was any."""
     worst = 0.0
     for k in range(n):
-        num[RESIDUAL, k] = product(G, vec[A], mark[CHOSEN, k]) if num[Z, k] > 0.0 else 0.0
-        worst = max(worst, abs(num[RESIDUAL, k]))
+        pressed = w.num[Z, k] > 0.0
+        w.num[RESIDUAL, k] = product(w.G, w.vec[A], w.mark[CHOSEN, k]) if pressed else 0.0
+        worst = max(worst, abs(w.num[RESIDUAL, k]))
     if worst == 0.0:
         return False
-    n_k = factor_pressed(W, L, num, mark, n, False)
+    L = w.problem[: n * n].reshape((n, n))
+    n_k = factor_pressed(w, W, L, n, False)
     for i in range(n_k):
-        num[CHANGE, i] = -num[RESIDUAL, mark[PLACE, i]]
-    solve_factored(L, n_k, num[CHANGE])
+        w.num[CHANGE, i] = -w.num[RESIDUAL, w.mark[PLACE, i]]
+    solve_factored(L, n_k, w.num[CHANGE])
     for i in range(n_k):
-        for j in range(vec.shape[1]):
-            vec[A, j] += MG[mark[HELD, i], j] * num[CHANGE, i]
+        for j in range(w.vec.shape[1]):
+            w.vec[A, j] += MG[w.mark[HELD, i], j] * w.num[CHANGE, i]
     return True
 
 
-def presses(W: Any, num: Any, mark: Any, n: int) -> bool:
+def presses(w: Any, W: Any, n: int) -> bool:
     """Whether z of an answer found without the solver pulls nowhere, and leaves no contact closing."""
     largest = 0.0
     for k in range(n):
-        largest = max(largest, num[Z, k])
+        largest = max(largest, w.num[Z, k])
     for k in range(n):
-        c, z = mark[CHOSEN, k], num[Z, k]
-        if not z >= -PULLS * largest or num[RESIDUAL, k] < -PULLS * (abs(num[B, k]) + W[c, c] * abs(z)):
+        c, z = w.mark[CHOSEN, k], w.num[Z, k]
+        if not z >= -PULLS * largest or w.num[RESIDUAL, k] < -PULLS * (abs(w.num[B, k]) + W[c, c] * abs(z)):
             return False
     return True
