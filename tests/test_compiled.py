@@ -180,18 +180,3 @@ def test_the_type_of_a_tuple_by_address_has_a_short_name_and_tells_kinds_apart()
     assert first != typeof(Inner(np.ones(5), 2.0))
     assert first != typeof(Inner(np.ones((2, 2)), 2))
     assert len(first.name) < 30
-
-
-def half(x):
-    return len(x) // 2
-
-
-def use(x, reach):
-    return half(x) if reach else -1
-
-
-def test_a_kernel_that_was_left_out_and_is_reached_ends_the_run_loudly():
-    kernel = compiled(use, without=[half])
-    assert kernel(np.zeros(4), False) == -1
-    with pytest.raises(AssertionError, match="left out"):
-        kernel(np.zeros(4), True)
