@@ -27,6 +27,14 @@ def add(x: Any, factor: float, y: Any) -> None:
         x.flat[i] += factor * y.flat[i]
 
 
+@inline
+def largest(x: Any, least: float) -> float:
+    """Largest magnitude of the entries of x, or `least`."""
+    for i in range(len(x)):
+        least = max(least, abs(x[i]))
+    return least
+
+
 def join(x: Any, y: Any, z: Any) -> None:
     """X <- (y, z)."""
     for i in range(len(y)):

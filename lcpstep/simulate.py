@@ -10,7 +10,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.recording import Keep, Kept
 
 if TYPE_CHECKING:
-    from lcpstep.events.hybrid_trajectory import HybridTrajectory
+    from lcpstep.events.hybrid.trajectory import HybridTrajectory
     from lcpstep.trajectory import Trajectory
 
 

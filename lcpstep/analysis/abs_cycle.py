@@ -23,8 +23,8 @@ from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque
 from lcpstep.analysis.hybrid_variation import monodromy
 from lcpstep.errors import LcpStepError, StudyInterrupted
 from lcpstep.events import EventDriven
-from lcpstep.events.hybrid_many import End, Follower
-from lcpstep.events.hybrid_trajectory import HybridTrajectory
+from lcpstep.events.hybrid.many import End, Follower
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.simulate import simulate
 from lcpstep.trajectory import Status
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
-from lcpstep.events.hybrid import machine, space
-from lcpstep.events.hybrid_field import field, guard_gradient
-from lcpstep.events.hybrid_trajectory import HybridTrajectory
+from lcpstep.events.hybrid.field import field, guard_gradient
+from lcpstep.events.hybrid.run import machine
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
@@ -31,7 +31,6 @@ class Variation:
             raise LcpStepError(f"the motion ended early: {run.message}")
         self.run, self.names = run, run.scene.system.names
         self.machine, _ = machine(run.scene, plain=True)
-        self.space = space(run.scene.system.n_x)
 
     def factors(self) -> list[Array]:
         """Flows and saltation matrices in the order of time, (n_x, n_x) each."""
@@ -47,7 +46,7 @@ class Variation:
     def field(self, mode: str, t: float, x: Array) -> Array:
         """The vector field of a mode."""
         out = np.zeros(len(x))
-        field(self.machine, self.space, self.names.index(mode), t, np.ascontiguousarray(x), out)
+        field(self.machine, self.names.index(mode), t, np.ascontiguousarray(x), out)
         return out
 
     def flow(self, a: float, b: float, x: Array, mode: str) -> Array:
@@ -72,8 +71,8 @@ class Variation:
         """D of one switch."""
         t, before, k = float(event.time), np.array(event.before), int(event.guard)
         mode = self.names.index(str(event.source))
-        H_t = guard_gradient(self.machine, self.space, mode, k, t, before)
-        H_x = self.space.g_x.copy()
+        H_t = guard_gradient(self.machine, mode, k, t, before)
+        H_x = self.machine.work.g_x.copy()
         F_before = self.field(str(event.source), t, before)
         F_after = self.field(str(event.target), t, np.array(event.after))
         R_x, R_t = np.eye(len(before)), np.zeros(len(before))

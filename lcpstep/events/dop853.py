@@ -7,6 +7,7 @@ that `scipy.integrate.DOP853` publishes.
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any, NamedTuple
 
@@ -20,6 +21,7 @@ UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step
 
 
+@by_address
 class Tableau(NamedTuple):
     """Coefficients; A covers the stages of the step, its last one and the extra ones of the dense output."""
 
@@ -40,8 +42,10 @@ class Work(NamedTuple):
     y_new: Any  # (m,)
     y_stage: Any  # (m,)
     F: Any  # (7, m) dense output
+    tab: Any  # the coefficients
 
 
+@functools.cache
 def tableau() -> Tableau:
     """The coefficients, from SciPy."""
     from scipy.integrate import DOP853
@@ -58,19 +62,19 @@ def tableau() -> Tableau:
 
 def work(m: int) -> Work:
     """Work space for m equations."""
-    return Work(np.zeros((16, m)), np.zeros(m), np.zeros(m), np.zeros(m), np.zeros((7, m)))
+    return Work(np.zeros((16, m)), np.zeros(m), np.zeros(m), np.zeros(m), np.zeros((7, m)), tableau())
 
 
-def combine(tab: Any, w: Any, h: float, stage: int) -> None:
+def combine(w: Any, h: float, stage: int) -> None:
     """y_stage = y + h sum_j A[stage, j] K[j]."""
     for i in range(len(w.y)):
         total = 0.0
         for j in range(stage):
-            total += tab.A[stage, j] * w.K[j, i]
+            total += w.tab.A[stage, j] * w.K[j, i]
         w.y_stage[i] = w.y[i] + h * total
 
 
-def error_norm(tab: Any, w: Any, h: float, rtol: float, atol: float) -> float:
+def error_norm(w: Any, h: float, rtol: float, atol: float) -> float:
     """Estimated error of y_new over the tolerance; the step is good below one."""
     m = len(w.y)
     err5 = err3 = 0.0
@@ -78,8 +82,8 @@ def error_norm(tab: Any, w: Any, h: float, rtol: float, atol: float) -> float:
         scale = atol + rtol * max(abs(w.y[i]), abs(w.y_new[i]))
         e5 = e3 = 0.0
         for j in range(STAGES + 1):
-            e5 += tab.E5[j] * w.K[j, i]
-            e3 += tab.E3[j] * w.K[j, i]
+            e5 += w.tab.E5[j] * w.K[j, i]
+            e3 += w.tab.E3[j] * w.K[j, i]
         err5 += (e5 / scale) ** 2
         err3 += (e3 / scale) ** 2
     if err5 + 0.01 * err3 <= UNDERFLOW:
@@ -94,7 +98,7 @@ def factor(error: float) -> float:
     return min(MOST, max(LEAST, SAFETY * error ** (-0.125)))
 
 
-def interpolant(tab: Any, w: Any, h: float) -> None:
+def interpolant(w: Any, h: float) -> None:
     """Dense output of the step, into F; needs all 16 stages."""
     for i in range(len(w.y)):
         delta = w.y_new[i] - w.y[i]
@@ -104,7 +108,7 @@ def interpolant(tab: Any, w: Any, h: float) -> None:
         for k in range(4):
             total = 0.0
             for j in range(16):
-                total += tab.D[k, j] * w.K[j, i]
+                total += w.tab.D[k, j] * w.K[j, i]
             w.F[3 + k, i] = h * total
 
 

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from lagrangian import HybridScene, Scene, checks
-from lcpstep.events import many
-from lcpstep.events.closed_form import ClosedForm, oscillator_of
-from lcpstep.events.hybrid import HybridRun
-from lcpstep.events.hybrid_trajectory import HybridTrajectory
-from lcpstep.events.runge_kutta import RungeKutta
+from lcpstep.events.flight.run import ClosedForm, oscillator_of
+from lcpstep.events.hybrid.run import HybridRun
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.events.several.run import Several
+from lcpstep.events.single.run import RungeKutta
 from lcpstep.model import model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
@@ -67,7 +67,7 @@ class EventDriven:
         """The motion of a scene; see `lcpstep.simulate`."""
         require(scene, "EventDriven", joints=True, friction=False)
         if scene.n_c > 1 or scene.n_j > 0:
-            return many.run(self, scene, kept, progress)
+            return Several(self, scene, kept).finish(progress)
         m, fast = model(scene)
         o = oscillator_of(scene, m)
         if o is not None:

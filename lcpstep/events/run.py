@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,23 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.compiled import call, compiled
 from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.events.bookkeeping import (
+    BUFFER_FULL,
+    EVENT,
+    EVENTS,
+    FINISHED,
+    FORCES,
+    MAX_EVENTS,
+    N_COUNTERS,
+    NOT_FINITE,
+    ROW,
+    SLACK,
+    STEP,
+    STEP_TOO_SMALL,
+    TOO_MANY_EVENTS,
+)
 from lcpstep.model import ABSENT, Model, culprit
-from lcpstep.recording import Kept, Recorder, States
+from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -25,12 +40,6 @@ SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obsta
 SLOPE = 1e-7  # of the time looked at: step of a difference
 TRIALS = 17  # of the callbacks within an interval that failed
 
-# Why a loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
-# Places in the array of counters
-STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS, STALLED, MAX_EVENTS = range(8)
-N_COUNTERS = 8
-SLACK = 4  # rows and events that one round of a loop may need
 STATUS = {
     FINISHED: Status.DONE,
     NOT_FINITE: Status.NOT_FINITE,
@@ -42,10 +51,10 @@ STATUS = {
 class Run(ABC):
     """One run: the kernel's arrays, and the portions that it is fed in."""
 
-    def __init__(self, method: Any, scene: Scene, kept: Kept, dense: bool) -> None:
-        self.method, self.scene, self.kept = method, scene, kept
-        rows = PORTION + len(kept.times) + 2 * SLACK
-        self.recorder = Recorder(scene.n_q, scene.n_c, kept, rows, dense=dense)
+    status_of: Mapping[int, Status] = STATUS  # by why the loop returned
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
+        self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
         self.count = np.zeros(N_COUNTERS, dtype=np.int64)
         self.count[MAX_EVENTS] = method.max_events
 
@@ -85,12 +94,13 @@ class Run(ABC):
                     code = self.advance(int(self.count[STEP]) + PORTION)
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
                     message = f"a callback failed after t = {self.now:.9g} s: {error}"
-                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE, message)) from error
                 self.empty()
                 progress(self.now)
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(STATUS[code])
+            message = f"interrupted {self.where}"
+            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, message)) from None
+        result = self.trajectory(self.status_of[code], self.message(code))
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
         return result
@@ -102,36 +112,47 @@ class Run(ABC):
         self.recorder.buffers.rows[0] = self.recorder.buffers.rows[max(rows - 1, 0)]
         self.count[ROW], self.count[EVENT] = min(rows, 1), 0
 
-    def trajectory(self, status: Status) -> Trajectory:
+    def trajectory(self, status: Status, message: str) -> Trajectory:
         """Everything computed so far."""
-        if len(self.kept.times) == 0 and self.now > self.recorder.buffers.rows[self.count[ROW] - 1, 0]:
+        rows, count, n_c = int(self.count[ROW]), self.count, self.scene.n_c
+        nothing = rows == 0 or self.now > self.recorder.buffers.rows[rows - 1, TIME]
+        if len(self.kept.times) == 0 and nothing:
             self.keep_now()
-        self.recorder.empty(int(self.count[ROW]), int(self.count[EVENT]))
+        self.recorder.empty(int(count[ROW]), int(count[EVENT]))
         s = self.recorder.states()
-        count = self.count
         return Trajectory(
-            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=s.impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v,
+            impulse=np.ascontiguousarray(s.impulse[:, :n_c]), impacts=self.recorder.events(), status=status,
+            message=message,
             counts=Counts(
                 steps=int(count[STEP]), force_evaluations=int(count[FORCES]), events=int(count[EVENTS])
             ),
-            dense=self.dense_output(s),
+            dense=self.dense_output(s), joint_impulse=np.ascontiguousarray(s.impulse[:, n_c:]),
         )  # fmt: skip
 
-    def message(self, status: Status) -> str:
-        """How the run ended, in words."""
-        if status == Status.DONE:
-            return "reached the end of the span"
+    @property
+    def where(self) -> str:
+        """Time and state reached, in words."""
         q, v = self.state
-        where = f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
-        if status == Status.TOO_MANY_EVENTS:
-            return f"more than max_events = {self.method.max_events} events {where}"
-        if status == Status.STEP_TOO_SMALL:
-            return f"the tolerances rtol = {self.method.rtol:g}, atol = {self.method.atol:g} cannot be met {where}"
-        if status == Status.INTERRUPTED:
-            return f"interrupted {where}"
+        return f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
+
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        if code == FINISHED:
+            return "reached the end of the span"
+        if code == TOO_MANY_EVENTS:
+            return f"more than max_events = {self.method.max_events} events {self.where}"
+        if code == STEP_TOO_SMALL:
+            tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
+            return f"the tolerances {tolerances} cannot be met {self.where}"
+        q, v = self.state
         times = np.linspace(self.now, self.interval_end, TRIALS)
-        return f"{culprit(self.scene, times, q, v)} {where}"
+        return f"{culprit(self.scene, times, q.copy(), v.copy())} {self.where}"
+
+
+def one_contact_recorder(scene: Scene, kept: Kept, dense: bool) -> Recorder:
+    """The recorder of a run with one contact or none."""
+    return Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK, dense=dense)
 
 
 def between(complete: bool, s: States, evaluate: Callable[[Array, Any], tuple[Array, Array]]) -> Any:

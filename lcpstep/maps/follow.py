@@ -20,10 +20,21 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.compiled import by_address, call, compiled
 from lcpstep.events import EventDriven
-from lcpstep.events.closed_form import flight_of, numbers, oscillator_of
-from lcpstep.events.flight import CONTACT, NOW, OFFSET, T_END, G
-from lcpstep.events.run import BUFFER_FULL, EVENT, FINISHED, MAX_EVENTS, N_COUNTERS, SLACK, STATUS
-from lcpstep.events.single import IMPACT, ON_THE_SURFACE, STICK, run
+from lcpstep.events.bookkeeping import (
+    BUFFER_FULL,
+    EVENT,
+    FINISHED,
+    IMPACT,
+    MAX_EVENTS,
+    N_COUNTERS,
+    SLACK,
+    STICK,
+)
+from lcpstep.events.contact import NOW, ON_THE_SURFACE
+from lcpstep.events.flight.loop import run
+from lcpstep.events.flight.motion import CONTACT, OFFSET, T_END, G
+from lcpstep.events.flight.run import flight_of, numbers, oscillator_of
+from lcpstep.events.run import STATUS
 from lcpstep.model import ABSENT, model
 from lcpstep.recording import Kept, Recorder
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.dynamics import gap_rates
-from lcpstep.events.flow import contact_response, free_acceleration, gap_bias
-from lcpstep.events.runge_kutta import piece
+from lcpstep.events.acceleration import free_acceleration
+from lcpstep.events.single.equations import contact_response, gap_bias
+from lcpstep.events.single.run import piece
 from lcpstep.model import plain_model
 
 Array = NDArray[np.float64]
@@ -29,7 +30,7 @@ class Local:
     def acceleration(self, t: float, q: Array, v: Array) -> Array:
         """M^-1 f, the acceleration without contact, (n_q,)."""
         a = np.zeros(len(q))
-        free_acceleration(self.model, self._piece, t, q, v, a)
+        free_acceleration(self._piece, t, q, v, a)
         return a
 
     def rates(self, t: float, q: Array, v: Array) -> tuple[Array, float]:
@@ -40,12 +41,12 @@ class Local:
 
     def response(self, t: float, q: Array, v: Array) -> tuple[Array, float]:
         """M^-1 G^T (n_q,) and G M^-1 G^T."""
-        W = contact_response(self.model, self._piece, t, q, v)
+        W = contact_response(self._piece, t, q, v)
         return self._piece.MG.copy(), float(W)
 
     def bias(self, t: float, q: Array, v: Array) -> float:
         """The gap acceleration at v' = 0."""
-        return float(gap_bias(self.model, self._piece, t, q, v))
+        return float(gap_bias(self._piece, t, q, v))
 
     def after_impact(self, t: float, q: Array, v: Array) -> Array:
         """v+ = v - (1 + r) u M^-1 G^T / (G M^-1 G^T), Newton's impact law (n_q,)."""

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from lagrangian import Harmonic, LinearSystem, Scene
 from lcpstep import EventDriven, simulate
-from lcpstep.events.oscillator import flow, fundamental, oscillator
+from lcpstep.events.flight.oscillator import flow, fundamental, oscillator
 from tests.differences import derivative
 
 rates = st.one_of(st.just(0.0), st.floats(-3.0, 3.0).filter(lambda x: abs(x) > 1e-12))

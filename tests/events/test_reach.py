@@ -8,7 +8,7 @@ import pytest
 from lagrangian import LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, simulate
-from lcpstep.events.reach import reach
+from lcpstep.events.flight.reach import reach
 from lcpstep.model import plain_model
 
 PULSE = (0.61, 0.6102)  # of the period: between these a tooth rises and sinks

@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.compiled import compiled
-from lcpstep.events import flight, single
-from lcpstep.events.oscillator import Oscillator, oscillator
-from lcpstep.events.reach import reach
-from lcpstep.events.run import Run, between, scan_interval
+from lcpstep.events.bookkeeping import Wanted
+from lcpstep.events.clock import HIGH, clock
+from lcpstep.events.contact import HOLD, NOW, keep
+from lcpstep.events.flight import loop, motion
+from lcpstep.events.flight.keep import evaluate as states_between
+from lcpstep.events.flight.oscillator import Oscillator, oscillator
+from lcpstep.events.flight.reach import reach
+from lcpstep.events.run import Run, between, one_contact_recorder, scan_interval
 from lcpstep.model import ABSENT, Model
 from lcpstep.recording import Kept, States
 
@@ -32,30 +36,28 @@ def oscillator_of(scene: Scene, m: Model) -> Oscillator | None:
 
 
 def numbers(scene: Scene, m: Model, o: Oscillator, method: Any) -> Array:
-    """Constants and initial state of a flight, the array x of `flight`."""
-    x = np.zeros(flight.N_NUMBERS)
-    mass, t0 = float(m.M[0, 0]), scene.t_span[0]
+    """Constants and initial state of a flight, the array x of `motion`."""
+    x = clock(scene, motion.N_NUMBERS)
+    mass = float(m.M[0, 0])
     for place, value in {
-        flight.DELTA: o.delta, flight.W2: o.w2, flight.F0: o.f0, flight.X: o.X, flight.Y: o.Y,
-        flight.OMEGA: o.Omega, flight.FC: m.cosine[0] / mass, flight.FS: m.sine[0] / mass,
-        flight.RTOL: method.rtol, flight.ATOL: method.atol, flight.PERIOD: scene.period,
-        flight.SCALE: scene.period if math.isfinite(scene.period) else scene.t_span[1] - t0,
-        flight.SCAN: scan_interval(scene, m, max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))),
-        flight.T_END: scene.t_span[1], flight.NOW: t0, flight.LOW: math.inf, flight.HIGH: -math.inf,
-        flight.HOLD: -math.inf, flight.LAST_EVENT: -math.inf, flight.CLEAR: math.inf,
+        motion.DELTA: o.delta, motion.W2: o.w2, motion.F0: o.f0, motion.X: o.X, motion.Y: o.Y,
+        motion.OMEGA: o.Omega, motion.FC: m.cosine[0] / mass, motion.FS: m.sine[0] / mass,
+        motion.RTOL: method.rtol, motion.ATOL: method.atol,
+        motion.SCAN: scan_interval(scene, m, max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))),
+        motion.T_END: scene.t_span[1], NOW: scene.t_span[0], HOLD: -math.inf, motion.CLEAR: math.inf,
     }.items():  # fmt: skip
         x[place] = value
     if scene.n_c == 1:
         G = float(m.G[0, 0])
-        x[flight.CONTACT], x[flight.G], x[flight.OFFSET] = 1.0, G, m.offset[0]
-        x[flight.CLEAR], x[flight.BEND] = reach(scene, m)
-        x[flight.R], x[flight.RESPONSE] = m.restitution[0], G * G / mass
+        x[motion.CONTACT], x[motion.G], x[motion.OFFSET] = 1.0, G, m.offset[0]
+        x[motion.CLEAR], x[motion.BEND] = reach(scene, m)
+        x[motion.R], x[motion.RESPONSE] = m.restitution[0], G * G / mass
     return x
 
 
-def flight_of(scene: Scene, m: Model, x: Array) -> flight.Flight:
+def flight_of(scene: Scene, m: Model, x: Array) -> motion.Flight:
     """What the kernels are handed; the state starts as the scene's."""
-    return flight.Flight(
+    return motion.Flight(
         x=x, frame=m.frame, motion=m.motion, p=m.p, corners=np.array(scene.corners), now=np.zeros((1, 3)),
         q=np.array(scene.q0), v=np.array(scene.v0),
     )  # fmt: skip
@@ -65,23 +67,23 @@ class ClosedForm(Run):
     """A run in closed form."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, m: Model, fast: bool, o: Oscillator) -> None:
-        super().__init__(method, scene, kept, dense=False)
+        super().__init__(method, scene, kept, one_contact_recorder(scene, kept, dense=False))
         self.model = m
         self.start = numbers(scene, m, o, method)
         self.flight = flight_of(scene, m, self.start.copy())
         self.fast = fast
-        self.run = compiled(single.run) if fast else single.run
+        self.run = compiled(loop.run) if fast else loop.run
 
     @property
     def now(self) -> float:
         """Time reached [s]."""
-        return float(self.flight.x[flight.NOW])
+        return float(self.flight.x[NOW])
 
     @property
     def interval_end(self) -> float:
         """End of the interval at hand [s]."""
         x = self.flight.x
-        return float(min(x[flight.T_END], x[flight.HIGH], x[flight.NOW] + single.STRIDE * x[flight.SCAN]))
+        return float(min(x[motion.T_END], x[HIGH], x[NOW] + loop.STRIDE * x[motion.SCAN]))
 
     @property
     def state(self) -> tuple[Array, Array]:
@@ -94,14 +96,14 @@ class ClosedForm(Run):
 
     def keep_now(self) -> None:
         """Write the current state into the recorder's buffers."""
-        single.keep(self.flight, self.recorder.buffers, self.count, self.now)
+        keep(self.flight, self.recorder.buffers, self.count, self.now)
 
     def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the flights that start there."""
 
         def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
-            kernel = compiled(single.evaluate) if self.fast else single.evaluate
-            out = single.Wanted(times, row, np.zeros((len(times), 1)), np.zeros((len(times), 1)))
+            kernel = compiled(states_between) if self.fast else states_between
+            out = Wanted(times, row, np.zeros((len(times), 1)), np.zeros((len(times), 1)))
             kernel(flight_of(self.scene, self.model, self.start.copy()), s, out)
             return out.q, out.v
 

@@ -10,17 +10,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.events.flow import contact_at, gap_acceleration, near_surface
+from lcpstep.events.clock import RESOLUTION
+from lcpstep.events.contact import NONE
+from lcpstep.events.single.motion import contact_at, gap_acceleration, near_surface
 
-NONE = -1.0  # in place of a root's time
 MAX_ITERATIONS = 100
-RESOLUTION = 2.0**-52
 PROBES = 8  # samples of the gap acceleration per interval while the contact is closed
 
 
-def root(
-    model: Any, osc: Any, piece: Any, w: Any, level: int, a: float, f_a: float, b: float, f_b: float
-) -> float:
+def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float) -> float:
     """Root between a and b of the gap (level 0), its velocity (1) or acceleration (2); f_a f_b <= 0."""
     if f_a == 0.0:
         return a
@@ -35,7 +33,7 @@ def root(
             x_new = 0.5 * (a + b)
         before, step = step, x_new - x
         x_old, f_old, x = x, f_x, x_new
-        g, u, alpha = contact_at(model, osc, piece, w, x)
+        g, u, alpha = contact_at(s, x)
         f_x = g if level == 0 else (u if level == 1 else alpha)
         if (f_x > 0.0) == (f_a > 0.0):
             a, f_a = x, f_x
@@ -49,10 +47,7 @@ def root(
 
 
 def first_contact(
-    model: Any,
-    osc: Any,
-    piece: Any,
-    w: Any,
+    s: Any,
     a: float,
     at_a: tuple[float, float, float],
     b: float,
@@ -61,19 +56,16 @@ def first_contact(
     """First time in (a, b] at which the gap falls to zero, or NONE; at_a, at_b: gap, velocity, acceleration."""
     middle, at_middle = b, at_b
     if at_a[2] * at_b[2] < 0.0:
-        middle = root(model, osc, piece, w, 2, a, at_a[2], b, at_b[2])
-        at_middle = contact_at(model, osc, piece, w, middle)
-    found = first_in_half(model, osc, piece, w, a, at_a, middle, at_middle)
+        middle = root(s, 2, a, at_a[2], b, at_b[2])
+        at_middle = contact_at(s, middle)
+    found = first_in_half(s, a, at_a, middle, at_middle)
     if found == NONE and middle < b:
-        found = first_in_half(model, osc, piece, w, middle, at_middle, b, at_b)
+        found = first_in_half(s, middle, at_middle, b, at_b)
     return found
 
 
 def first_in_half(
-    model: Any,
-    osc: Any,
-    piece: Any,
-    w: Any,
+    s: Any,
     a: float,
     at_a: tuple[float, float, float],
     b: float,
@@ -81,30 +73,30 @@ def first_in_half(
 ) -> float:
     """The same where the gap velocity is monotone."""
     if at_a[1] * at_b[1] < 0.0:
-        middle = root(model, osc, piece, w, 1, a, at_a[1], b, at_b[1])
-        g, _, _ = contact_at(model, osc, piece, w, middle)
+        middle = root(s, 1, a, at_a[1], b, at_b[1])
+        g, _, _ = contact_at(s, middle)
         if at_a[1] < 0.0 and at_a[0] > 0.0 and g <= 0.0:
-            return root(model, osc, piece, w, 0, a, at_a[0], middle, g)
+            return root(s, 0, a, at_a[0], middle, g)
         if at_a[1] > 0.0 and at_b[0] <= 0.0:
-            return middle if g <= 0.0 else root(model, osc, piece, w, 0, middle, g, b, at_b[0])
+            return middle if g <= 0.0 else root(s, 0, middle, g, b, at_b[0])
         return NONE
     if at_a[0] > 0.0 and at_b[0] <= 0.0:
-        return root(model, osc, piece, w, 0, a, at_a[0], b, at_b[0])
+        return root(s, 0, a, at_a[0], b, at_b[0])
     return NONE
 
 
-def short_hop(model: Any, osc: Any, piece: Any, w: Any, guess: float, longest: float) -> float:
+def short_hop(s: Any, guess: float, longest: float) -> float:
     """End of a hop that left the surface at the base of the piece, or NONE if it is longer than `longest`.
 
-    Solves g(tau)/tau = 0, from the acceleration alone; see `flow.near_surface`.
+    Solves g(tau)/tau = 0, from the acceleration alone; see `motion.near_surface`.
     """
     a, b = 0.0, longest
-    f_b, _ = near_surface(model, osc, piece, w, b)
+    f_b, _ = near_surface(s, b)
     if f_b > 0.0:
         return NONE
     x = min(guess, b)
     for _ in range(MAX_ITERATIONS):
-        f, u = near_surface(model, osc, piece, w, x)
+        f, u = near_surface(s, x)
         if f > 0.0:
             a = x
         else:
@@ -119,48 +111,43 @@ def short_hop(model: Any, osc: Any, piece: Any, w: Any, guess: float, longest: f
     return x
 
 
-def first_release(model: Any, osc: Any, piece: Any, w: Any, a: float, alpha_a: float, b: float) -> float:
+def first_release(s: Any, a: float, alpha_a: float, b: float) -> float:
     """First time in (a, b] at which the gap acceleration of a closed contact turns positive, or NONE."""
     h = (b - a) / PROBES
     t_0, f_0, t_1, f_1 = a - h, 2.0 * alpha_a, a, alpha_a
     for k in range(1, PROBES + 1):
         t_2 = b if k == PROBES else a + k * h
-        f_2 = gap_acceleration(model, osc, piece, w, t_2)
+        f_2 = gap_acceleration(s, t_2)
         if k > 1 and f_0 < f_1 and f_2 <= f_1 and f_1 <= 0.0:
-            top, f_top = summit(model, osc, piece, w, t_0, t_1, t_2, f_0, f_1, f_2)
+            top, f_top = summit(s, t_1, t_1 - t_0, f_0, f_1, f_2)
             if f_top > 0.0:
-                return root(model, osc, piece, w, 2, t_0, f_0, top, f_top)
+                return root(s, 2, t_0, f_0, top, f_top)
         if f_2 > 0.0:
-            return t_1 if f_1 >= 0.0 else root(model, osc, piece, w, 2, t_1, f_1, t_2, f_2)
+            return t_1 if f_1 >= 0.0 else root(s, 2, t_1, f_1, t_2, f_2)
         t_0, f_0, t_1, f_1 = t_1, f_1, t_2, f_2
     return NONE
 
 
 def summit(
-    model: Any,
-    osc: Any,
-    piece: Any,
-    w: Any,
-    t_0: float,
+    s: Any,
     t_1: float,
-    t_2: float,
+    h: float,
     f_0: float,
     f_1: float,
     f_2: float,
 ) -> tuple[float, float]:
-    """Highest gap acceleration near the middle one of three equidistant samples, by parabolas."""
-    h = t_1 - t_0
+    """Highest gap acceleration near the middle one of three equidistant samples h apart, by parabolas."""
     best, f_best = t_1, f_1
     for _ in range(4):
         curvature = f_0 - 2.0 * f_1 + f_2
         if curvature >= 0.0:
             break
         t = t_1 + 0.5 * h * (f_0 - f_2) / curvature
-        f = gap_acceleration(model, osc, piece, w, t)
+        f = gap_acceleration(s, t)
         if f > f_best:
             best, f_best = t, f
         h *= 0.25
         t_1, f_1 = t, f
-        f_0 = gap_acceleration(model, osc, piece, w, t - h)
-        f_2 = gap_acceleration(model, osc, piece, w, t + h)
+        f_0 = gap_acceleration(s, t - h)
+        f_2 = gap_acceleration(s, t + h)
     return best, f_best

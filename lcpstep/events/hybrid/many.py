@@ -11,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
 from lcpstep import compiled
-from lcpstep.events import dop853
-from lcpstep.events import hybrid_loop as loop
-from lcpstep.events.hybrid import STATUS, flow, machine, memory, space
-from lcpstep.events.hybrid_roots import scan
+from lcpstep.events.hybrid import loop
+from lcpstep.events.hybrid import state as at
+from lcpstep.events.hybrid.run import STATUS, prepared
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
@@ -50,27 +49,21 @@ class Follower:
 
         self.scene = replace(scene, t_span=(0.0, duration), exact=None)
         self.names = scene.system.names
-        self.machine, fast = machine(self.scene)
-        self.flow = flow(self.scene, method)._replace(max_events=switches)
-        n = scene.system.n_x
-        self.space, self.scan, self.work, self.tableau = space(n), scan(), dop853.work(n), dop853.tableau()
-        self.memory = memory(n, len(self.machine.kind), 0, switches + loop.MAX_STALLED + 2)
-        self.count, self.x = np.zeros(loop.N_COUNTERS, dtype=np.int64), np.zeros(loop.N_NUMBERS)
+        s, fast = prepared(self.scene, method, 0, switches + loop.MAX_STALLED + 2)
+        self.loop = s._replace(flow=s.flow._replace(max_events=switches))
         self.kernel = compiled.compiled(loop.run) if fast else loop.run
 
     def __call__(self, x0: ArrayLike, mode: str) -> End:
         """The end of the run from x0 (n_x,) in a mode."""
-        self.count[:], self.x[:] = 0, 0.0
-        self.count[loop.MODE] = self.names.index(mode)
-        self.x[loop.LAST_SWITCH], self.x[loop.NEXT] = -math.inf, 1e-3 * self.flow.longest
-        self.work.y[:] = x0
-        code = self.kernel(
-            self.machine, self.flow, self.space, self.scan, self.memory, self.tableau, self.work, self.count, self.x,
-            GOAL,
-        )  # fmt: skip
-        n, log = len(self.work.y), self.memory.log[: self.count[loop.SWITCH]].copy()
-        lead = loop.SWITCH_LEAD
+        s = self.loop
+        s.count[:], s.x[:] = 0, 0.0
+        s.count[at.MODE] = self.names.index(mode)
+        s.x[at.LAST_SWITCH], s.x[at.NEXT] = -math.inf, 1e-3 * s.flow.longest
+        s.w.y[:] = x0
+        code = self.kernel(s, GOAL)
+        n, log = len(s.w.y), s.memory.log[: s.count[at.SWITCH]].copy()
+        lead = at.SWITCH_LEAD
         return End(
-            STATUS[int(code)], float(self.x[loop.NOW]), self.work.y.copy(), self.names[self.count[loop.MODE]],
+            STATUS[int(code)], float(s.x[at.NOW]), s.w.y.copy(), self.names[s.count[at.MODE]],
             log[:, 0], [self.names[int(k)] for k in log[:, 2]], log[:, lead : lead + n], log[:, lead + n :],
         )  # fmt: skip

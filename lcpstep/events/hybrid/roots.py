@@ -16,13 +16,13 @@ import numpy as np
 
 from lcpstep.compiled import by_address
 from lcpstep.dense import assign
+from lcpstep.events.clock import RESOLUTION
 
 DEGREE = 9
 DEPTH = 42  # halvings at most
 NONE = -1.0  # in place of a root
 CHECKS = 2  # further samples, which say whether the polynomial is the guard
 MAX_ITERATIONS = 60
-RESOLUTION = 2.0**-52
 
 
 @by_address
@@ -71,14 +71,6 @@ def convert(scan: Any) -> float:
             value += scan.at_checks[k, j] * scan.c[j]
         worst = max(worst, abs(value - scan.sample[n + k]))
     return worst
-
-
-def largest(scan: Any) -> float:
-    """The largest sample."""
-    most = 0.0
-    for x in scan.sample:
-        most = max(most, abs(x))
-    return most
 
 
 def taylor(d: Any, s: float, work: Any) -> tuple[float, float, float]:

@@ -14,8 +14,9 @@ from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
 from lcpstep import compiled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import dop853
-from lcpstep.events import hybrid_loop as loop
-from lcpstep.events.hybrid_field import (
+from lcpstep.events.hybrid import loop
+from lcpstep.events.hybrid import state as at
+from lcpstep.events.hybrid.field import (
     ARRIVE,
     EXIT_ABOVE,
     EXIT_BELOW,
@@ -26,8 +27,8 @@ from lcpstep.events.hybrid_field import (
     approaches,
     scalar,
 )
-from lcpstep.events.hybrid_roots import CHECKS, DEGREE, scan
-from lcpstep.events.hybrid_trajectory import HybridTrajectory, Pieces
+from lcpstep.events.hybrid.roots import CHECKS, DEGREE, scan
+from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
 from lcpstep.model import UncompiledCallback
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Counts, Status
@@ -38,12 +39,12 @@ PORTION = 2048  # steps between two looks at the outside world
 PER_PERIOD, PER_SPAN = 16, 50
 TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
 STATUS = {
-    loop.FINISHED: Status.DONE,
-    loop.NOT_FINITE: Status.NOT_FINITE,
-    loop.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
-    loop.STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
-    loop.ENDLESS: Status.ENDLESS_SWITCHING,
-    loop.NOT_TRANSVERSAL: Status.NOT_TRANSVERSAL,
+    at.FINISHED: Status.DONE,
+    at.NOT_FINITE: Status.NOT_FINITE,
+    at.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
+    at.STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
+    at.ENDLESS: Status.ENDLESS_SWITCHING,
+    at.NOT_TRANSVERSAL: Status.NOT_TRANSVERSAL,
 }
 
 
@@ -79,6 +80,7 @@ def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
         sign=np.array([row[2] for row in table], dtype=float),
         p=np.array(scene.p),
         dt=TIME_DIFFERENCE * span,
+        work=space(system.n_x),
     ), fast
 
 
@@ -128,20 +130,32 @@ def space(n: int) -> Space:
     return Space(*(np.zeros(1 if name == "out" else n) for name in Space._fields))
 
 
-def memory(n: int, guards: int, rows: int, switches: int) -> loop.Memory:
+def memory(n: int, guards: int, rows: int, switches: int) -> at.Memory:
     """Buffers of a run; rows = 0 where nothing but switches is kept."""
-    return loop.Memory(
+    return at.Memory(
         armed=np.zeros(guards, dtype=np.int64), band=np.zeros(guards), states=np.zeros((DEGREE + 1 + CHECKS, n)),
-        rows=np.zeros((rows, loop.LEAD + n)), dense=np.zeros((rows, 7, n)),
-        log=np.zeros((switches, loop.SWITCH_LEAD + 2 * n)),
+        rows=np.zeros((rows, at.LEAD + n)), dense=np.zeros((rows, 7, n)),
+        log=np.zeros((switches, at.SWITCH_LEAD + 2 * n)),
     )  # fmt: skip
 
 
-def flow(scene: HybridScene, method: Any) -> loop.Flow:
-    """Span, tolerances and bounds of a run."""
-    span = scene.t_span[1] - scene.t_span[0]
+def prepared(scene: HybridScene, method: Any, rows: int, switches: int) -> tuple[at.Loop, bool]:
+    """What the loop is handed, at the start of the span, and whether the system's functions are compiled.
+
+    The buffers have this many rows and lines of the switch log; rows = 0 where nothing but switches is kept.
+    """
+    m, fast = machine(scene)
+    n, span = scene.system.n_x, scene.t_span[1] - scene.t_span[0]
     longest = min(scene.period / PER_PERIOD, span / PER_SPAN)
-    return loop.Flow(scene.t_span[1], method.rtol, method.atol, longest, method.max_events)
+    s = at.Loop(
+        m=m, flow=at.Flow(scene.t_span[1], method.rtol, method.atol, longest, method.max_events),
+        memory=memory(n, len(m.kind), rows, switches), scan=scan(), w=dop853.work(n),
+        count=np.zeros(at.N_COUNTERS, dtype=np.int64), x=np.zeros(at.N_NUMBERS),
+    )  # fmt: skip
+    s.count[at.MODE] = scene.system.names.index(scene.mode)
+    s.x[at.NOW], s.x[at.LAST_SWITCH] = scene.t_span[0], -math.inf
+    s.w.y[:] = scene.x0
+    return s, fast
 
 
 class HybridRun:
@@ -149,39 +163,27 @@ class HybridRun:
 
     def __init__(self, method: Any, scene: HybridScene) -> None:
         _check_start(scene)
-        n = scene.system.n_x
         self.method, self.scene = method, scene
-        self.machine, fast = machine(scene)
-        self.flow, self.space, self.scan = flow(scene, method), space(n), scan()
-        self.memory = memory(n, len(self.machine.kind), ROWS, SWITCHES)
-        self.tableau, self.work = dop853.tableau(), dop853.work(n)
+        self.loop, fast = prepared(scene, method, ROWS, SWITCHES)
         self.kernel = compiled.compiled(loop.run) if fast else loop.run
-        self.count, self.x = np.zeros(loop.N_COUNTERS, dtype=np.int64), np.zeros(loop.N_NUMBERS)
-        self.count[loop.MODE] = scene.system.names.index(scene.mode)
-        self.x[loop.NOW], self.x[loop.LAST_SWITCH] = scene.t_span[0], -math.inf
-        self.x[loop.NEXT] = 0.1 * self.flow.longest
-        self.work.y[:] = scene.x0
+        self.count, self.memory = self.loop.count, self.loop.memory
+        self.loop.x[at.NEXT] = 0.1 * self.loop.flow.longest
         self.parts: dict[str, list[Array]] = {"rows": [], "dense": [], "log": []}
 
     def finish(self, kept: Kept, progress: Callable[[float], None]) -> HybridTrajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        code, t_end = loop.FINISHED, self.scene.t_span[1]
+        code, t_end = at.FINISHED, self.scene.t_span[1]
         try:
             while True:
-                goal = int(self.count[loop.STEP]) + PORTION
+                goal = int(self.count[at.STEP]) + PORTION
                 try:
-                    code = int(self.kernel(
-                        self.machine, self.flow, self.space, self.scan, self.memory, self.tableau, self.work,
-                        self.count, self.x, goal,
-                    ))  # fmt: skip
+                    code = int(self.kernel(self.loop, goal))
                 except Exception as error:  # a function in plain Python; compiled code raises nothing
                     message = f"a function of the scene failed after t = {self.now:.9g}: {error}"
                     raise SimulationError(message, self.trajectory(Status.NOT_FINITE, kept)) from error
                 self._empty()
                 progress(self.now)
-                if code not in (loop.FINISHED, loop.BUFFER_FULL) or (
-                    code == loop.FINISHED and self.now >= t_end
-                ):
+                if code not in (at.FINISHED, at.BUFFER_FULL) or (code == at.FINISHED and self.now >= t_end):
                     break
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, kept)) from None
@@ -193,33 +195,33 @@ class HybridRun:
     @property
     def now(self) -> float:
         """Time reached."""
-        return float(self.x[loop.NOW])
+        return float(self.loop.x[at.NOW])
 
     def _empty(self) -> None:
-        rows, switches = int(self.count[loop.ROW]), int(self.count[loop.SWITCH])
+        rows, switches = int(self.count[at.ROW]), int(self.count[at.SWITCH])
         self.parts["rows"].append(self.memory.rows[:rows].copy())
         self.parts["dense"].append(self.memory.dense[:rows].copy())
         self.parts["log"].append(self.memory.log[:switches].copy())
-        self.count[loop.ROW] = self.count[loop.SWITCH] = 0
+        self.count[at.ROW] = self.count[at.SWITCH] = 0
 
     def trajectory(self, status: Status, kept: Kept) -> HybridTrajectory:
         """Everything computed so far."""
-        n, mode = self.scene.system.n_x, int(self.count[loop.MODE])
-        last = np.concatenate([[self.now, 0.0, mode], self.work.y])[None]
+        n, mode = self.scene.system.n_x, int(self.count[at.MODE])
+        last = np.concatenate([[self.now, 0.0, mode], self.loop.w.y])[None]
         rows = np.concatenate([*self.parts["rows"], last])
         pieces = Pieces(
-            t=np.ascontiguousarray(rows[:, loop.TIME]), h=rows[:, loop.LENGTH],
-            mode=rows[:, loop.ROW_MODE].astype(np.int64), x=np.ascontiguousarray(rows[:, loop.LEAD :]),
+            t=np.ascontiguousarray(rows[:, at.TIME]), h=rows[:, at.LENGTH],
+            mode=rows[:, at.ROW_MODE].astype(np.int64), x=np.ascontiguousarray(rows[:, at.LEAD :]),
             dense=np.concatenate([*self.parts["dense"], np.zeros((1, 7, n))]),
         )  # fmt: skip
-        log = np.concatenate([np.zeros((0, loop.SWITCH_LEAD + 2 * n)), *self.parts["log"]])
+        log = np.concatenate([np.zeros((0, at.SWITCH_LEAD + 2 * n)), *self.parts["log"]])
         whole = HybridTrajectory(
             scene=self.scene, method=self.method, t=pieces.t, x=pieces.x,
             mode=np.array(self.scene.system.names)[pieces.mode], switches=self._switches(log), status=status,
             message=self._message(status, log),
             counts=Counts(
-                steps=int(self.count[loop.STEP]), force_evaluations=int(self.count[loop.FORCES]),
-                events=int(self.count[loop.EVENTS]),
+                steps=int(self.count[at.STEP]), force_evaluations=int(self.count[at.FORCES]),
+                events=int(self.count[at.EVENTS]),
             ),
             pieces=pieces,
         )  # fmt: skip
@@ -240,13 +242,13 @@ class HybridRun:
         result["time"] = log[:, 0]
         result["source"], result["target"] = names[log[:, 1].astype(int)], names[log[:, 2].astype(int)]
         result["guard"] = log[:, 3]
-        result["before"] = log[:, loop.SWITCH_LEAD : loop.SWITCH_LEAD + n]
-        result["after"] = log[:, loop.SWITCH_LEAD + n :]
+        result["before"] = log[:, at.SWITCH_LEAD : at.SWITCH_LEAD + n]
+        result["after"] = log[:, at.SWITCH_LEAD + n :]
         return result.view(np.recarray)
 
     def _message(self, status: Status, log: Array) -> str:
         names, t = self.scene.system.names, f"t = {self.now:.12g}"
-        mode = names[int(self.count[loop.MODE])]
+        mode = names[int(self.count[at.MODE])]
         if status == Status.ENDLESS_SWITCHING:
             chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
             return (
@@ -262,12 +264,12 @@ class HybridRun:
             Status.DONE: "ran to the end of the span",
             Status.INTERRUPTED: f"interrupted at {t}",
             Status.NOT_FINITE: f"after {t} the field of mode {mode!r}, a guard of it or the state is not finite",
-            Status.TOO_MANY_EVENTS: f"{self.count[loop.EVENTS]} switches up to {t}: more than max_events allows",
+            Status.TOO_MANY_EVENTS: f"{self.count[at.EVENTS]} switches up to {t}: more than max_events allows",
             Status.STEP_TOO_SMALL: f"at {t} in mode {mode!r} the tolerance cannot be met by any step",
         }[status]
 
     def _target(self) -> str:
-        return self.scene.system.names[int(self.machine.target[self.count[loop.CULPRIT]])]
+        return self.scene.system.names[int(self.loop.m.target[self.count[at.CULPRIT]])]
 
 
 def chosen(whole: HybridTrajectory, kept: Kept) -> HybridTrajectory:
@@ -291,10 +293,10 @@ def _check_start(scene: HybridScene) -> None:
     for surface in scene.system.surfaces:
         if scene.mode != surface.sliding:
             continue
-        (m, _), n, t = machine(scene, plain=True), scene.system.n_x, scene.t_span[0]
-        w, x, k = space(n), np.array(scene.x0), scene.system.names.index(scene.mode)
-        L1, L2 = approaches(m, w, k, t, x)
-        H = scalar(surface.value, w, t, x, m.p)
+        (m, _), t = machine(scene, plain=True), scene.t_span[0]
+        x, k = np.array(scene.x0), scene.system.names.index(scene.mode)
+        L1, L2 = approaches(m, k, t, x)
+        H = scalar(surface.value, m, t, x)
         if abs(H) > 1e-9 * max(1.0, float(np.max(np.abs(x)))):
             raise LcpStepError(f"x0: mode {scene.mode!r} starts on its surface, but H = {H:.6g} there")
         if not (L1 >= 0.0 >= L2):

@@ -1,0 +1,98 @@
+"""Rest on the obstacle, as kernels: the contact force, and the time at which the contact opens.
+
+    lambda = -alpha / (G M^-1 G^T)
+
+The contact lasts while the gap acceleration alpha of the free motion is not positive. Source: G. Osorio, Complex
+Behavior in Impacting Systems, eq. 3.16.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.events.clock import RESOLUTION
+from lcpstep.events.contact import NONE
+from lcpstep.events.flight.motion import RESPONSE, on_obstacle
+
+MAX_ITERATIONS = 100
+PROBES = 4  # samples of alpha per interval while the contact is closed
+QUADRATURE = (  # nodes and weights of Gauss on [0, 1], for the impulse of the contact force
+    (0.019855071751231912, 0.05061426814518813),
+    (0.10166676129318664, 0.11119051722668724),
+    (0.2372337950418355, 0.15685332293894363),
+    (0.4082826787521751, 0.18134189168918100),
+    (0.5917173212478249, 0.18134189168918100),
+    (0.7627662049581645, 0.15685332293894363),
+    (0.8983332387068134, 0.11119051722668724),
+    (0.9801449282487681, 0.05061426814518813),
+)
+
+
+@inline
+def alpha_at(s: Any, t: float) -> float:
+    """Gap acceleration of the free motion, at rest on the obstacle."""
+    _, _, alpha = on_obstacle(s, t, 0.0)
+    return float(alpha)
+
+
+def contact_impulse(s: Any, a: float, b: float) -> float:
+    """Impulse of the contact force lambda = -alpha / (G M^-1 G^T) over (a, b) [N s]."""
+    total = 0.0
+    for node, weight in QUADRATURE:
+        total -= weight * alpha_at(s, a + node * (b - a))
+    return float(total * (b - a) / s.x[RESPONSE])
+
+
+def first_release(s: Any, a: float, alpha_a: float, b: float) -> float:
+    """First time in (a, b] at which alpha turns positive, or NONE."""
+    h = (b - a) / PROBES
+    t_0, f_0, t_1, f_1 = a - h, 2.0 * alpha_a, a, alpha_a
+    for k in range(1, PROBES + 1):
+        t_2 = b if k == PROBES else a + k * h
+        f_2 = alpha_at(s, t_2)
+        if k > 1 and f_0 < f_1 and f_2 <= f_1 and f_1 <= 0.0:
+            top, f_top = summit(s, t_1, h, f_0, f_1, f_2)
+            if f_top > 0.0:
+                return alpha_root(s, t_0, f_0, top, f_top)
+        if f_2 > 0.0:
+            return t_1 if f_1 >= 0.0 else alpha_root(s, t_1, f_1, t_2, f_2)
+        t_0, f_0, t_1, f_1 = t_1, f_1, t_2, f_2
+    return NONE
+
+
+def alpha_root(s: Any, a: float, f_a: float, b: float, f_b: float) -> float:
+    """Where alpha turns positive between a and b; the secant method safeguarded by bisection."""
+    t, f, old, f_old = b, f_b, a, f_a
+    before = b - a
+    for _ in range(MAX_ITERATIONS):
+        new = t - f * (t - old) / (f - f_old) if f != f_old else a
+        if not a < new < b or abs(new - t) > 0.5 * abs(before):
+            new = 0.5 * (a + b)
+        before = new - t
+        old, f_old, t = t, f, new
+        f = alpha_at(s, t)
+        if f > 0.0:
+            b = t
+        else:
+            a = t
+        if f == 0.0 or abs(before) <= RESOLUTION * abs(t) or b - a <= RESOLUTION * abs(t):
+            break
+    return t
+
+
+def summit(s: Any, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:
+    """Highest alpha near the middle one of three equidistant samples, by parabolas."""
+    best, f_best = t_1, f_1
+    for _ in range(4):
+        curvature = f_0 - 2.0 * f_1 + f_2
+        if curvature >= 0.0:
+            break
+        t_1 += 0.5 * h * (f_0 - f_2) / curvature
+        f_1 = alpha_at(s, t_1)
+        if f_1 > f_best:
+            best, f_best = t_1, f_1
+        h *= 0.25
+        f_0 = alpha_at(s, t_1 - h)
+        f_2 = alpha_at(s, t_1 + h)
+    return best, f_best

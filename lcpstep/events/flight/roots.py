@@ -1,0 +1,188 @@
+"""Where the gap of a flight closes, as kernels: roots that are bracketed before they are polished.
+
+On an interval short enough for the gap acceleration to change its sign at most once, that sign change splits the gap
+velocity into monotone parts, whose sign changes split the gap into monotone parts. So the first root is found even
+where the gap dips below zero and returns within the interval (grazing). The shortest hops are followed by the
+acceleration alone. Source of the polishing: Halley's and Newton's methods safeguarded by bisection, W. Press et al.,
+Numerical Recipes, section 9.4.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.events.clock import RESOLUTION
+from lcpstep.events.contact import ALPHA0, EDGE_ALPHA, EDGE_G, EDGE_U, NONE, ON_THE_SURFACE, SPEED0
+from lcpstep.events.flight.motion import SCAN, free
+
+MAX_ITERATIONS = 100
+STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it
+GUESSES = 3  # steps of Newton's on the cubic of a first guess
+COARSE = 1e-9  # of the bracket: where a gap turns it changes by the square of this
+SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
+SETTLED = 1e-7  # change of the length of the longest hop that needs no further pass
+PASSES = 8  # of the search for the end of a short hop; two are the rule
+LONGER = 3.0  # how much longer than its guess a short hop may last
+HALVINGS = 40  # of an interval, in search of a positive gap
+# Steps of Newton's at the end of a flight: how many, the largest, relative to flight and velocity, and the last
+POLISHES, POLISH, POLISHED = 3, 1e-3, 1e-8
+GAUSS = (0.1127016653792583, 0.5, 0.8872983346207417)  # nodes on [0, 1]
+
+
+def first_contact(s: Any, a: float, b: float, g_b: float, u_b: float, alpha_b: float) -> float:
+    """First time in (a, b] at which the gap falls to zero, or NONE."""
+    x = s.x
+    g_a, u_a, alpha_a = x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]
+    falling = u_a < 0.0 and u_b < 0.0 and not (alpha_a > 0.0 and alpha_b < 0.0)
+    if alpha_a * alpha_b < 0.0 and not falling:
+        m = root(s, 2, a, alpha_a, b, alpha_b, NONE)
+        g_m, u_m, _ = free(s, m)
+        found = first_in_half(s, a, g_a, u_a, m, g_m, u_m)
+        return found if found != NONE else first_in_half(s, m, g_m, u_m, b, g_b, u_b)
+    return first_in_half(s, a, g_a, u_a, b, g_b, u_b)
+
+
+def first_in_half(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
+    """The same where the gap velocity is monotone, or does not change its sign."""
+    if u_a > 0.0 and u_b < 0.0 and g_a <= 0.0 and g_b <= 0.0:  # up from the obstacle and down to it again
+        m = a + (b - a) * u_a / (u_a - u_b)
+        g_m, u_m, _ = free(s, m)
+        if g_m <= 0.0:
+            m = root(s, 1, a, u_a, b, u_b, NONE)
+            g_m, u_m, _ = free(s, m)
+        return m if g_m <= 0.0 else gap_root(s, m, g_m, u_m, b, g_b, u_b)
+    if u_a < 0.0 and u_b > 0.0 and g_a > 0.0 and g_b > 0.0:  # a dip
+        m = root(s, 1, a, u_a, b, u_b, NONE)
+        g_m, u_m, _ = free(s, m)
+        return gap_root(s, a, g_a, u_a, m, g_m, u_m) if g_m <= 0.0 else NONE
+    if g_a > 0.0 and g_b <= 0.0:
+        return gap_root(s, a, g_a, u_a, b, g_b, u_b)
+    return NONE
+
+
+def small_hop(s: Any, a: float, b: float, g_b: float) -> float:
+    """End of a hop within (a, b) that begins so gently that only a gap well inside it is positive, or NONE."""
+    m = b
+    for _ in range(HALVINGS):
+        m, end, g_end = a + 0.5 * (m - a), m, g_b
+        g_b, _, _ = free(s, m)
+        if g_b > ON_THE_SURFACE * max(1.0, abs(s.q[0])):
+            return root(s, 0, m, g_b, end, g_end, NONE)
+    return NONE
+
+
+def gap_root(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
+    """Root of the gap between a and b, g_a g_b <= 0; the first guess from the cubic through both ends."""
+    h = b - a
+    bend = 3.0 * (g_b - g_a) - h * (2.0 * u_a + u_b)
+    twist = h * (u_a + u_b) - 2.0 * (g_b - g_a)
+    sigma = g_a / (g_a - g_b) if g_a != g_b else 0.5
+    for _ in range(GUESSES):
+        slope = h * u_a + sigma * (2.0 * bend + 3.0 * sigma * twist)
+        if slope != 0.0:
+            sigma -= (g_a + sigma * (h * u_a + sigma * (bend + sigma * twist))) / slope
+    return root(s, 0, a, g_a, b, g_b, a + sigma * h)
+
+
+def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: float) -> float:
+    """Root between a and b of the gap (level 0), its velocity (1) or acceleration (2); f_a f_b <= 0.
+
+    Halley's method for the gap and Newton's for the others, safeguarded by bisection, from a guess that may be
+    anything. The gap's last step is not evaluated any more once its own error, (|curvature| step / |slope|)^2 step,
+    is far below what a step of Newton's at its end takes out (`polish`), or below rounding. Source: W. Press et
+    al., Numerical Recipes, section 9.4.
+    """
+    if f_a == 0.0:
+        return a
+    tau, f = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
+    new = guess if a < guess < b else tau - f * (b - a) / (f_b - f_a)
+    width = before = b - a
+    for _ in range(MAX_ITERATIONS):
+        if f == 0.0:
+            return tau
+        if not (a < new < b) or abs(new - tau) > 0.5 * abs(before):
+            new = 0.5 * (a + b)
+        before = new - tau
+        old, f_old, tau = tau, f, new
+        g, u, alpha = free(s, tau)
+        f, slope, curvature = g, u, alpha
+        if level == 1:
+            f, slope, curvature = u, alpha, 0.0
+        elif level == 2:
+            f, slope, curvature = alpha, (alpha - f_old) / (tau - old), 0.0
+        if (f > 0.0) == (f_a > 0.0):
+            a, f_a = tau, f
+        else:
+            b = tau
+        step = -f / slope if slope != 0.0 else before
+        bent = abs(curvature * step)
+        near = level == 0 and bent <= STRAIGHT * abs(slope) and abs(step) <= STRAIGHT * width
+        if 0.0 < bent <= abs(slope):
+            step -= 0.5 * curvature * step * step / slope
+        small = RESOLUTION * abs(tau) if level == 0 else COARSE * width
+        if near or abs(before) <= small or b - a <= small:
+            # At the end of a bracket the root may lie outside by rounding, and by no more
+            return tau + step if abs(step) <= 4.0 * RESOLUTION * abs(tau) else min(max(tau + step, a), b)
+        new = tau + step
+    return tau
+
+
+@inline
+def polish(s: Any, tau: float) -> tuple[float, float, float]:
+    """Steps of Newton's towards the root of the gap near tau: its time, gap velocity and acceleration there."""
+    u = alpha = 0.0
+    for _ in range(POLISHES):
+        g, u, alpha = free(s, tau)
+        if not (abs(g) < -u * POLISH * tau and abs(alpha * g) < POLISH * u * u):
+            break
+        past = g / u
+        tau -= past * (1.0 + 0.5 * alpha * past / u)
+        u -= alpha * past
+        if abs(past) <= POLISHED * tau:
+            break
+    return tau, u, alpha
+
+
+def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
+    """End of a hop that left the obstacle at the base, and the gap velocity there; NONE if it is longer.
+
+    The gap from the acceleration alone, so that no difference of nearly equal positions is taken and the smallest
+    hops keep all their digits: with sigma = s / tau and alpha - alpha0 = c1 sigma + c2 sigma^2 + c3 sigma^3 through
+    its values at three Gauss nodes,
+
+        u = u0 + alpha0 tau + tau (c1/2 + c2/3 + c3/4),    g / tau = u0 + alpha0 tau/2 + tau (c1/6 + c2/12 + c3/20)
+
+    which is Gauss' quadrature of degree five at the solution.
+    """
+    x = s.x
+    u0, alpha0 = x[SPEED0], x[ALPHA0]
+    tau = guess
+    n1, n2, n3 = GAUSS
+    for _ in range(PASSES):
+        if not 0.0 < tau <= longest:
+            return NONE, 0.0
+        _, _, f1 = free(s, n1 * tau)
+        _, _, f2 = free(s, n2 * tau)
+        _, _, f3 = free(s, n3 * tau)
+        # Newton's divided differences of (alpha - alpha0) / sigma
+        d1, d2, d3 = (f1 - alpha0) / n1, (f2 - alpha0) / n2, (f3 - alpha0) / n3
+        d12, d23 = (d2 - d1) / (n2 - n1), (d3 - d2) / (n3 - n2)
+        c3 = (d23 - d12) / (n3 - n1)
+        c2 = d12 - c3 * (n1 + n2)
+        c1 = d1 - n1 * (c2 + n1 * c3)
+        r = 1.0
+        for _ in range(PASSES):
+            F = u0 + tau * r * (0.5 * alpha0 + r * (c1 / 6.0 + r * (c2 / 12.0 + r * c3 / 20.0)))
+            dF = tau * (0.5 * alpha0 + r * (c1 / 3.0 + r * (c2 / 4.0 + r * c3 / 5.0)))
+            step = -F / dF if dF < 0.0 else 1.0
+            r += step
+            if abs(step) <= RESOLUTION or not 0.0 < r < LONGER:
+                break
+        if not 0.0 < r < LONGER:
+            return NONE, 0.0
+        tau *= r
+        # The nodes were those of another length: the cubic's error beyond them, times by how much it was another
+        if abs(r - 1.0) <= SETTLED * (SHORT * x[SCAN] / tau) ** 4:
+            return tau, u0 + tau * (alpha0 + r * (c1 / 2.0 + r * (c2 / 3.0 + r * c3 / 4.0)))
+    return NONE, 0.0

@@ -1,0 +1,1 @@
+"""Systems with modes, guards and resets: controllers, Filippov systems."""

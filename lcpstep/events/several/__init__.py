@@ -1,0 +1,1 @@
+"""Systems with several contacts or joints: complementarity problems at impacts and in lasting contact."""

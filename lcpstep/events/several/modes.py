@@ -1,0 +1,156 @@
+"""What happens at an event of several contacts, as kernels: impacts, and which contacts stay closed or open.
+
+After an impact, or a corner, the contact forces are sought (`settle`); after a release those that `step.look_ahead`
+has found are taken over (`obey`). See `impact`, `forces` and `chatter`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.dense import assign, largest
+from lcpstep.events.bookkeeping import EVENT, FINISHED, IMPACT, NOT_FINITE, RELEASE, STICK, TOO_MANY_EVENTS
+from lcpstep.events.clock import T0
+from lcpstep.events.several.chatter import close_chatter
+from lcpstep.events.several.equations import measure_again
+from lcpstep.events.several.forces import CONTRADICTION, DONE, contact_forces
+from lcpstep.events.several.held import constrain, hold_contacts, note
+from lcpstep.events.several.impact import speed_noise, strike
+from lcpstep.events.several.keep import keep_event, log
+from lcpstep.events.several.motion import lift, rebase
+from lcpstep.events.several.parabolas import polish, synchronise
+from lcpstep.events.several.state import (
+    ACCELERATION,
+    BARE,
+    CHATTERS,
+    CLOSED,
+    CURVE,
+    FREE_ACCELERATION,
+    GAP,
+    JOINTS_DISAGREE,
+    LCP_Z,
+    LEFT_SPEED,
+    MEMBERS,
+    NO_FORCES,
+    NO_IMPULSES,
+    SINCE,
+    SPEED,
+    STRUCK,
+    WAS_CLOSED,
+    Q,
+)
+
+ROUNDS = 1000  # problems of impacts at one instant
+
+
+def jump(s: Any, record: Any, count: Any) -> int:
+    """Impacts at the state Q, V until no contact that is closed approaches.
+
+    A contact without speed to rounding, on the surface to rounding, is closed.
+    """
+    n_c, t = len(s.G), s.x[T0]
+    tolerance = touching(s)
+    for turn in range(ROUNDS):
+        noise, hit = speed_noise(s), False
+        for c in range(n_c):
+            g, u = s.contact[GAP, c], s.contact[SPEED, c]
+            if s.mode[CLOSED, c] == 0 and g <= tolerance and u <= noise:
+                if not s.constant:
+                    lift(s, c)
+                s.contact[GAP, c] = 0.0
+                if u >= -noise:
+                    s.mode[CLOSED, c], s.contact[SPEED, c] = 1, 0.0
+                hit = hit or u < -noise
+            s.contact[LEFT_SPEED, c] = s.contact[SPEED, c]
+        if not hit:
+            return FINISHED
+        if count[EVENT] + 4 * n_c + 4 > len(record.events) or turn == ROUNDS - 1:
+            return TOO_MANY_EVENTS
+        if not strike(s):
+            return NO_IMPULSES
+        tell_impacts(s, record, count, t)
+        if s.constant:
+            synchronise(s)
+    return TOO_MANY_EVENTS
+
+
+def touching(s: Any) -> float:
+    """Gaps that are closed: zero where they are followed exactly, else below the tolerance."""
+    return 0.0 if s.constant else s.plan.atol + s.plan.rtol * largest(s.state[Q], 1.0)
+
+
+def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:
+    """Log the impacts of the problem just solved; contacts that it leaves without speed are closed."""
+    noise = speed_noise(s)
+    for m in range(s.number[MEMBERS]):
+        c, p = s.member[m], s.contact[LCP_Z, m]
+        before = s.contact[LEFT_SPEED, c]
+        if p > 0.0:
+            u = -s.model.restitution[c] * before
+            log(s, record, count, t, c, float(IMPACT), before, u, p)
+            s.contact[SINCE, c], s.contact[STRUCK, c] = t - s.contact[STRUCK, c], t
+        else:
+            u = s.contact[SPEED, c]
+        s.mode[CLOSED, c] = 0 if u > noise else 1
+        s.contact[SPEED, c] = u if u > noise else 0.0
+        s.contact[GAP, c] = 0.0
+
+
+def settle(s: Any, record: Any, count: Any) -> int:
+    """After a jump: contact forces, contacts that open, chattering that is over."""
+    n_c, t = len(s.G), s.x[T0]
+    for _ in range(n_c + 1):
+        if not s.constant and not measure_again(s, t):
+            return NOT_FINITE
+        code = forces(s, t)
+        if code != FINISHED:
+            return code
+        if not close_chatter(s, record, count):
+            break
+    if tell_modes(s, record, count, t) and s.constant:
+        polish(s)
+    rebase(s, t)
+    keep_event(s, record, count, t)
+    return FINISHED
+
+
+def forces(s: Any, t: float) -> int:
+    """Accelerations and multipliers; nothing to do where no contact is or was closed under constant acceleration."""
+    closed = 0
+    for c in range(len(s.G)):
+        closed += s.mode[CLOSED, c]
+    if s.constant and closed == 0 and s.x[BARE] == 1.0:
+        return FINISHED
+    code = contact_forces(s, t)
+    if code != DONE:
+        return JOINTS_DISAGREE if code == CONTRADICTION else NO_FORCES
+    s.x[BARE] = 1.0 if closed == 0 else 0.0
+    return FINISHED
+
+
+def obey(s: Any, record: Any, count: Any) -> None:
+    """After a release: the contacts closed and loaded are those that `look_ahead` has found."""
+    a, t = s.state[ACCELERATION], s.x[T0]
+    assign(a, s.state[FREE_ACCELERATION])
+    hold_contacts(s)
+    constrain(s, a)
+    note(s, a)
+    for c in range(len(s.G)):
+        if s.mode[CLOSED, c] == 0 and s.mode[WAS_CLOSED, c] == 1:
+            s.contact[GAP, c] = s.contact[SPEED, c] = 0.0
+            s.contact[CURVE, c] = max(s.contact[CURVE, c], 0.0)
+    tell_modes(s, record, count, t)
+    keep_event(s, record, count, t)
+
+
+def tell_modes(s: Any, record: Any, count: Any, t: float) -> bool:
+    """Log the contacts that have opened, and those that have closed for good; whether there is one of these."""
+    some = False
+    for c in range(len(s.G)):
+        if s.mode[CLOSED, c] != s.mode[WAS_CLOSED, c]:
+            kind = STICK if s.mode[CLOSED, c] == 1 else RELEASE
+            some = some or kind == STICK
+            when = max(t, s.contact[CHATTERS, c]) if kind == STICK else t
+            log(s, record, count, when, c, float(kind), 0.0, s.contact[SPEED, c], 0.0)
+            s.mode[WAS_CLOSED, c] = s.mode[CLOSED, c]
+    return some

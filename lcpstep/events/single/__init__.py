@@ -1,0 +1,1 @@
+"""General systems with one contact or none, whose smooth motion is integrated by DOP853."""
