@@ -224,7 +224,9 @@ def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) ->
     }
     copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)
     copy.__kwdefaults__ = f.__kwdefaults__
-    left_out = sorted(g.__qualname__ for g in without)
+    left_out = (
+        [_code_text(cast(FunctionType, absent)), *sorted(g.__qualname__ for g in without)] if without else []
+    )
     fingerprint = hashlib.sha256(f"{_dependencies(f)} {left_out}".encode()).hexdigest()[:FINGERPRINT]
     copy.__module__, copy.__qualname__ = f.__module__, f"{f.__qualname__}_{fingerprint}"
     return copy
@@ -266,7 +268,8 @@ def _code_text(f: FunctionType) -> str:
     names = [(name, f.__globals__[name]) for name in _global_names(f) if name in f.__globals__]
     cells = zip(code.co_freevars, (cell.cell_contents for cell in f.__closure__ or ()), strict=True)
     read = [f"{name}={_value_text(value)}" for name, value in [*names, *cells]]
-    return f"{f.__module__}.{f.__qualname__} {code.co_code.hex()} {code.co_names} {literals} {read}"
+    marks = [name for name in ("inline", "brief") if hasattr(f, name)]
+    return f"{f.__module__}.{f.__qualname__} {marks} {code.co_code.hex()} {code.co_names} {literals} {read}"
 
 
 def _value_text(value: Any) -> str:

@@ -29,7 +29,7 @@ def external_force(model: Any, t: float, q: Any, v: Any, out: Any) -> None:
             cosine, sine = math.cos(model.omega * t), math.sin(model.omega * t)
         for i in range(n):
             out[i] = model.constant[i] + model.cosine[i] * cosine + model.sine[i] * sine
-    if model.frame != ABSENT:
+    if model.frame != ABSENT and not model.carried:
         c = model.frame_now
         call(model.frame, t, q, v, model.p, c)
         for i in range(n):
@@ -97,7 +97,7 @@ def bias(model: Any, t: float, q: Any, v: Any, shifted: Any, G: Any, rate: Any, 
     for c in range(len(out)):
         out[c] = 0.0
     if model.flat:
-        if model.motion != ABSENT:
+        if moves(model):
             obstacle(model, t, q, v)
             for c in range(len(out)):
                 out[c] = -model.motion_now[c, 2]
@@ -127,6 +127,26 @@ def obstacle(model: Any, t: float, q: Any, v: Any) -> None:
     """Position, velocity and acceleration of the obstacles of flat contacts, into `model.motion_now`."""
     if model.motion != ABSENT:
         call(model.motion, t, q, v, model.p, model.motion_now)
+    if model.carried:
+        carry_obstacles(model, t, q, v)
+
+
+@inline
+def moves(model: Any) -> bool:
+    """Whether obstacles of flat contacts move."""
+    return model.motion != ABSENT or model.carried
+
+
+@inline
+def carry_obstacles(model: Any, t: float, q: Any, v: Any) -> None:
+    """Add the motion of the frame to that of the obstacles: with x = q + c the gap is G x + offset - (s + G c)."""
+    call(model.frame, t, q, v, model.p, model.frame_now)
+    for c in range(len(model.motion_now)):
+        for k in range(3):
+            own = model.motion_now[c, k] if model.motion != ABSENT else 0.0
+            for j in range(len(model.frame_now)):
+                own += model.G[c, j] * model.frame_now[j, k]
+            model.motion_now[c, k] = own
 
 
 @inline

@@ -64,6 +64,9 @@ class Model(NamedTuple):
     omega: float
     force: Any
     frame: Any
+    carried: (
+        bool  # kernels see q + c, the coordinates in which the frame rests and obstacles move with it instead
+    )
     mass: Any
     force_q: Any
     force_v: Any
@@ -161,7 +164,7 @@ def _system(scene: Scene) -> dict[str, Any]:
     zero, square = np.zeros(n_q), np.zeros((n_q, n_q))
     fields: dict[str, Any] = dict.fromkeys(("force", "frame", "mass", "force_q", "force_v"), ABSENT)
     fields |= {"constant": zero, "cosine": zero, "sine": zero, "omega": 0.0, "C": square, "K": square}
-    fields |= {"p": np.array(scene.p), "frame_now": np.zeros((n_q, 3))}
+    fields |= {"p": np.array(scene.p), "frame_now": np.zeros((n_q, 3)), "carried": False}
     if isinstance(system, LinearSystem):
         M = dense("M", system.M)
         fields |= {"C": dense("C", system.C), "K": dense("K", system.K), "frame": system.frame or ABSENT}

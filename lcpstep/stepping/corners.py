@@ -16,7 +16,7 @@ import math
 from typing import Any
 
 from lcpstep.compiled import inline
-from lcpstep.dynamics import gap_rates, product
+from lcpstep.dynamics import gap_rates, moves, product
 from lcpstep.model import ABSENT
 from lcpstep.stepping.located_work import (
     BEFORE,
@@ -62,7 +62,7 @@ def at_corner(plan: Any, x: Any, t: float) -> bool:
 @inline
 def obstacles_move(m: Any) -> bool:
     """Whether a gap has a velocity of its own, which may jump at a corner."""
-    return (m.flat and m.motion != ABSENT) or (not m.flat and m.gap_t != ABSENT)
+    return (m.flat and moves(m)) or (not m.flat and m.gap_t != ABSENT)
 
 
 def choose_jumping(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:

@@ -46,6 +46,7 @@ from lcpstep.stepping.located_work import (
     IMPULSE,
     INERTIA,
     LAST,
+    MADE_WITH,
     OLDER,
     OLDER_TIME,
     OPEN,
@@ -167,9 +168,11 @@ def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: fl
 def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, count: Any) -> bool:
     """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
 
-    A contact that would have to be pulled for that opens.
+    A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
+    forces over the piece do: damping answers them.
     """
-    n_k = 0
+    place, n_k = (int(x[MADE_WITH]) if plan.constant else INERTIA), 0
+    W, MG = (w.WA[place], w.AG[place]) if plan.constant else (w.W, w.MG)
     for c in range(w.num.shape[1]):
         if w.mark[STATUS, c] == CLOSED:
             w.mark[CHOSEN, n_k] = c
@@ -178,7 +181,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
             n_k += 1
     if n_k == 0:
         return True
-    if not solve_chosen(m, plan, w, w.W, INERTIA, n_k, count):
+    if not solve_chosen(m, plan, w, W, place, n_k, count):
         return False
     for k in range(n_k):
         c, p = w.mark[CHOSEN, k], w.num[Z, k]
@@ -186,7 +189,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
         w.num[IMPULSE, c] += p
         pass_on(w, c, p, PIECE)
         for i in range(w.vec.shape[1]):
-            w.vec[V, i] += w.MG[c, i] * p
+            w.vec[V, i] += MG[c, i] * p
     for k in range(n_k):
         c = w.mark[CHOSEN, k]
         if w.num[P, c] == 0.0 and tau > 0.0:
@@ -194,7 +197,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
             for i in range(w.vec.shape[1]):
                 size += abs(w.G[c, i] * w.vec[V, i])
             if u > ROUNDING * size:
-                lost = 2.0 * u / (tau * w.W[c, c])
+                lost = 2.0 * u / (tau * W[c, c])
                 force = w.num[FORCE_NOW, c]
                 share = force / (force + lost) if force > 0.0 else 0.0
                 release(w, record, count, x, c, t - tau + tau * share, u)

@@ -57,6 +57,9 @@ class Rows(NamedTuple):
     bias: Any
     p: Any
     motion_now: Any
+    frame: Any
+    carried: bool
+    frame_now: Any
 
 
 @by_address

@@ -14,11 +14,20 @@ from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
+from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
 from lcpstep.recording import Kept, Recorder
-from lcpstep.stepping import adaptive, adaptive_located, interpolation, polynomial_loop, refine, smooth
+from lcpstep.stepping import (
+    adaptive,
+    adaptive_located,
+    carried,
+    interpolation,
+    polynomial_loop,
+    refine,
+    smooth,
+)
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
 from lcpstep.stepping.joint_tasks import CULPRIT
@@ -135,7 +144,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     n_q = scene.n_q
     trapezoidal = m.linear and scene.n_j == 0
     stiff = bool(trapezoidal and (np.any(m.C) or np.any(m.K)))
-    steady = bool(trapezoidal and not stiff and m.force == ABSENT and m.frame == ABSENT and m.omega == 0.0)
+    unforced = m.force == ABSENT and m.omega == 0.0 and (m.frame == ABSENT or m.carried)
+    steady = bool(trapezoidal and not stiff and unforced)
     A_inverse = np.zeros((2, n_q, n_q))
     if trapezoidal:
         implicit = h if method.order == 2 else 0.0
@@ -144,7 +154,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     return work.Plan(
         h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
-        plain=bool(trapezoidal and m.flat and m.motion == ABSENT), constant=bool(trapezoidal and m.flat),
+        plain=bool(trapezoidal and m.flat and not moves(m)), constant=bool(trapezoidal and m.flat),
         small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
         exact=method.order == "exact", longest=longest(scene, m, method),
@@ -176,7 +186,8 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool, joints: Joined | Non
     """State at the start of the scene's span, with the work space of a step."""
     n_q, n_c = scene.n_q, scene.n_c
     vec = np.zeros((work.N_VEC, n_q))
-    vec[work.Q], vec[work.V] = scene.q0, scene.v0
+    c, c_t = carried.displaced(scene, m, scene.t_span[0])
+    vec[work.Q], vec[work.V] = np.asarray(scene.q0) + c, np.asarray(scene.v0) + c_t
     mark = np.zeros((work.N_MARK, n_c), dtype=np.int64)
     mark[work.LAST_COORDINATE], mark[work.LAST_CONTACT] = n_q - 1, n_c - 1
     if p.plain and n_c > 0:
@@ -219,6 +230,7 @@ class _Run:
             joints = joined(scene, self.model, rows, fast and not jit_disabled())
         else:
             self.model, fast = model(scene)
+            self.model = carried.at_rest(self.model, self.model.linear and method.order == 2)
         self.fast = fast and not jit_disabled()
         self.never = HOOKS if joints is None else UNJOINED
         self.plan = plan(scene, self.model, method, method.h)
@@ -226,6 +238,7 @@ class _Run:
         respond(self.model, self.plan, self.work)
         run: Callable[..., int] = loop.run if method.order == 2 else polynomial_loop.run
         self.run = compiled(run, self.never) if self.fast else run
+        self.put_back = compiled(carried.put_back) if self.fast else carried.put_back
         self.x = np.zeros(work.N_NUMBERS)
         self.piece = polynomial(scene.n_q, scene.n_c)
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
@@ -333,6 +346,8 @@ class _Run:
     def empty(self) -> None:
         """Move what the kernel's buffers hold to the recorder's keeping."""
         rows, events = int(self.count[work.ROW]), int(self.count[work.EVENT])
+        if self.model.carried:
+            self.put_back(self.model, self.recorder.buffers.rows, rows)
         self.recorder.empty(rows, events)
         self.totals["events"] += events
         self.count[work.ROW] = self.count[work.EVENT] = 0
@@ -341,7 +356,8 @@ class _Run:
         """Everything computed so far."""
         self.empty()
         kept, w = self.recorder.states(), self.work
-        q_now, v_now, impulse_now = w.vec[work.Q], w.vec[work.V], self.impulse()
+        c, c_t = carried.displaced(self.scene, self.model, self.now)
+        q_now, v_now, impulse_now = w.vec[work.Q] - c, w.vec[work.V] - c_t, self.impulse()
         t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])

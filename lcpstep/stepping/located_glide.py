@@ -9,8 +9,7 @@ import math
 from typing import Any
 
 from lcpstep.compiled import inline
-from lcpstep.dynamics import external_force, obstacle
-from lcpstep.model import ABSENT
+from lcpstep.dynamics import external_force, moves, obstacle
 from lcpstep.stepping.located_work import (
     FORCE,
     FORCES,
@@ -40,7 +39,7 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
     A_inverse, C, K = plan.A_inverse[WHOLE, 0, 0], model.C[0, 0], model.K[0, 0]
     q, v, f = w.vec[Q, 0], w.vec[V, 0], w.vec[FORCE, 0]
     g, u, G, offset, s = math.inf, 0.0, 0.0, 0.0, 0.0
-    contact, moving = w.num.shape[1] > 0, model.motion != ABSENT
+    contact, moving = w.num.shape[1] > 0, moves(model)
     if contact:
         g, u, G, offset = w.num[GAP, 0], w.num[RATE, 0], model.G[0, 0], model.offset[0]
         if moving:
@@ -63,6 +62,8 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
                 obstacle(model, inner, w.vec[Q], w.vec[V])
                 s_next = model.motion_now[0, 2]
                 half = 0.5 * ((G * a - 0.5 * (s + s_next)) + (s_next - s) / 6.0)
+            if half - half != 0.0:
+                break
             latest = h + SAME_TIME * (abs(t) + h)
             if may_reach_zero(g, u, half, latest) and first_zero(g, u, half) <= latest:
                 break

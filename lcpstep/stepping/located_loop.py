@@ -11,8 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.compiled import inline
-from lcpstep.dynamics import external_force, obstacle, product
-from lcpstep.model import ABSENT
+from lcpstep.dynamics import external_force, moves, obstacle, product
 from lcpstep.recording import quiet_until
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import settle_rest
@@ -45,6 +44,7 @@ from lcpstep.stepping.located_work import (
     GAP,
     GAP_T,
     GROUNDED,
+    HALF,
     HIGH,
     HITS,
     LAST,
@@ -233,7 +233,7 @@ def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> b
     if plan.trapezoidal and not plan.steady:
         external_force(m, end, w.vec[Q], w.vec[V], w.vec[NEXT_FORCE])
         count[FORCES] += 1
-    if m.flat and m.motion != ABSENT:
+    if m.flat and moves(m):
         obstacle(m, end, w.vec[Q], w.vec[V])
         for c in range(w.num.shape[1]):
             w.num[END_S, c] = m.motion_now[c, 2]
@@ -242,10 +242,11 @@ def begin_interval(m: Any, plan: Any, w: Any, x: Any, count: Any, t: float) -> b
 
 @inline
 def finite(w: Any) -> bool:
-    """Whether state and gaps are finite."""
+    """Whether state and gaps are finite, and their accelerations in the last piece."""
     total = 0.0
     for i in range(w.vec.shape[1]):
         total += (w.vec[Q, i] - w.vec[Q, i]) + (w.vec[V, i] - w.vec[V, i])
     for c in range(w.num.shape[1]):
         total += (w.num[GAP, c] - w.num[GAP, c]) + (w.num[RATE, c] - w.num[RATE, c])
+        total += w.num[HALF, c] - w.num[HALF, c]
     return total == 0.0

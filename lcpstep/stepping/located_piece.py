@@ -10,8 +10,7 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
-from lcpstep.dynamics import gaps, obstacle, product
-from lcpstep.model import ABSENT
+from lcpstep.dynamics import gaps, moves, obstacle, product
 from lcpstep.stepping.impulses import hold, land
 from lcpstep.stepping.located_joints import (
     load_joints,
@@ -37,6 +36,7 @@ from lcpstep.stepping.located_work import (
     GROUNDED,
     HALF,
     LCP_FAILED,
+    MADE_WITH,
     NEXT_FORCE,
     NEXT_TIME,
     NOBODY,
@@ -74,6 +74,7 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     """Accelerations and gap quadratics of the piece that begins at t."""
     n_c = w.num.shape[1]
     place = accelerate(m, plan, w, x, t)
+    x[MADE_WITH] = place
     if n_c == 0:
         assign(w.vec[A], w.vec[FREE])
         return True
@@ -113,10 +114,10 @@ def flat_accelerations(m: Any, plan: Any, w: Any, t: float, x: Any) -> None:
 
     In w.num[ALPHA] so that the velocity is right at the end; w.num[BEND] is what must be added for the position.
     """
-    if not plan.steady or m.motion != ABSENT:
+    if not plan.steady or moves(m):
         for c in range(w.num.shape[1]):
             w.num[ALPHA, c] = product(m.G, w.vec[FREE], c)
-    if m.motion != ABSENT:
+    if moves(m):
         obstacle(m, within(plan, x, t), w.vec[Q], w.vec[V])
         for c in range(w.num.shape[1]):
             s, s_end = m.motion_now[c, 2], w.num[END_S, c]

@@ -14,9 +14,10 @@ STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS = rang
 N_COUNTERS = 9
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
-# how many contacts are closed, whether the gaps have the accelerations of the piece before
-SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED = range(8)
-N_NUMBERS = 8
+# how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
+# that the piece was made with
+SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
+N_NUMBERS = 9
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
