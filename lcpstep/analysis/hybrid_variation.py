@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid.field import field, guard_gradient
-from lcpstep.events.hybrid.run import machine
+from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.trajectory import Status
 

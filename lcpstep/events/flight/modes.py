@@ -88,8 +88,8 @@ def settle(s: Any, record: Any, count: Any, u: float) -> None:
 def chatter_is_over(s: Any, u: float, alpha: float, T: float, y: float, w: float) -> bool:
     """Whether taking the remaining impacts as one is within the tolerance.
 
-    They accumulate at T but for T |change of alpha| / |alpha|, and the hops that are left out rise
-    no higher than u^2 / (2 |alpha|).
+    They accumulate at T but for T |change of alpha| / |alpha|, and the hops that are left out rise no higher than
+    u^2 / (2 |alpha|).
     """
     x = s.x
     tolerance = x[ATOL] + x[RTOL] * abs(x[Q0])

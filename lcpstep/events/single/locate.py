@@ -47,11 +47,7 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float) -> floa
 
 
 def first_contact(
-    s: Any,
-    a: float,
-    at_a: tuple[float, float, float],
-    b: float,
-    at_b: tuple[float, float, float],
+    s: Any, a: float, at_a: tuple[float, float, float], b: float, at_b: tuple[float, float, float]
 ) -> float:
     """First time in (a, b] at which the gap falls to zero, or NONE; at_a, at_b: gap, velocity, acceleration."""
     middle, at_middle = b, at_b
@@ -65,11 +61,7 @@ def first_contact(
 
 
 def first_in_half(
-    s: Any,
-    a: float,
-    at_a: tuple[float, float, float],
-    b: float,
-    at_b: tuple[float, float, float],
+    s: Any, a: float, at_a: tuple[float, float, float], b: float, at_b: tuple[float, float, float]
 ) -> float:
     """The same where the gap velocity is monotone."""
     if at_a[1] * at_b[1] < 0.0:
@@ -128,14 +120,7 @@ def first_release(s: Any, a: float, alpha_a: float, b: float) -> float:
     return NONE
 
 
-def summit(
-    s: Any,
-    t_1: float,
-    h: float,
-    f_0: float,
-    f_1: float,
-    f_2: float,
-) -> tuple[float, float]:
+def summit(s: Any, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:
     """Highest gap acceleration near the middle one of three equidistant samples h apart, by parabolas."""
     best, f_best = t_1, f_1
     for _ in range(4):

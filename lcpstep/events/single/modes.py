@@ -73,8 +73,8 @@ def settle(s: Any, record: Any, count: Any, u: float) -> None:
 def chatter_is_over(s: Any, u: float, alpha: float, T: float) -> bool:
     """Whether taking the remaining impacts as one is within the tolerance.
 
-    They accumulate at T but for T |change of alpha| / |alpha|, and the hops that are left out rise
-    no higher than u^2 / (2 |alpha|).
+    They accumulate at T but for T |change of alpha| / |alpha|, and the hops that are left out rise no higher than
+    u^2 / (2 |alpha|).
     """
     if s.x[NOW] + T > min(s.x[HIGH], s.plan.t_end):
         return False

@@ -1,0 +1,105 @@
+"""From a system with modes to what kernels evaluate: tables of its fields, guards and resets, and work space."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
+from lcpstep import compiled
+from lcpstep.events.hybrid.field import (
+    ARRIVE,
+    EXIT_ABOVE,
+    EXIT_BELOW,
+    NOT_SLIDING,
+    PLAIN,
+    Machine,
+    Space,
+)
+from lcpstep.model import UncompiledCallback
+
+TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
+
+
+def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
+    """The system as kernels see it, its functions compiled unless `plain`, and whether all of them could be."""
+    system, names = scene.system, scene.system.names
+    index = {name: k for k, name in enumerate(names)}
+    modes, surfaces = list(system.modes.values()), system.surfaces
+    rows = [_rows(system, index, name) for name in names]
+    table = [row for group in rows for row in group]
+    anything = modes[0].field
+    functions: dict[str, list[Any]] = {
+        "fields": [mode.field for mode in modes] + [anything for _ in surfaces],
+        "surfaces": [anything for _ in modes] + [surface.value for surface in surfaces],
+        "values": [value or anything for value, *_ in table],
+        "resets": [reset or anything for _, reset, *_ in table],
+    }
+    addresses, fast = _addresses(scene, functions, plain)
+    not_sliding = [NOT_SLIDING] * len(modes)
+    integers = {
+        "has_reset": [reset is not None for _, reset, *_ in table],
+        "first": np.cumsum([0, *map(len, rows)]),
+        "at_once": [row[3] for row in table],
+        "kind": [row[4] for row in table],
+        "target": [row[5] for row in table],
+        "below": not_sliding + [index[surface.below] for surface in surfaces],
+        "above": not_sliding + [index[surface.above] for surface in surfaces],
+    }
+    span = min(scene.period, scene.t_span[1] - scene.t_span[0])
+    return Machine(
+        **addresses,
+        **{name: np.array(x, dtype=np.int64) for name, x in integers.items()},
+        sign=np.array([row[2] for row in table], dtype=float),
+        p=np.array(scene.p),
+        dt=TIME_DIFFERENCE * span,
+        work=space(system.n_x),
+    ), fast
+
+
+def _rows(
+    system: HybridSystem, index: dict[str, int], name: str
+) -> list[tuple[Any, Any, float, bool, int, int]]:
+    """The guards of a mode: function, reset, sign, whether it acts at once, kind, target."""
+    rows = [row for guard in system.guards()[name] for row in _guard_rows(guard, index)]
+    for surface in system.surfaces:
+        slides = index[surface.sliding]
+        if name in (surface.below, surface.above):
+            sign = 1.0 if name == surface.below else -1.0
+            rows.append((surface.value, None, sign, True, ARRIVE, slides))
+        elif name == surface.sliding:
+            rows.append((None, None, 1.0, True, EXIT_BELOW, index[surface.below]))
+            rows.append((None, None, 1.0, True, EXIT_ABOVE, index[surface.above]))
+    return rows
+
+
+def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, float, bool, int, int]]:
+    signs, at_once = [float(guard.direction)], guard.at_once
+    if guard.direction == BOTH:
+        signs, at_once = [1.0, -1.0], False
+    return [(guard.value, guard.reset, sign, at_once, PLAIN, index[guard.target]) for sign in signs]
+
+
+def _addresses(
+    scene: HybridScene, functions: dict[str, list[Any]], plain: bool
+) -> tuple[dict[str, Any], bool]:
+    if not (plain or compiled.jit_disabled()):
+        try:
+            return {
+                name: np.array([compiled.first_order_address(f) for f in fs], dtype=np.int64)
+                for name, fs in functions.items()
+            }, True
+        except Exception as error:  # numba's errors share no base class
+            reason = str(error).strip().splitlines()[0] if str(error) else type(error).__name__
+            warnings.warn(
+                f"a function of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
+                UncompiledCallback, stacklevel=5,
+            )  # fmt: skip
+    return {name: tuple(fs) for name, fs in functions.items()}, False
+
+
+def space(n: int) -> Space:
+    """Work space of a state of n numbers."""
+    return Space(*(np.zeros(1 if name == "out" else n) for name in Space._fields))
