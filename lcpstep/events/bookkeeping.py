@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import by_address, inline
+from lcpstep.compiled import by_address
 from lcpstep.recording import TIME
 
 # Why a loop returned
@@ -31,13 +31,11 @@ class Wanted(NamedTuple):
     v: Any  # (m, n_q)
 
 
-@inline
 def too_many(count: Any) -> bool:
     """Whether there were more events than allowed, or events without end at one time."""
     return bool(count[EVENTS] > count[MAX_EVENTS] or count[STALLED] > MAX_STALLED)
 
 
-@inline
 def count_event(count: Any, stalled: bool) -> None:
     """One event more; those that pass without the time going on are counted."""
     count[STALLED] = count[STALLED] + 1 if stalled else 0
@@ -45,7 +43,6 @@ def count_event(count: Any, stalled: bool) -> None:
     count[EVENTS] += 1
 
 
-@inline
 def is_wanted(record: Any, count: Any, stop: float, last: bool) -> bool:
     """Whether a state is asked for before the time `stop` (or at it, at the end of the span)."""
     if count[NEXT_TIME] >= len(record.times) or count[ROW] >= len(record.rows):
@@ -54,19 +51,16 @@ def is_wanted(record: Any, count: Any, stop: float, last: bool) -> bool:
     return bool(t < stop or (t == stop and last))
 
 
-@inline
 def is_due(record: Any, count: Any) -> bool:
     """Whether the state after this step is to be kept."""
     return bool(record.every > 0 and count[STEP] % record.every == 0)
 
 
-@inline
 def keeps_events(record: Any) -> bool:
     """Whether the states after events are to be kept."""
     return bool(record.on_events or record.every == 1)
 
 
-@inline
 def take_back(record: Any, count: Any, t: float) -> bool:
     """Take back the last kept state if it is of time t: events at one time share a row. Whether it was."""
     same = count[ROW] > 0 and record.rows[count[ROW] - 1, TIME] == t

@@ -33,7 +33,6 @@ def clock(scene: Scene, numbers: int) -> NDArray[np.float64]:
     return x
 
 
-@inline
 def after(x: Any, tau: float) -> float:
     """The time tau after the base; what rounding takes from it is kept for the next base.
 
@@ -46,7 +45,6 @@ def after(x: Any, tau: float) -> float:
     return float(t)
 
 
-@inline
 def start_at(x: Any, t: float) -> None:
     """The next piece begins at time t."""
     x[T0] = t

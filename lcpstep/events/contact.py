@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import inline
 from lcpstep.events.bookkeeping import EVENT, ROW, count_event, take_back
 from lcpstep.events.clock import LAST_EVENT, N_CLOCK, RESOLUTION
 from lcpstep.recording import LEAD, write_event, write_row
@@ -33,31 +32,26 @@ ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is 
 NONE = -1.0  # in place of a root's time
 
 
-@inline
 def finite(g: float, u: float, alpha: float) -> bool:
     """Whether all three are finite."""
     return g - g + u - u + alpha - alpha == 0.0
 
 
-@inline
 def hop(u: float, alpha: float) -> float:
     """Duration of a hop that begins with the gap velocity u > 0, under a constant acceleration alpha < 0."""
     return 2.0 * u / -alpha
 
 
-@inline
 def accumulation(u: float, alpha: float, r: float) -> float:
     """Time in which the impacts accumulate after one with u+ = u, under a constant acceleration alpha < 0."""
     return 2.0 * u / (-alpha * (1.0 - r))
 
 
-@inline
 def sticks(u: float, alpha: float, t: float) -> bool:
     """Whether a hop would be shorter than what the time t resolves; alpha <= 0."""
     return u == 0.0 or 2.0 * u <= -alpha * 4.0 * RESOLUTION * abs(t)
 
 
-@inline
 def log(s: Any, record: Any, count: Any, t: float, kind: int, before: float, after: float, p: float) -> None:
     """Note an event."""
     write_event(record.events[count[EVENT]], t, 0, before, after, p, kind)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import inline
 from lcpstep.events.bookkeeping import ACCUMULATION, IMPACT, RELEASE, STICK
 from lcpstep.events.clock import HIGH, NUDGE, SCALE, T0, find_corners
 from lcpstep.events.contact import (
@@ -51,7 +50,6 @@ from lcpstep.events.flight.rest import alpha_at
 JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
 
 
-@inline
 def impact(s: Any, record: Any, count: Any, u: float) -> None:
     """Newton's law u+ = -r u- now; then free flight, chattering or lasting contact."""
     x = s.x

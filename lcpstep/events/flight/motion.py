@@ -101,7 +101,6 @@ def free(s: Any, tau: float) -> tuple[float, float, float]:
     return g, u, alpha
 
 
-@inline
 def on_obstacle(s: Any, t: float, u: float) -> tuple[float, float, float]:
     """Absolute position and velocity on the obstacle when the gap velocity is u, and the gap acceleration alpha.
 
@@ -123,7 +122,6 @@ def on_obstacle(s: Any, t: float, u: float) -> tuple[float, float, float]:
     return q, v, x[G] * a + bias
 
 
-@inline
 def leave_from(s: Any, t: float, y: float, w: float) -> None:
     """Begin a flight at time t with the absolute state y, w."""
     x = s.x
@@ -134,7 +132,6 @@ def leave_from(s: Any, t: float, y: float, w: float) -> None:
     x[TAU] = math.nan
 
 
-@inline
 def rebase(s: Any, t: float) -> None:
     """Begin a flight at time t with the state s.q, s.v."""
     y, w = s.q[0], s.v[0]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import inline
 from lcpstep.events.clock import RESOLUTION
 from lcpstep.events.contact import NONE
 from lcpstep.events.flight.motion import RESPONSE, on_obstacle
@@ -29,7 +28,6 @@ QUADRATURE = (  # nodes and weights of Gauss on [0, 1], for the impulse of the c
 )
 
 
-@inline
 def alpha_at(s: Any, t: float) -> float:
     """Gap acceleration of the free motion, at rest on the obstacle."""
     _, _, alpha = on_obstacle(s, t, 0.0)
