@@ -6,7 +6,8 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, product
-from lcpstep.stepping.impulses import stick, strike
+from lcpstep.stepping.contact_forces import stick
+from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
     CHOSEN,

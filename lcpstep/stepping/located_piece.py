@@ -11,7 +11,7 @@ from typing import Any
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gaps, moves, obstacle, product
-from lcpstep.stepping.impulses import hold, land
+from lcpstep.stepping.contact_forces import hold, land
 from lcpstep.stepping.located_joints import (
     load_joints,
     put_on_joints,

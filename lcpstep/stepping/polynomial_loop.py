@@ -12,8 +12,9 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
+from lcpstep.stepping.contact_forces import hold, release, stick
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
-from lcpstep.stepping.impulses import hold, release, settle_rest, stick, strike
+from lcpstep.stepping.impulses import settle_rest, strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_loop import begin_step, finite
 from lcpstep.stepping.located_piece import penetrates
