@@ -24,7 +24,6 @@ class Part(JITCodeLibrary):
     def finalize(self) -> None:
         """Link, and leave optimising to the kernel."""
         for library in dict.fromkeys(self._linking_libraries):
-            self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         self._finalized = True
 
