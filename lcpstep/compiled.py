@@ -104,12 +104,8 @@ def entry_point(f: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
     """
     if jit_disabled():
         return f
-    from numba import typeof
-
-    from lcpstep import addresses  # noqa: F401
-
     dispatcher: Any = compiled(f)
-    return cast(Callable[..., Any], dispatcher.compile(tuple(map(typeof, arguments))))
+    return cast(Callable[..., Any], dispatcher.compile(_types(arguments)))
 
 
 def address(f: Callback, ndim: int) -> int:
@@ -140,13 +136,17 @@ def solver_address(f: Callable[..., int], work: Any) -> int:
 
 def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
     """Address of f compiled for the types of the given arguments and of the value returned."""
+    function, (kind, *types) = cast(FunctionType, f), _types((returned, *arguments))
+    return cast(int, _cfunc(function, tuple(types), kind, _dependencies(function)).address)
+
+
+def _types(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Numba's types of values, among them tuples that are passed by address."""
     from numba import typeof
 
-    from lcpstep import addresses  # noqa: F401
+    from lcpstep import addresses  # noqa: F401  (it tells numba of these)
 
-    types = tuple(typeof(x) for x in arguments)
-    function = cast(FunctionType, f)
-    return cast(int, _cfunc(function, types, typeof(returned), _dependencies(function)).address)
+    return tuple(map(typeof, values))
 
 
 def absent(*arguments: Any) -> int:
@@ -158,7 +158,7 @@ def absent(*arguments: Any) -> int:
 def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     import numba
 
-    from lcpstep import addresses  # noqa: F401
+    from lcpstep import addresses  # noqa: F401  (it tells numba of tuples by address)
 
     copy = _with_compiled_callees(f, without)
     dispatcher = numba.njit(nogil=not hasattr(f, "brief"), **OPTIONS)(copy)
@@ -219,7 +219,7 @@ def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) ->
     linked by name, and judged by the age of f's own file alone: two variants must never share a name.
     """
     callees = {
-        name: _callee(absent, frozenset()) if g in without else _callee(g, without & _reached(g))
+        name: _callee(absent, frozenset()) if g in without else _callee(g, without and without & _reached(g))
         for name, g in _callees(f)
     }
     copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)

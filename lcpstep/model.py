@@ -64,9 +64,7 @@ class Model(NamedTuple):
     omega: float
     force: Any
     frame: Any
-    carried: (
-        bool  # kernels see q + c, the coordinates in which the frame rests and obstacles move with it instead
-    )
+    carried: bool  # kernels see q + c, in which the frame rests and obstacles move with it instead
     mass: Any
     force_q: Any
     force_v: Any
