@@ -1,0 +1,106 @@
+"""One run of one method on one scene: what is asked, and how it ended."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from benchmarks.judge.describe import Description
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.errors import LcpStepError, SimulationError
+
+MAX_EVENTS = 50_000
+REFERENCE = "event-driven"
+
+
+class Finding(NamedTuple):
+    """Something that is not as it has to be."""
+
+    method: str
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Way:
+    """A method as the judge asks it: made for a step h, a factor on its step or tolerance, and a length of one."""
+
+    make: Callable[[float, float, float], Any]
+    order: float  # at which its error goes down with the factor
+    code: str  # what makes it, for the reproduction
+    tolerance: float = 0.0
+
+
+def _ways() -> dict[str, Way]:
+    n = MAX_EVENTS
+    return {
+        "event-driven": Way(
+            lambda h, f, s: EventDriven(1e-12 * f, 1e-12 * f, n), 1, "EventDriven()", 1e-12
+        ),
+        "event-driven-loose": Way(
+            lambda h, f, s: EventDriven(1e-6 * f, 1e-6 * f, n), 1, "EventDriven(1e-6, 1e-6)", 1e-6
+        ),
+        "located": Way(lambda h, f, s: Located(h * f, max_events=n), 2, "Located({h})"),
+        "located-4": Way(lambda h, f, s: Located(h * f, 4, n), 4, "Located({h}, order=4)"),
+        "located-exact": Way(lambda h, f, s: Located(h * f, "exact", n), 9, 'Located({h}, order="exact")'),
+        "located-tolerance": Way(
+            lambda h, f, s: Located(8 * h, max_events=n, tolerance=1e-4 * f), 1, "Located(8 * {h}, tolerance=1e-4)", 1e-4
+        ),
+        "located-4-tolerance": Way(
+            lambda h, f, s: Located(8 * h, 4, n, tolerance=1e-6 * f), 1, "Located(8 * {h}, 4, tolerance=1e-6)", 1e-6
+        ),
+        "moreau": Way(lambda h, f, s: Moreau(h * f), 1, "Moreau({h})"),
+        "moreau-tolerance": Way(
+            lambda h, f, s: Moreau(8 * h, tolerance=1e-2 * f), 1, "Moreau(8 * {h}, tolerance=1e-2)", 1e-2
+        ),
+    }  # fmt: skip
+
+
+WAYS = _ways()
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a run went: DONE, another status, or "refused"; `motion` is what there is of it."""
+
+    method: str
+    status: str
+    text: str
+    motion: Any
+    cpu: float
+
+    @property
+    def done(self) -> bool:
+        """Whether it reached the end of the span."""
+        return self.status == "DONE"
+
+
+def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
+    """One run; an exception that the library does not announce is an ending of its own, "raised"."""
+    scene, way = d.scene(), WAYS[name]
+    started = time.process_time()
+    try:
+        motion = simulate(scene, way.make(d.h, factor, 1.0), keep=keep)
+    except SimulationError as error:
+        return Run(name, error.trajectory.status.name, str(error), error.trajectory, _since(started))
+    except LcpStepError as error:
+        return Run(name, "refused", str(error), None, _since(started))
+    except Exception as error:  # whatever it is, it is reported
+        return Run(name, "raised", f"{type(error).__name__}: {error}", None, _since(started))
+    return Run(name, motion.status.name, motion.message, motion, _since(started))
+
+
+def _since(started: float) -> float:
+    return time.process_time() - started
+
+
+def lines(d: Description, name: str) -> str:
+    """The few lines that reproduce a run."""
+    method = WAYS[name].code.format(h="d.h")
+    return (
+        "from benchmarks.judge.describe import Description\n"
+        "from lcpstep import EventDriven, Located, Moreau, simulate\n"
+        f"d = {d!r}\nmotion = simulate(d.scene(), {method})"
+    )
