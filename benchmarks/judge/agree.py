@@ -30,7 +30,9 @@ def disturbed(d: Description, by: float, seed: int) -> Description:
     rng = np.random.default_rng([seed, 99])
 
     def off(values: Any) -> Any:
-        return tuple(float(x) for x in np.asarray(values) * (1.0 + by * rng.uniform(-1.0, 1.0, np.shape(values))))
+        return tuple(
+            float(x) for x in np.asarray(values) * (1.0 + by * rng.uniform(-1.0, 1.0, np.shape(values)))
+        )
 
     q0 = np.array(d.q0) if d.J else np.array(d.q0) + by * rng.uniform(-1.0, 1.0, d.n)
     t, scale = d.t_span[0], 1.0 + by * rng.uniform(-1.0, 1.0)
@@ -100,9 +102,16 @@ class Reference:
             return found
         there = self.looks <= r.motion.t[-1]
         if np.any(there):
-            q = r.motion.at(self.looks[there])[0]
-            found[there] = np.max(np.abs(q - self.q[there]), axis=1)
+            found[there] = np.max(np.abs(positions(r, self.looks[there]) - self.q[there]), axis=1)
         return np.maximum.accumulate(found)
+
+
+def positions(r: Run, times: Any) -> Any:
+    """Coordinates at times of a run; not a number where the run does not tell (a finding of its own)."""
+    try:
+        return r.motion.at(times)[0]
+    except (IndexError, ValueError):
+        return np.full((len(times), r.motion.q.shape[1]), np.nan)
 
 
 def apart(a: Run, b: Run, looks: Any) -> Any:
@@ -110,7 +119,7 @@ def apart(a: Run, b: Run, looks: Any) -> Any:
     found = np.full(len(looks), np.inf)
     there = looks <= min(a.motion.t[-1], b.motion.t[-1])
     if np.any(there):
-        found[there] = np.max(np.abs(a.motion.at(looks[there])[0] - b.motion.at(looks[there])[0]), axis=1)
+        found[there] = np.max(np.abs(positions(a, looks[there]) - positions(b, looks[there])), axis=1)
     return np.maximum.accumulate(found)
 
 

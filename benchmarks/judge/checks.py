@@ -46,6 +46,23 @@ def in_time(d: Description, r: Run) -> Iterator[Finding]:
             yield Finding(r.method, "slow", f"{again:.3g} s for {work} steps and events")
 
 
+def between(d: Description, r: Run) -> Iterator[Finding]:
+    """States between the kept ones are told, right up to the end of what was computed."""
+    t = r.motion.t
+    try:
+        q, v = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
+    except (IndexError, ValueError) as error:
+        yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
+        return
+    if not (
+        np.array_equal(q[-1], r.motion.q[-1])
+        or np.allclose(q[-1], r.motion.q[-1], rtol=1e-9, atol=1e-9 * size(r))
+    ):
+        yield Finding(
+            r.method, "no states between", f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"
+        )
+
+
 def size(r: Run) -> float:
     """How far the motion goes, at least a rounding of where it is."""
     q = r.motion.q
@@ -93,12 +110,16 @@ def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
 
 def penetration(d: Description, r: Run) -> Iterator[Finding]:
     """Nothing lies within an obstacle, but for what the order of the method explains."""
+    if not d.contacts:
+        return
     deep = depth(d, r)
-    allowed = ROUNDING * size(r) + 10.0 * WAYS[r.method].tolerance * (1.0 + size(r))
+    allowed = ROUNDING * size(r) + 10.0 * WAYS[r.method].tolerance * (1.0 + size(r)) + 1e-13 * place(d, r)
     if deep <= allowed:
         return
     if r.method in EXACT or (r.method.startswith("located") and not (d.curved or d.moving)):
-        yield Finding(r.method, "penetration", f"{deep:.3g} in a motion of size {size(r):.3g}, status {r.status}")
+        yield Finding(
+            r.method, "penetration", f"{deep:.3g} in a motion of size {size(r):.3g}, status {r.status}"
+        )
         return
     finer = run(d, r.method, 0.25)
     if finer.motion is None or not finer.done or deep < 1e-3 * size(r):
@@ -108,10 +129,15 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
         yield Finding(r.method, "penetration", text)
 
 
+def place(d: Description, r: Run) -> float:
+    """How large the numbers are that gaps are made of."""
+    q = np.max(np.abs(r.motion.q), axis=0)
+    bent = d.row("bend", d.contacts) * np.max(q) * max(1.0, np.max(q)) if d.curved else 0.0
+    return float(np.max(np.abs(np.array(d.G)) @ q + np.abs(d.offset) + np.abs(bent), initial=0.0))
+
+
 def depth(d: Description, r: Run) -> float:
     """The deepest place."""
-    if not d.contacts:
-        return 0.0
     return float(-min(0.0, np.min(physics.gaps(d, r.motion.t, r.motion.q))))
 
 
@@ -163,7 +189,7 @@ def impact_law(d: Description, r: Run) -> Iterator[Finding]:
 
 
 CHECKS: tuple[Callable[[Description, Run], Iterator[Finding]], ...] = (
-    finite, reaches_the_end, in_time, impulses, penetration, energy, impact_law
+    finite, reaches_the_end, in_time, between, impulses, penetration, energy, impact_law
 )  # fmt: skip
 
 

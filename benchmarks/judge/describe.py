@@ -144,10 +144,13 @@ class Description:
             return ()
         half, found = math.pi / self.omega, []
         start, end = (0.0, period) if math.isfinite(period) else self.t_span
-        phases = {x for x, a in zip(self.phase, self.amplitude, strict=True) if a} | ({0.0} if any(self.frame) else set())
+        phases = {x for x, a in zip(self.phase, self.amplitude, strict=True) if a}
+        phases |= {0.0} if any(self.frame) else set()
         for phase in phases:
             first = math.ceil(start / half + phase / math.pi)
-            times = [(k - phase / math.pi) * half for k in range(first, first + int((end - start) / half) + 2)]
+            times = [
+                (k - phase / math.pi) * half for k in range(first, first + int((end - start) / half) + 2)
+            ]
             found += [t for t in times if start <= t < end]
         return found
 
@@ -166,7 +169,12 @@ class Description:
         moves = any(self.amplitude)
         if self.curved:
             return Contacts(
-                self.contacts, f.gap, f.jacobian, f.gap_t if moves else None, f.bias, restitution=self.restitution
+                self.contacts,
+                f.gap,
+                f.jacobian,
+                f.gap_t if moves else None,
+                f.bias,
+                restitution=self.restitution,
             )
         return LinearContacts(self.G, self.offset, self.restitution, motion=f.motion if moves else None)
 

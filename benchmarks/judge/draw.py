@@ -13,10 +13,7 @@ import numpy as np
 
 from benchmarks.judge.describe import Description
 from benchmarks.judge.shapes import FAMILIES, digits
-
-STEPS = (1.0, 1e4)  # of a usual run; a few are longer
-MOST_STEPS = 1e6
-PER_TIME = (30.0, 300.0)  # steps in the shortest time of the motion
+from benchmarks.judge.start import started, timed
 
 
 def draw(seed: int, index: int) -> Description:
@@ -46,7 +43,7 @@ def dressed(rng: Any, family: str) -> Description:
         offset=(0.0,) * m, restitution=restitution, family=family,
         **matrices, **forces, **moves, **bent, **kinds, **_joints(shape),
     )  # fmt: skip
-    return _timed(rng, _started(rng, draft, shape))
+    return timed(rng, started(rng, draft, shape))
 
 
 def _rows(x: Any) -> Any:
@@ -91,7 +88,10 @@ def _matrices(rng: Any, n: int, shape: Any) -> dict[str, Any]:
         K = (base @ base.T) * np.outer(root, root) * w * w
     C = np.zeros((n, n))
     if rng.random() < 0.4:
-        C = np.diag(np.diag(M)) * rng.uniform(0.0, 1.0) * 10.0 ** rng.uniform(-2, 0.3) + rng.uniform(0, 0.05 / w) * K
+        C = (
+            np.diag(np.diag(M)) * rng.uniform(0.0, 1.0) * 10.0 ** rng.uniform(-2, 0.3)
+            + rng.uniform(0, 0.05 / w) * K
+        )
     return {name: _symmetric(x) for name, x in (("M", M), ("K", K), ("C", C)) if np.any(x)}
 
 
@@ -148,17 +148,3 @@ def _kinds(rng: Any, n: int, family: str) -> dict[str, Any]:
             "spread": digits(rng.uniform(0.0, 1.0)) if rng.random() < 0.6 else 0.0,
         }  # fmt: skip
     return {}
-
-
-def _started(rng: Any, d: Description, shape: Any) -> Description:
-    """Initial state: on some contacts, at rest or not, and the offsets that this asks for."""
-    from benchmarks.judge.start import started
-
-    return started(rng, d, shape)
-
-
-def _timed(rng: Any, d: Description) -> Description:
-    """Step and span."""
-    from benchmarks.judge.start import timed
-
-    return timed(rng, d)

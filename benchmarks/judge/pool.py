@@ -1,7 +1,7 @@
 """Workers that can be killed: machine code cannot be interrupted, and a scene may make it run for ever or crash.
 
-A worker sets a timer on its own CPU time before every method; the kernel of the system ends the process when that
-has run out, whatever it does. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
+A worker sets a timer on its own CPU time before every method; the system ends the process when that has run out,
+whatever it does. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
 """
 
 from __future__ import annotations
@@ -91,7 +91,9 @@ def answers(
                 answer = _hear(w) if ready else "silent"
                 if isinstance(answer, Answer):
                     endings, findings = lost.pop(answer.index, ({}, []))
-                    yield answer._replace(endings=answer.endings | endings, findings=answer.findings + findings)
+                    yield answer._replace(
+                        endings=answer.endings | endings, findings=answer.findings + findings
+                    )
                     _next(w, scenes, methods)
                 elif answer:
                     pool[pool.index(w)] = _replaced(w, limit, lost)
@@ -125,7 +127,9 @@ def _replaced(w: _Worker, limit: float, lost: Any) -> _Worker:
     w.process.join(1.0)
     code = w.stop()
     kind = "hang" if code in (-signal.SIGPROF, -signal.SIGKILL) else "crash"
-    text = f"no end within {limit:g} s of CPU time" if kind == "hang" else f"the process ended with code {code}"
+    text = (
+        f"no end within {limit:g} s of CPU time" if kind == "hang" else f"the process ended with code {code}"
+    )
     endings, findings = lost.setdefault(index, ({}, []))
     endings[w.at] = kind
     findings.append(Finding(w.at, kind, text))

@@ -25,40 +25,34 @@ class Finding(NamedTuple):
 
 @dataclass(frozen=True)
 class Way:
-    """A method as the judge asks it: made for a step h, a factor on its step or tolerance, and a length of one."""
+    """A method as the judge asks it: made for a step h and a factor on its step or tolerance."""
 
-    make: Callable[[float, float, float], Any]
+    make: Callable[[float, float], Any]
     order: float  # at which its error goes down with the factor
     code: str  # what makes it, for the reproduction
     tolerance: float = 0.0
 
 
-def _ways() -> dict[str, Way]:
-    n = MAX_EVENTS
-    return {
-        "event-driven": Way(
-            lambda h, f, s: EventDriven(1e-12 * f, 1e-12 * f, n), 1, "EventDriven()", 1e-12
-        ),
-        "event-driven-loose": Way(
-            lambda h, f, s: EventDriven(1e-6 * f, 1e-6 * f, n), 1, "EventDriven(1e-6, 1e-6)", 1e-6
-        ),
-        "located": Way(lambda h, f, s: Located(h * f, max_events=n), 2, "Located({h})"),
-        "located-4": Way(lambda h, f, s: Located(h * f, 4, n), 4, "Located({h}, order=4)"),
-        "located-exact": Way(lambda h, f, s: Located(h * f, "exact", n), 9, 'Located({h}, order="exact")'),
-        "located-tolerance": Way(
-            lambda h, f, s: Located(8 * h, max_events=n, tolerance=1e-4 * f), 1, "Located(8 * {h}, tolerance=1e-4)", 1e-4
-        ),
-        "located-4-tolerance": Way(
-            lambda h, f, s: Located(8 * h, 4, n, tolerance=1e-6 * f), 1, "Located(8 * {h}, 4, tolerance=1e-6)", 1e-6
-        ),
-        "moreau": Way(lambda h, f, s: Moreau(h * f), 1, "Moreau({h})"),
-        "moreau-tolerance": Way(
-            lambda h, f, s: Moreau(8 * h, tolerance=1e-2 * f), 1, "Moreau(8 * {h}, tolerance=1e-2)", 1e-2
-        ),
-    }  # fmt: skip
-
-
-WAYS = _ways()
+N = MAX_EVENTS
+WAYS = {
+    "event-driven": Way(lambda h, f: EventDriven(1e-12 * f, 1e-12 * f, N), 1, "EventDriven()", 1e-12),
+    "event-driven-loose": Way(
+        lambda h, f: EventDriven(1e-6 * f, 1e-6 * f, N), 1, "EventDriven(1e-6, 1e-6)", 1e-6
+    ),
+    "located": Way(lambda h, f: Located(h * f, max_events=N), 2, "Located({h})"),
+    "located-4": Way(lambda h, f: Located(h * f, 4, N), 4, "Located({h}, 4)"),
+    "located-exact": Way(lambda h, f: Located(h * f, "exact", N), 9, 'Located({h}, "exact")'),
+    "located-tolerance": Way(
+        lambda h, f: Located(8 * h, 2, N, tolerance=1e-4 * f), 1, "Located(8 * {h}, tolerance=1e-4)", 1e-4
+    ),
+    "located-4-tolerance": Way(
+        lambda h, f: Located(8 * h, 4, N, tolerance=1e-6 * f), 1, "Located(8 * {h}, 4, tolerance=1e-6)", 1e-6
+    ),
+    "moreau": Way(lambda h, f: Moreau(h * f), 1, "Moreau({h})"),
+    "moreau-tolerance": Way(
+        lambda h, f: Moreau(8 * h, tolerance=1e-2 * f), 1, "Moreau(8 * {h}, tolerance=1e-2)", 1e-2
+    ),
+}
 
 
 @dataclass(frozen=True)
@@ -82,7 +76,7 @@ def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     scene, way = d.scene(), WAYS[name]
     started = time.process_time()
     try:
-        motion = simulate(scene, way.make(d.h, factor, 1.0), keep=keep)
+        motion = simulate(scene, way.make(d.h, factor), keep=keep)
     except SimulationError as error:
         return Run(name, error.trajectory.status.name, str(error), error.trajectory, _since(started))
     except LcpStepError as error:

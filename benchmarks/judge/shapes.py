@@ -31,7 +31,10 @@ def slit(rng: Any) -> Shape:
 def groove(rng: Any) -> Shape:
     """A point in the plane between two planes, from acute to obtuse."""
     angles = rng.uniform(0.05, 1.5, 2)
-    return {"G": [[math.sin(angles[0]), math.cos(angles[0])], [-math.sin(angles[1]), math.cos(angles[1])]], "down": 1}
+    return {
+        "G": [[math.sin(angles[0]), math.cos(angles[0])], [-math.sin(angles[1]), math.cos(angles[1])]],
+        "down": 1,
+    }
 
 
 def wedge(rng: Any) -> Shape:
@@ -75,7 +78,11 @@ def feet(rng: Any) -> Shape:
     """A block, height and tilt, on two to eight feet."""
     m = int(rng.integers(2, 9))
     places = np.linspace(-0.5, 0.5, m)
-    return {"G": np.stack([np.ones(m), places], axis=1), "M": np.diag([1.0, rng.uniform(0.05, 0.3)]), "down": 0}
+    return {
+        "G": np.stack([np.ones(m), places], axis=1),
+        "M": np.diag([1.0, rng.uniform(0.05, 0.3)]),
+        "down": 0,
+    }
 
 
 def beads(rng: Any) -> Shape:
@@ -118,7 +125,12 @@ def jointed(rng: Any) -> Shape:
     pendulum = rng.random() < 0.4
     j = 1 if pendulum else int(rng.integers(1, min(n, 3)))
     J = np.zeros((j, n)) if pendulum else rng.normal(size=(j, n))
-    shape = {"G": rng.normal(size=(m, n)), "J": J, "joint_bend": np.ones(j) if pendulum else None, "down": n - 1}
+    shape = {
+        "G": rng.normal(size=(m, n)),
+        "J": J,
+        "joint_bend": np.ones(j) if pendulum else None,
+        "down": n - 1,
+    }
     if not pendulum and j == 2 and rng.random() < 0.3:
         J[1] = 2.0 * J[0]
     return shape

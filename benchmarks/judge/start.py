@@ -13,8 +13,8 @@ from benchmarks.judge.describe import Description
 from benchmarks.judge.shapes import digits
 
 PER_TIME = (1.5, 2.5)  # decades: steps in the shortest time of the motion
-DECADES = 4.0  # of steps in a span
-LONG, LONG_DECADES = 0.01, (4.0, 6.0)
+DECADES = 3.3  # of steps in a span
+LONG, LONG_DECADES = 0.02, (3.3, 6.0)
 
 
 def started(rng: Any, d: Description, shape: dict[str, Any]) -> Description:
@@ -30,7 +30,9 @@ def started(rng: Any, d: Description, shape: dict[str, Any]) -> Description:
         gap[:], closed[:] = 0.0, True
     t = d.t_span[0]
     d = replace(d, offset=tuple(map(float, gap - physics.gaps(d, t, q0))))
-    d = replace(d, offset=tuple(map(float, d.row("offset", m) - np.minimum(physics.gaps(d, t, q0) - gap, 0.0))))
+    d = replace(
+        d, offset=tuple(map(float, d.row("offset", m) - np.minimum(physics.gaps(d, t, q0) - gap, 0.0)))
+    )
     d = _joined(d, q0)
     v0 = _velocity(rng, d, t, q0, closed)
     d = replace(d, q0=tuple(map(float, q0)), v0=tuple(map(float, v0)))
@@ -96,6 +98,11 @@ def shortest(d: Description) -> float:
     squares = np.abs(np.linalg.eigvals(inverse @ (d.matrix("K") + abs(d.pendulum) * np.outer(b, b))))
     damping = np.abs(np.linalg.eigvals(inverse @ d.matrix("C")))
     a = inverse @ (np.abs(d.row("constant")) + np.abs(d.row("cosine")) + np.abs(d.row("sine")))
-    rates = [math.sqrt(np.max(squares)), np.max(damping), np.max(np.abs(v)), math.sqrt(np.max(np.abs(a)) / 2.0)]
+    rates = [
+        math.sqrt(np.max(squares)),
+        np.max(damping),
+        np.max(np.abs(v)),
+        math.sqrt(np.max(np.abs(a)) / 2.0),
+    ]
     slowest = 2.0 * math.pi / max([*d.frequencies(), 1e-3])
     return min(slowest, 2.0 * math.pi / max(*map(float, rates), 0.3))
