@@ -15,7 +15,8 @@ import numpy as np
 
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import WAYS, Finding, Run, run
+from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
 
 LOOKS = 160
@@ -84,7 +85,7 @@ class Reference:
         m = r.motion
         self.looks = np.linspace(m.t[0], m.t[-1], LOOKS + 1)
         self.q = m.at(self.looks)[0]
-        self.size = float(max(np.max(np.ptp(self.q, axis=0)), 1e-12))
+        self.size = r.scales(d).length
         self.noise = np.zeros(len(self.looks))
         for k in range(2):
             self.noise = np.maximum(self.noise, self.companion(SMALL * self.size, k))
@@ -123,19 +124,25 @@ def apart(a: Run, b: Run, looks: Any) -> Any:
     return np.maximum.accumulate(found)
 
 
+def finer_by(r: Run) -> float:
+    """By how much the step or the tolerance is made smaller."""
+    return 0.25 if r.tolerance == 0.0 else 0.0625
+
+
 def agrees(reference: Reference, r: Run) -> list[Finding]:
     """A finding where the method has converged to another motion than the reference."""
-    if r.motion is None or not len(r.motion.t) or r.method == reference.run.method:
+    if not r.usable or r.method == reference.run.method:
         return []
     ref, d = reference, reference.d
-    finer = run(d, r.method, 0.25 if WAYS[r.method].tolerance == 0.0 else 0.0625)
-    if finer.motion is None or not len(finer.motion.t):
+    finer = run(d, r.method, finer_by(r))
+    if not finer.usable:
         return []
     own, distance = apart(r, finer, ref.looks), ref.apart(finer)
     spread = 1e-9 * d.length + 1e-6 * d.h if r.method[0] != "m" else 2.0 * d.h
     until = min([ref.until, *(told_until(d, x.motion.impacts, spread) for x in (r, finer))])
     told = (own < CONVERGED * ref.size) & (ref.noise < TOLD * ref.size) & (ref.looks < until)
-    limit = FACTOR * own + NOISE * ref.noise + (1e-7 + 10.0 * WAYS[r.method].tolerance) * ref.size
+    floor = (1e-7 + 10.0 * r.tolerance) * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q)))
+    limit = FACTOR * own + NOISE * ref.noise + floor
     bad = np.flatnonzero(told & (distance > limit))
     if not len(bad):
         return []
@@ -144,8 +151,8 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
 
 
 def _confirmed(ref: Reference, r: Run, finer: Run, k: int, own: float, distance: float) -> list[Finding]:
-    finest = run(ref.d, r.method, 1.0 / 16.0 if WAYS[r.method].tolerance == 0.0 else 1.0 / 256.0)
-    if finest.motion is None or not len(finest.motion.t) or ref.apart(finest)[k] < 0.3 * distance:
+    finest = run(ref.d, r.method, finer_by(r) ** 2)
+    if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
         return []
     by = max(3.0 * own, 1e-8 * ref.size)
     for i in range(COMPANIONS):

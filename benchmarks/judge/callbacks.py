@@ -1,4 +1,4 @@
-"""The functions of all judged scenes. What they do is told by the scene's parameters p, so nothing is compiled per scene.
+"""The functions of all judged scenes. Parameters p say what they do, so that nothing is compiled for a scene.
 
     row of p of a contact or joint: amplitude, phase, offset, bend, round, then N numbers G
     gap    g = G q + bend r(q) + offset - s(t),     r = |q|^2/2, or sqrt(round^2 + |q|^2) where round > 0
@@ -6,7 +6,7 @@
     force  f = F(t) - K q - C v - (pendulum sin s + spread cos(s) s'^2/4) b,    s = b q
     mass   M + spread (1 + sin(s)/2) b b^T
 
-The last two are those of the kinetic energy v^T M v/2 + spread (1 + sin(s)/2) s'^2/2 and the potential -pendulum cos s.
+The last two have the kinetic energy v^T M v/2 + spread (1 + sin(s)/2) s'^2/2 and the potential -pendulum cos s.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def judged(
                 endings[name] = r.status
                 findings += check(d, r)
             if name == REFERENCE:
-                if r.motion is not None and len(r.motion.t) > 1 and np.all(np.isfinite(r.motion.q)):
+                if r.usable:
                     reference = Reference(d, r)
             elif reference is not None and r.status != "NOT_FINITE":
                 findings += agrees(reference, r)

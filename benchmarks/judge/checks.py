@@ -9,7 +9,8 @@ import numpy as np
 
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import WAYS, Finding, Run, run
+from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
 
 CPU, CPU_EACH = 0.5, 1e-4  # seconds of a run, and of each of its steps and events
@@ -50,40 +51,31 @@ def between(d: Description, r: Run) -> Iterator[Finding]:
     """States between the kept ones are told, right up to the end of what was computed."""
     t = r.motion.t
     try:
-        q, v = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
+        q, _ = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
     except (IndexError, ValueError) as error:
         yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
         return
-    if not (
-        np.array_equal(q[-1], r.motion.q[-1])
-        or np.allclose(q[-1], r.motion.q[-1], rtol=1e-9, atol=1e-9 * size(r))
-    ):
-        yield Finding(
-            r.method, "no states between", f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"
-        )
-
-
-def size(r: Run) -> float:
-    """How far the motion goes, at least a rounding of where it is."""
-    q = r.motion.q
-    return float(max(np.max(np.ptp(q, axis=0)), 1e-9 * np.max(np.abs(q)), 1e-9))
+    if not np.allclose(q[-1], r.motion.q[-1], rtol=1e-12, atol=1e-9 * r.scales(d).length):
+        text = f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"
+        yield Finding(r.method, "no states between", text)
 
 
 def impulses(d: Description, r: Run) -> Iterator[Finding]:
     """Impulses are not negative, and nothing is pressed that is open."""
-    m, log = r.motion, r.motion.impacts
+    m, log, sizes = r.motion, r.motion.impacts, r.scales(d)
     if not d.contacts:
         return
     largest = float(max(np.max(m.impulse, initial=0.0), np.max(log.impulse, initial=0.0)))
     least = float(min(np.min(m.impulse, initial=0.0), np.min(log.impulse, initial=0.0)))
-    if least < -ROUNDING * largest:
+    allowed = ROUNDING * largest + 1e3 * EPS * sizes.impulse
+    if least < -allowed:
         yield Finding(r.method, "negative impulse", f"{least:.3g} beside {largest:.3g}")
-    yield from open_impulses(d, r, largest)
+    yield from open_impulses(d, r, allowed)
 
 
-def open_impulses(d: Description, r: Run, largest: float) -> Iterator[Finding]:
+def open_impulses(d: Description, r: Run, rounding: float) -> Iterator[Finding]:
     """An impulse between two kept states asks for a gap that is closed at one of them (every event is kept)."""
-    m = r.motion
+    m, sizes = r.motion, r.scales(d)
     if len(m.t) < 2:
         return
     g = physics.gaps(d, m.t, m.q)
@@ -94,46 +86,39 @@ def open_impulses(d: Description, r: Run, largest: float) -> Iterator[Finding]:
     else:
         low = np.minimum(g[:-1], g[1:])
     reach = np.max(np.abs(u), axis=0) * np.max(h)
-    allowed = ROUNDING * (size(r) + np.max(np.abs(g), axis=0)) + allowed_gap(d, r, reach)
-    bad = (m.impulse[1:] > 1e-6 * largest) & (low > allowed)
+    allowed = ROUNDING * sizes.length + 1e3 * EPS * sizes.place + 10.0 * allowed_gap(d, r, reach)
+    bad = (m.impulse[1:] > 1e3 * rounding) & (low > allowed)
     if np.any(bad):
         k, c = np.argwhere(bad)[0]
-        text = f"impulse {m.impulse[k + 1, c]:.3g} of contact {c} while its gap is {low[k, c]:.3g} at t = {m.t[k + 1]:.9g}"
+        p, gap = m.impulse[k + 1, c], low[k, c]
+        text = f"impulse {p:.3g} of contact {c} while its gap is {gap:.3g} at t = {m.t[k + 1]:.9g}"
         yield Finding(r.method, "impulse while open", text)
 
 
 def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
     """How far off a gap may be that counts as closed: its tolerance, and what curvature adds within a step."""
     curved = 1e-2 * reach if d.curved or d.moving else 0.0
-    return WAYS[r.method].tolerance * size(r) + (0.0 if r.method in EXACT else curved)
+    return r.tolerance * (1.0 + r.scales(d).travel) + (0.0 if r.method in EXACT else curved)
 
 
 def penetration(d: Description, r: Run) -> Iterator[Finding]:
     """Nothing lies within an obstacle, but for what the order of the method explains."""
     if not d.contacts:
         return
-    deep = depth(d, r)
-    allowed = ROUNDING * size(r) + 10.0 * WAYS[r.method].tolerance * (1.0 + size(r)) + 1e-13 * place(d, r)
-    if deep <= allowed:
+    deep, sizes = depth(d, r), r.scales(d)
+    rounding = ROUNDING * sizes.length + 1e3 * EPS * float(np.max(sizes.place))
+    if deep <= rounding + 10.0 * r.tolerance * (1.0 + sizes.travel):
         return
+    words = f"{deep:.3g} in a motion of size {sizes.travel:.3g}"
     if r.method in EXACT or (r.method.startswith("located") and not (d.curved or d.moving)):
-        yield Finding(
-            r.method, "penetration", f"{deep:.3g} in a motion of size {size(r):.3g}, status {r.status}"
-        )
+        yield Finding(r.method, "penetration", f"{words}, status {r.status}")
         return
     finer = run(d, r.method, 0.25)
-    if finer.motion is None or not finer.done or deep < 1e-3 * size(r):
-        return
-    if depth(d, finer) > 0.7 * deep:
-        text = f"{deep:.3g} in a motion of size {size(r):.3g}, and {depth(d, finer):.3g} with a quarter of the step"
-        yield Finding(r.method, "penetration", text)
-
-
-def place(d: Description, r: Run) -> float:
-    """How large the numbers are that gaps are made of."""
-    q = np.max(np.abs(r.motion.q), axis=0)
-    bent = d.row("bend", d.contacts) * np.max(q) * max(1.0, np.max(q)) if d.curved else 0.0
-    return float(np.max(np.abs(np.array(d.G)) @ q + np.abs(d.offset) + np.abs(bent), initial=0.0))
+    if finer.usable and deep > 1e-3 * sizes.length and depth(d, finer) > 0.7 * deep:
+        finest = run(d, r.method, 0.0625)
+        if finest.usable and depth(d, finest) > 0.7 * deep:
+            text = f"{words}, {depth(d, finer):.3g} and {depth(d, finest):.3g} with a quarter and a 16th of the step"
+            yield Finding(r.method, "penetration", text)
 
 
 def depth(d: Description, r: Run) -> float:
@@ -145,29 +130,28 @@ def energy(d: Description, r: Run) -> Iterator[Finding]:
     """Nothing that is not fed gains energy, but for what the order of the method explains."""
     if physics.fed(d):
         return
-    gained, scale = gain(d, r)
-    tolerance = WAYS[r.method].tolerance
+    gained, sizes = gain(d, r), r.scales(d)
     events = r.motion.counts.events + r.motion.counts.steps
-    allowed = ROUNDING + 1e-13 * events + 100.0 * tolerance * (1.0 + 0.01 * events)
-    if gained <= allowed:
+    rounding = 1e-12 * sizes.energies + 1e-13 * events * sizes.energy
+    loose = 100.0 * r.tolerance * (1.0 + 0.01 * events)
+    if gained <= rounding + (ROUNDING + loose) * sizes.energy + loose * sizes.energies:
         return
     if r.method in EXACT:
-        yield Finding(r.method, "energy gained", f"{gained:.3g} of {scale:.3g} J")
-        return
-    if gained < 1e-3:
+        yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J")
         return
     finer = run(d, r.method, 0.25)
-    if finer.done and gain(d, finer)[0] > 0.7 * gained:
-        text = f"{gained:.3g} of {scale:.3g} J, and {gain(d, finer)[0]:.3g} with a quarter of the step or tolerance"
-        yield Finding(r.method, "energy gained", text)
+    if gained > 1e-3 * sizes.energy and finer.usable and gain(d, finer) > 0.7 * gained:
+        finest = run(d, r.method, 0.0625)
+        if finest.usable and gain(d, finest) > 0.7 * gained:
+            more = f"{gain(d, finer):.3g} and {gain(d, finest):.3g} with a quarter and a 16th of the step"
+            yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J, {more}")
 
 
-def gain(d: Description, r: Run) -> tuple[float, float]:
-    """Largest rise of the energy above what it was before, relative to the largest energies, and these."""
+def gain(d: Description, r: Run) -> float:
+    """Largest rise of the energy above what it was before."""
     kinetic, potential = physics.energy(d, r.motion.q, r.motion.v)
     total = kinetic + potential
-    scale = float(np.max(kinetic) + np.ptp(potential) + 1e-300)
-    return float(np.max(total - np.minimum.accumulate(total))) / scale, scale
+    return float(np.max(total - np.minimum.accumulate(total)))
 
 
 def impact_law(d: Description, r: Run) -> Iterator[Finding]:

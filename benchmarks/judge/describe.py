@@ -133,6 +133,13 @@ class Description:
             name=self.family,
         )
 
+    def frame_force(self) -> Any:
+        """Largest force of the frame on every coordinate."""
+        size, w = np.abs(self.row("frame")), max(self.omega, 0.0)
+        return sum(np.abs(self.matrix(x)) @ size * w**k for k, x in enumerate("KCM")) * (
+            1.0 + 0.3 * self.form
+        )
+
     def frequencies(self) -> list[float]:
         """Of everything that is driven from outside."""
         forced = any(self.cosine) or any(self.sine)

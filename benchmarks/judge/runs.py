@@ -7,7 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from benchmarks.judge.describe import Description
+from benchmarks.judge.scales import Scales, scales
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errors import LcpStepError, SimulationError
 
@@ -69,6 +72,22 @@ class Run:
     def done(self) -> bool:
         """Whether it reached the end of the span."""
         return self.status == "DONE"
+
+    @property
+    def usable(self) -> bool:
+        """Whether there is a motion to look at."""
+        return self.motion is not None and len(self.motion.t) > 1 and bool(np.all(np.isfinite(self.motion.q)))
+
+    @property
+    def tolerance(self) -> float:
+        """What the method promises, 0 where it takes steps of one size."""
+        return WAYS[self.method].tolerance
+
+    def scales(self, d: Description) -> Scales:
+        """Sizes of the motion, worked out once."""
+        if not hasattr(self, "_scales"):
+            object.__setattr__(self, "_scales", scales(d, self.motion.q, self.motion.v))
+        return self._scales  # type: ignore[attr-defined, no-any-return]
 
 
 def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
