@@ -83,7 +83,7 @@ class Reference:
     def __init__(self, d: Description, r: Run) -> None:
         self.d, self.run = d, r
         m = r.motion
-        self.looks = np.linspace(m.t[0], m.t[-1], LOOKS + 1)
+        self.looks = looks(d, float(m.t[-1]))
         self.q = m.at(self.looks)[0]
         self.size = r.scales(d).length
         self.noise = np.zeros(len(self.looks))
@@ -122,6 +122,15 @@ def apart(a: Run, b: Run, looks: Any) -> Any:
     if np.any(there):
         found[there] = np.max(np.abs(positions(a, looks[there]) - positions(b, looks[there])), axis=1)
     return np.maximum.accumulate(found)
+
+
+def looks(d: Description, end: float) -> Any:
+    """Times that all step methods reach by whole steps: between them states are interpolated, at order one or two."""
+    start = d.t_span[0]
+    steps = (end - start) / d.h
+    whole = np.unique(np.linspace(1, max(1, int(steps + 1e-9)), LOOKS).astype(int))
+    times = start + whole * d.h
+    return np.unique(np.minimum(np.append(times[whole <= steps], end), end))
 
 
 def finer_by(r: Run) -> float:

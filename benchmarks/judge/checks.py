@@ -38,6 +38,16 @@ def reaches_the_end(d: Description, r: Run) -> Iterator[Finding]:
         yield Finding(r.method, "wrong span", "times decrease")
 
 
+def in_order(d: Description, r: Run) -> Iterator[Finding]:
+    """Events are logged in the order in which they happen, within the span."""
+    time = r.motion.impacts.time
+    if np.any(np.diff(time) < 0.0):
+        k = int(np.argmin(np.diff(time)))
+        yield Finding(r.method, "log out of order", f"{time[k + 1]:.17g} after {time[k]:.17g}")
+    if len(time) and not (d.t_span[0] <= np.min(time) and np.max(time) <= d.t_span[1]):
+        yield Finding(r.method, "log out of order", f"events from {np.min(time)!r} to {np.max(time)!r}")
+
+
 def in_time(d: Description, r: Run) -> Iterator[Finding]:
     """CPU time within a bound per step and event; asked again, for the first run may have compiled."""
     work = r.motion.counts.steps + r.motion.counts.events
@@ -173,7 +183,7 @@ def impact_law(d: Description, r: Run) -> Iterator[Finding]:
 
 
 CHECKS: tuple[Callable[[Description, Run], Iterator[Finding]], ...] = (
-    finite, reaches_the_end, in_time, between, impulses, penetration, energy, impact_law
+    finite, reaches_the_end, in_order, in_time, between, impulses, penetration, energy, impact_law
 )  # fmt: skip
 
 

@@ -65,9 +65,10 @@ def _velocity(rng: Any, d: Description, t: float, q0: Any, closed: Any) -> Any:
         bent = np.array(d.joint_bend) if any(d.joint_bend) else np.zeros(len(d.J))
         held = np.vstack([held, np.array(d.J) + np.outer(bent, q0)])
     if len(held):
+        least = 1e-13 * np.max(np.abs(v))
         v = v - np.linalg.pinv(held) @ (held @ v)
         v = v - np.linalg.pinv(held) @ (held @ v)
-        v[np.abs(v) < 1e-13 * np.max(np.abs(v), initial=1e-300)] = 0.0
+        v[np.abs(v) < least] = 0.0
     return v
 
 
