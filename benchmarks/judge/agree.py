@@ -150,7 +150,7 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     spread = 1e-9 * d.length + 1e-6 * d.h if r.method[0] != "m" else 2.0 * d.h
     until = min([ref.until, *(told_until(d, x.motion.impacts, spread) for x in (r, finer))])
     told = (own < CONVERGED * ref.size) & (ref.noise < TOLD * ref.size) & (ref.looks < until)
-    floor = (1e-7 + 10.0 * r.tolerance) * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q)))
+    floor = 1e-7 * ref.size + 10.0 * r.tolerance * (1.0 + ref.size) + 1e3 * EPS * float(np.max(np.abs(ref.q)))
     limit = FACTOR * own + NOISE * ref.noise + floor
     bad = np.flatnonzero(told & (distance > limit))
     if not len(bad):

@@ -107,7 +107,7 @@ def open_impulses(d: Description, r: Run, rounding: float) -> Iterator[Finding]:
 
 def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
     """How far off a gap may be that counts as closed: its tolerance, and what curvature adds within a step."""
-    curved = 1e-2 * reach if d.curved or d.moving else 0.0
+    curved = 1e-2 * reach if d.bent else 0.0
     return r.tolerance * (1.0 + r.scales(d).travel) + (0.0 if r.method in EXACT else curved)
 
 
@@ -120,7 +120,7 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
     if deep <= rounding + 10.0 * r.tolerance * (1.0 + sizes.travel):
         return
     words = f"{deep:.3g} in a motion of size {sizes.travel:.3g}"
-    if r.method in EXACT or (r.method.startswith("located") and not (d.curved or d.moving)):
+    if r.method in EXACT or (r.method.startswith("located") and not d.bent):
         yield Finding(r.method, "penetration", f"{words}, status {r.status}")
         return
     finer = run(d, r.method, 0.25)

@@ -84,6 +84,11 @@ class Description:
         return self.spread != 0.0 or self.pendulum != 0.0
 
     @property
+    def bent(self) -> bool:
+        """Whether a gap is no parabola in time under a constant acceleration, or joints force it off one."""
+        return self.curved or self.moving or any(self.joint_bend)
+
+    @property
     def length(self) -> float:
         """Span of time."""
         return self.t_span[1] - self.t_span[0]

@@ -28,6 +28,8 @@ def started(rng: Any, d: Description, shape: dict[str, Any]) -> Description:
     gap = np.where(closed, 0.0, np.vectorize(digits)(10.0 ** rng.uniform(-2.0, 0.5, m)))
     if shape.get("slit") and rng.random() < 0.5:
         gap[:], closed[:] = 0.0, True
+    flat = np.max(np.abs(physics.jacobians(d, q0)), axis=1) < 0.1
+    gap[flat], closed[flat] = np.maximum(gap[flat], 0.1), False
     t = d.t_span[0]
     d = replace(d, offset=tuple(map(float, gap - physics.gaps(d, t, q0))))
     d = replace(
