@@ -1,0 +1,174 @@
+"""Whether a method agrees with the reference, as far as the motion can be foretold.
+
+X(h) and X(h/4) say how far the method is from where it goes; companions of the reference, disturbed a little, say how
+far the motion itself can be told. Where the method has converged and the reference stays where it is when disturbed,
+the two have to be at one place. A suspicion is confirmed by X(h/16), which must not come nearer, and by companions
+disturbed by as much as the method errs, none of which may reach as far (behind a discontinuity they do).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks.judge import physics
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.scales import EPS
+from lcpstep.trajectory import Kind
+
+LOOKS = 160
+SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
+FACTOR, NOISE = 30.0, 100.0
+CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
+COMPANIONS = 6
+
+
+def disturbed(d: Description, by: float, seed: int) -> Description:
+    """The scene with everything a little different, but what is closed, at rest, or 0 or 1."""
+    rng = np.random.default_rng([seed, 99])
+
+    def off(values: Any) -> Any:
+        return tuple(
+            float(x) for x in np.asarray(values) * (1.0 + by * rng.uniform(-1.0, 1.0, np.shape(values)))
+        )
+
+    q0 = np.array(d.q0) if d.J else np.array(d.q0) + by * rng.uniform(-1.0, 1.0, d.n)
+    t, scale = d.t_span[0], 1.0 + by * rng.uniform(-1.0, 1.0)
+    g = physics.gaps(d, t, np.array(d.q0)) if d.contacts else np.zeros(0)
+    offset = d.row("offset", d.contacts)
+    rates = d.rates()
+    new = replace(
+        d, q0=tuple(map(float, q0)), v0=tuple(float(x * scale) for x in d.v0), constant=off(d.constant),
+        cosine=off(d.cosine), sine=off(d.sine),
+        restitution=tuple(float(r * (1.0 - by * rng.uniform())) if r < 1.0 else 1.0 for r in rates),
+    )  # fmt: skip
+    if not d.contacts:
+        return new
+    wanted = np.maximum(np.array(off(g)), 0.0) * (g > 1e-15)
+    for _ in range(2):
+        offset = offset + wanted - physics.gaps(replace(new, offset=tuple(offset)), t, q0)
+    return replace(new, offset=tuple(map(float, offset)))
+
+
+def told_until(d: Description, log: Any, spread: float) -> float:
+    """Until when the law of impact leaves no choice: the first time at which coupled contacts strike at once."""
+    log = log[(log.kind == Kind.IMPACT) & (log.before < 0.0)]
+    if d.contacts < 2 or len(log) < 2:
+        return np.inf
+    fast = np.max(np.abs(log.before))
+    log = log[log.before < -1e-10 * fast]
+    together = np.flatnonzero((np.diff(log.time) <= spread) & (np.diff(log.contact) != 0))
+    W = _coupling(d)
+    for k in together:
+        a, b = log.contact[k], log.contact[k + 1]
+        if W[a, b]:
+            return float(log.time[k]) - spread
+    return np.inf
+
+
+def _coupling(d: Description) -> Any:
+    if d.curved or d.J or d.nonlinear:
+        return np.ones((d.contacts, d.contacts), dtype=bool)
+    G = np.array(d.G)
+    W = G @ np.linalg.solve(d.matrix("M"), G.T)
+    return np.abs(W) > 1e-14 * np.max(np.abs(W))
+
+
+class Reference:
+    """The motion that the others are held against, and how far it can be told."""
+
+    def __init__(self, d: Description, r: Run) -> None:
+        self.d, self.run = d, r
+        m = r.motion
+        self.looks = looks(d, float(m.t[-1]))
+        self.q = m.at(self.looks)[0]
+        self.size = r.scales(d).length
+        self.noise = np.zeros(len(self.looks))
+        for k in range(2):
+            self.noise = np.maximum(self.noise, self.companion(SMALL * self.size, k))
+        self.until = told_until(d, m.impacts, 1e-9 * d.length + 1e-6 * d.h)
+
+    def companion(self, by: float, k: int) -> Any:
+        """How far a companion disturbed by so much has been from the reference until then; infinite where unknown."""
+        r = run(disturbed(self.d, by, k), self.run.method)
+        return self.apart(r)
+
+    def apart(self, r: Run) -> Any:
+        """How far another motion has been from this one until each look."""
+        found = np.full(len(self.looks), np.inf)
+        if r.motion is None or not len(r.motion.t):
+            return found
+        there = self.looks <= r.motion.t[-1]
+        if np.any(there):
+            found[there] = np.max(np.abs(positions(r, self.looks[there]) - self.q[there]), axis=1)
+        return np.maximum.accumulate(found)
+
+
+def positions(r: Run, times: Any) -> Any:
+    """Coordinates at times of a run; not a number where the run does not tell (a finding of its own)."""
+    try:
+        return r.motion.at(times)[0]
+    except (IndexError, ValueError):
+        return np.full((len(times), r.motion.q.shape[1]), np.nan)
+
+
+def apart(a: Run, b: Run, looks: Any) -> Any:
+    """How far two motions have been from each other until each look, infinite beyond the end of one."""
+    found = np.full(len(looks), np.inf)
+    there = looks <= min(a.motion.t[-1], b.motion.t[-1])
+    if np.any(there):
+        found[there] = np.max(np.abs(positions(a, looks[there]) - positions(b, looks[there])), axis=1)
+    return np.maximum.accumulate(found)
+
+
+def looks(d: Description, end: float) -> Any:
+    """Times that all step methods reach by whole steps: between them states are interpolated, at order one or two."""
+    start = d.t_span[0]
+    steps = (end - start) / d.h
+    whole = np.unique(np.linspace(1, max(1, int(steps + 1e-9)), LOOKS).astype(int))
+    times = start + whole * d.h
+    return np.unique(np.minimum(np.append(times[whole <= steps], end), end))
+
+
+def finer_by(r: Run) -> float:
+    """By how much the step or the tolerance is made smaller."""
+    return 0.25 if r.tolerance == 0.0 else 0.0625
+
+
+def agrees(reference: Reference, r: Run) -> list[Finding]:
+    """A finding where the method has converged to another motion than the reference."""
+    if not r.usable or r.method == reference.run.method:
+        return []
+    ref, d = reference, reference.d
+    finer = run(d, r.method, finer_by(r))
+    if not finer.usable:
+        return []
+    own, distance = apart(r, finer, ref.looks), ref.apart(finer)
+    spread = 1e-9 * d.length + 1e-6 * d.h if r.method[0] != "m" else 2.0 * d.h
+    until = min([ref.until, *(told_until(d, x.motion.impacts, spread) for x in (r, finer))])
+    told = (own < CONVERGED * ref.size) & (ref.noise < TOLD * ref.size) & (ref.looks < until)
+    floor = 1e-7 * ref.size + 10.0 * r.tolerance * (1.0 + ref.size) + 1e3 * EPS * float(np.max(np.abs(ref.q)))
+    limit = FACTOR * own + NOISE * ref.noise + floor
+    bad = np.flatnonzero(told & (distance > limit))
+    if not len(bad):
+        return []
+    k = int(bad[0])
+    return _confirmed(ref, r, finer, k, float(own[k]), float(distance[k]))
+
+
+def _confirmed(ref: Reference, r: Run, finer: Run, k: int, own: float, distance: float) -> list[Finding]:
+    finest = run(ref.d, r.method, finer_by(r) ** 2)
+    if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
+        return []
+    by = max(3.0 * own, 1e-8 * ref.size)
+    for i in range(COMPANIONS):
+        if ref.companion(by, 10 + i)[k] > 0.3 * distance:
+            return []
+    text = (
+        f"{distance:.3g} from {ref.run.method} at t = {ref.looks[k]:.6g} in a motion of size {ref.size:.3g}, though "
+        f"within {own:.3g} of itself with a finer step"
+    )
+    return [Finding(r.method, "disagrees", text)]

@@ -1,0 +1,41 @@
+"""One scene before the judge: all runs, all checks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.judge.agree import Reference, agrees
+from benchmarks.judge.checks import check
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import REFERENCE, WAYS, Finding, run
+
+
+class Verdict(NamedTuple):
+    """How each method ended, and what was found."""
+
+    endings: dict[str, str]
+    findings: list[Finding]
+
+
+def judged(
+    d: Description, methods: Iterable[str] = tuple(WAYS), tell: Callable[[str], None] = lambda name: None
+) -> Verdict:
+    """Runs of the methods on a scene; `tell` is called with the name of the method that is at work."""
+    endings, findings, reference = {}, [], None
+    methods = list(methods)
+    with np.errstate(all="ignore"):
+        for name in dict.fromkeys([REFERENCE, *methods]):
+            tell(name)
+            r = run(d, name)
+            if name in methods:
+                endings[name] = r.status
+                findings += check(d, r)
+            if name == REFERENCE:
+                if r.usable:
+                    reference = Reference(d, r)
+            elif reference is not None and r.status != "NOT_FINITE":
+                findings += agrees(reference, r)
+    return Verdict(endings, findings)

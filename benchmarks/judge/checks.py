@@ -1,0 +1,197 @@
+"""What physics demands of every run: each check is a function of the scene and the run, and gives findings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from benchmarks.judge import physics
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.scales import EPS
+from lcpstep.trajectory import Kind
+
+CPU, CPU_EACH = 0.5, 1e-4  # seconds of a run, and of each of its steps and events
+ROUNDING = 1e-9  # of the size of what is compared
+EXACT = ("event-driven", "located-exact")
+
+
+def finite(d: Description, r: Run) -> Iterator[Finding]:
+    """No state and no impulse is infinite or not a number."""
+    m = r.motion
+    for name in ("t", "q", "v", "impulse", "joint_impulse"):
+        bad = ~np.isfinite(getattr(m, name))
+        if np.any(bad):
+            yield Finding(r.method, "not finite", f"{name} in {int(np.sum(bad))} entries, status {r.status}")
+    if r.status == "NOT_FINITE":
+        yield Finding(r.method, "not finite", r.text)
+
+
+def reaches_the_end(d: Description, r: Run) -> Iterator[Finding]:
+    """DONE means that the end of the span has been reached, by increasing times."""
+    t = r.motion.t
+    if r.done and not (t[0] == d.t_span[0] and t[-1] == d.t_span[1]):
+        yield Finding(r.method, "wrong span", f"states from {t[0]!r} to {t[-1]!r}, asked for {d.t_span}")
+    if np.any(np.diff(t) < 0.0):
+        yield Finding(r.method, "wrong span", "times decrease")
+
+
+def in_order(d: Description, r: Run) -> Iterator[Finding]:
+    """Events are logged in the order in which they happen, within the span."""
+    time = r.motion.impacts.time
+    if np.any(np.diff(time) < 0.0):
+        k = int(np.argmin(np.diff(time)))
+        yield Finding(r.method, "log out of order", f"{time[k + 1]:.17g} after {time[k]:.17g}")
+    if len(time) and not (d.t_span[0] <= np.min(time) and np.max(time) <= d.t_span[1]):
+        yield Finding(r.method, "log out of order", f"events from {np.min(time)!r} to {np.max(time)!r}")
+
+
+def in_time(d: Description, r: Run) -> Iterator[Finding]:
+    """CPU time within a bound per step and event; asked again, for the first run may have compiled."""
+    work = r.motion.counts.steps + r.motion.counts.events
+    if r.cpu > CPU + CPU_EACH * work:
+        again = run(d, r.method).cpu
+        if again > CPU + CPU_EACH * work:
+            yield Finding(r.method, "slow", f"{again:.3g} s for {work} steps and events")
+
+
+def between(d: Description, r: Run) -> Iterator[Finding]:
+    """States between the kept ones are told, right up to the end of what was computed."""
+    t = r.motion.t
+    try:
+        q, _ = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
+    except (IndexError, ValueError) as error:
+        yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
+        return
+    if not np.allclose(q[-1], r.motion.q[-1], rtol=1e-12, atol=1e-9 * r.scales(d).length):
+        text = f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"
+        yield Finding(r.method, "no states between", text)
+
+
+def impulses(d: Description, r: Run) -> Iterator[Finding]:
+    """Impulses are not negative, and nothing is pressed that is open."""
+    m, log, sizes = r.motion, r.motion.impacts, r.scales(d)
+    if not d.contacts:
+        return
+    largest = float(max(np.max(m.impulse, initial=0.0), np.max(log.impulse, initial=0.0)))
+    least = float(min(np.min(m.impulse, initial=0.0), np.min(log.impulse, initial=0.0)))
+    allowed = ROUNDING * largest + 1e3 * EPS * sizes.impulse
+    if least < -allowed:
+        yield Finding(r.method, "negative impulse", f"{least:.3g} beside {largest:.3g}")
+    yield from open_impulses(d, r, allowed)
+
+
+def open_impulses(d: Description, r: Run, rounding: float) -> Iterator[Finding]:
+    """An impulse between two kept states asks for a gap that is closed at one of them (every event is kept)."""
+    m, sizes = r.motion, r.scales(d)
+    if len(m.t) < 2:
+        return
+    g = physics.gaps(d, m.t, m.q)
+    u = physics.rates(d, m.t, m.q, m.v)
+    h = np.diff(m.t)[:, None]
+    if r.method.startswith("moreau"):
+        low = g[:-1] + 0.5 * h * u[:-1]
+    else:
+        low = np.minimum(g[:-1], g[1:])
+    reach = np.max(np.abs(u), axis=0) * np.max(h)
+    allowed = ROUNDING * sizes.length + 1e3 * EPS * sizes.place + 10.0 * allowed_gap(d, r, reach)
+    bad = (m.impulse[1:] > 1e3 * rounding) & (low > allowed)
+    if np.any(bad):
+        k, c = np.argwhere(bad)[0]
+        p, gap = m.impulse[k + 1, c], low[k, c]
+        text = f"impulse {p:.3g} of contact {c} while its gap is {gap:.3g} at t = {m.t[k + 1]:.9g}"
+        yield Finding(r.method, "impulse while open", text)
+
+
+def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
+    """How far off a gap may be that counts as closed: its tolerance, and what curvature adds within a step."""
+    curved = 1e-2 * reach if d.bent else 0.0
+    return r.tolerance * (1.0 + r.scales(d).travel) + (0.0 if r.method in EXACT else curved)
+
+
+def penetration(d: Description, r: Run) -> Iterator[Finding]:
+    """Nothing lies within an obstacle, but for what the order of the method explains."""
+    if not d.contacts:
+        return
+    deep, sizes = depth(d, r), r.scales(d)
+    rounding = ROUNDING * sizes.length + 1e3 * EPS * float(np.max(sizes.place))
+    if deep <= rounding + 10.0 * r.tolerance * (1.0 + sizes.travel):
+        return
+    words = f"{deep:.3g} in a motion of size {sizes.travel:.3g}"
+    if r.method in EXACT or (r.method.startswith("located") and not d.bent):
+        yield Finding(r.method, "penetration", f"{words}, status {r.status}")
+        return
+    finer = run(d, r.method, 0.25)
+    if finer.usable and deep > 1e-3 * sizes.length and depth(d, finer) > 0.7 * deep:
+        finest = run(d, r.method, 0.0625)
+        if finest.usable and depth(d, finest) > 0.7 * deep:
+            text = f"{words}, {depth(d, finer):.3g} and {depth(d, finest):.3g} with a quarter and a 16th of the step"
+            yield Finding(r.method, "penetration", text)
+
+
+def depth(d: Description, r: Run) -> float:
+    """The deepest place."""
+    return float(-min(0.0, np.min(physics.gaps(d, r.motion.t, r.motion.q))))
+
+
+def energy(d: Description, r: Run) -> Iterator[Finding]:
+    """Nothing that is not fed gains energy, but for what the order of the method explains."""
+    if physics.fed(d):
+        return
+    gained, sizes = gain(d, r), r.scales(d)
+    events = r.motion.counts.events + r.motion.counts.steps
+    rounding = 1e-12 * sizes.energies + 1e-13 * events * sizes.energy
+    loose = 100.0 * r.tolerance * (1.0 + 0.01 * events)
+    if gained <= rounding + (ROUNDING + loose) * sizes.energy + loose * sizes.energies:
+        return
+    if r.method in EXACT:
+        yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J")
+        return
+    finer = run(d, r.method, 0.25)
+    if gained > 1e-3 * sizes.energy and finer.usable and gain(d, finer) > 0.7 * gained:
+        finest = run(d, r.method, 0.0625)
+        if finest.usable and gain(d, finest) > 0.7 * gained:
+            more = f"{gain(d, finer):.3g} and {gain(d, finest):.3g} with a quarter and a 16th of the step"
+            yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J, {more}")
+
+
+def gain(d: Description, r: Run) -> float:
+    """Largest rise of the energy above what it was before."""
+    kinetic, potential = physics.energy(d, r.motion.q, r.motion.v)
+    total = kinetic + potential
+    return float(np.max(total - np.minimum.accumulate(total)))
+
+
+def impact_law(d: Description, r: Run) -> Iterator[Finding]:
+    """An impact leaves u+ >= -r u-, exactly that where it is the only contact, and never with a negative impulse."""
+    log = r.motion.impacts
+    log = log[log.kind == Kind.IMPACT]
+    if not len(log):
+        return
+    wanted = -d.rates()[log.contact] * np.minimum(log.before, 0.0)
+    scale = np.max(np.abs(log.before)) + np.max(np.abs(log.after))
+    off = wanted - log.after
+    if d.contacts == 1 and r.method.startswith(("event", "located")):
+        off = np.abs(off)
+    k = int(np.argmax(off))
+    if off[k] > 1e-7 * scale and not r.method.startswith("moreau"):
+        e = log[k]
+        text = f"contact {e.contact} from {e.before:.6g} to {e.after:.6g} at t = {e.time:.9g}"
+        yield Finding(r.method, "law of impact", text)
+
+
+CHECKS: tuple[Callable[[Description, Run], Iterator[Finding]], ...] = (
+    finite, reaches_the_end, in_order, in_time, between, impulses, penetration, energy, impact_law
+)  # fmt: skip
+
+
+def check(d: Description, r: Run) -> list[Finding]:
+    """All findings of one run."""
+    if r.status == "raised":
+        return [Finding(r.method, "raised", r.text)]
+    if r.motion is None or not len(r.motion.t):
+        return []
+    found = list(finite(d, r))
+    return found or [x for each in CHECKS[1:] for x in each(d, r)]

@@ -1,0 +1,81 @@
+"""Gaps, forces and energy of a described scene, in numpy and from the equations alone: nothing of the library's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from benchmarks.judge import callbacks as f
+from benchmarks.judge.describe import Description
+
+wave = np.vectorize(f.moved, otypes=[float])
+
+
+def _bent(d: Description, q: Any) -> Any:
+    """r(q) of every contact and its derivative by |q|^2/2, (..., contacts)."""
+    square = np.sum(q * q, axis=-1)[..., None]
+    rounds = d.row("round", d.contacts)
+    root = np.sqrt(rounds**2 + square)
+    with np.errstate(divide="ignore"):
+        slope = np.where(rounds > 0.0, 1.0 / root, 1.0)
+    return np.where(rounds > 0.0, root, 0.5 * square), slope
+
+
+def gaps(d: Description, t: Any, q: Any) -> Any:
+    """Gaps (..., contacts) at times (...) and coordinates (..., n)."""
+    g = q @ np.array(d.G).T + d.row("offset", d.contacts)
+    if d.curved:
+        g = g + d.row("bend", d.contacts) * _bent(d, q)[0]
+    return g - obstacles(d, t, 0)
+
+
+def obstacles(d: Description, t: Any, order: int) -> Any:
+    """s, s' or s'' of every contact, (..., contacts)."""
+    t = np.asarray(t, dtype=float)[..., None]
+    if not any(d.amplitude):
+        return np.zeros((*t.shape[:-1], d.contacts))
+    size, phase = d.row("amplitude", d.contacts), d.row("phase", d.contacts)
+    return size * wave(d.omega * t + phase, d.omega, float(d.form), order)
+
+
+def jacobians(d: Description, q: Any) -> Any:
+    """G (..., contacts, n)."""
+    rows = np.broadcast_to(np.array(d.G), (*q.shape[:-1], d.contacts, d.n))
+    if not d.curved:
+        return rows
+    return rows + (d.row("bend", d.contacts) * _bent(d, q)[1])[..., None] * q[..., None, :]
+
+
+def rates(d: Description, t: Any, q: Any, v: Any) -> Any:
+    """Gap velocities (..., contacts)."""
+    return np.einsum("...ij,...j->...i", jacobians(d, q), v) - obstacles(d, t, 1)
+
+
+def masses(d: Description, q: Any) -> Any:
+    """M(q) (..., n, n)."""
+    b = d.row("b")
+    factor = d.spread * (1.0 + 0.5 * np.sin(q @ b))
+    return d.matrix("M") + np.asarray(factor)[..., None, None] * np.outer(b, b)
+
+
+def forces(d: Description, t: Any, q: Any, v: Any) -> Any:
+    """Everything on the right-hand side but the contacts and the frame, (..., n)."""
+    t, b = np.asarray(t, dtype=float)[..., None], d.row("b")
+    s, rate = q @ b, v @ b
+    along = d.pendulum * np.sin(s) + 0.25 * d.spread * np.cos(s) * rate**2
+    harmonic = d.row("cosine") * np.cos(d.force_omega * t) + d.row("sine") * np.sin(d.force_omega * t)
+    linear = q @ d.matrix("K") + v @ d.matrix("C")
+    return d.row("constant") + harmonic - linear - np.asarray(along)[..., None] * b
+
+
+def energy(d: Description, q: Any, v: Any) -> tuple[Any, Any]:
+    """Kinetic energy, and potential energy of constant forces, springs and pendulum, each (...)."""
+    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", v, masses(d, q), v)
+    springs = 0.5 * np.einsum("...i,ij,...j->...", q, d.matrix("K"), q)
+    return kinetic, springs - q @ d.row("constant") - d.pendulum * np.cos(q @ d.row("b"))
+
+
+def fed(d: Description) -> bool:
+    """Whether something may put energy into the scene."""
+    return any(d.cosine) or any(d.sine) or d.moving

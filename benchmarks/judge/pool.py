@@ -1,0 +1,138 @@
+"""Workers that can be killed: machine code cannot be interrupted, and a scene may make it run for ever or crash.
+
+A worker sets a timer on its own CPU time before every method; the system ends the process when that has run out,
+whatever it does. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from collections.abc import Iterable, Iterator
+from multiprocessing.connection import wait
+from typing import Any, NamedTuple
+
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import Finding
+
+CPU_LIMIT = 20.0  # seconds of one method on one scene, with its variants
+WALL_LIMIT = 600.0  # without a word from a worker
+
+
+class Answer(NamedTuple):
+    """What was found out about a scene."""
+
+    index: int
+    scene: Description
+    endings: dict[str, str]
+    findings: list[Finding]
+
+
+def _work(pipe: Any, limit: float) -> None:
+    """A worker: scenes in; names of methods at work and verdicts out."""
+    from benchmarks.judge.case import judged
+
+    def tell(name: str) -> None:
+        pipe.send(name)
+        signal.setitimer(signal.ITIMER_PROF, limit)
+
+    while True:
+        task = pipe.recv()
+        if task is None:
+            return
+        scene, methods = task
+        verdict = judged(scene, methods, tell)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        pipe.send(verdict)
+
+
+class _Worker:
+    """A process, and what it is at."""
+
+    def __init__(self, limit: float) -> None:
+        context = multiprocessing.get_context("spawn")
+        self.pipe, other = context.Pipe()
+        self.process = context.Process(target=_work, args=(other, limit), daemon=True)
+        self.process.start()
+        other.close()
+        self.task: Any = None
+        self.at = ""
+        self.lost: dict[str, str] = {}
+        self.found: list[Finding] = []
+
+    def give(self, index: int, scene: Description, methods: list[str]) -> None:
+        """A scene to judge."""
+        self.task, self.at = (index, scene, methods), ""
+        self.pipe.send((scene, methods))
+
+    def stop(self) -> int:
+        """End the process; its exit code."""
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+        return int(self.process.exitcode or 0)
+
+
+def answers(
+    scenes: Iterable[tuple[int, Description]], methods: list[str], workers: int, limit: float = CPU_LIMIT
+) -> Iterator[Answer]:
+    """Verdicts on scenes, in the order in which they are ready."""
+    scenes = iter(scenes)
+    pool = [_Worker(limit) for _ in range(workers)]
+    lost: dict[int, tuple[dict[str, str], list[Finding]]] = {}
+    try:
+        for w in pool:
+            _next(w, scenes, methods)
+        while any(w.task for w in pool):
+            busy = {w.pipe: w for w in pool if w.task}
+            ready = wait(list(busy), WALL_LIMIT)
+            for pipe in ready or list(busy):
+                w = busy[pipe]
+                answer = _hear(w) if ready else "silent"
+                if isinstance(answer, Answer):
+                    endings, findings = lost.pop(answer.index, ({}, []))
+                    yield answer._replace(
+                        endings=answer.endings | endings, findings=answer.findings + findings
+                    )
+                    _next(w, scenes, methods)
+                elif answer:
+                    pool[pool.index(w)] = _replaced(w, limit, lost)
+    finally:
+        for w in pool:
+            w.stop()
+
+
+def _next(w: _Worker, scenes: Iterator[tuple[int, Description]], methods: list[str]) -> None:
+    task = next(scenes, None)
+    w.task = None
+    if task is not None:
+        w.give(*task, methods)
+
+
+def _hear(w: _Worker) -> Any:
+    """A word of a worker: an answer, "dead", or nothing of note."""
+    try:
+        word = w.pipe.recv()
+    except (EOFError, OSError):
+        return "dead"
+    if isinstance(word, str):
+        w.at = word
+        return None
+    return Answer(w.task[0], w.task[1], word.endings, word.findings)
+
+
+def _replaced(w: _Worker, limit: float, lost: Any) -> _Worker:
+    """Another worker for the rest of the scene at which one was lost."""
+    index, scene, methods = w.task
+    w.process.join(1.0)
+    code = w.stop()
+    kind = "hang" if code in (-signal.SIGPROF, -signal.SIGKILL) else "crash"
+    text = (
+        f"no end within {limit:g} s of CPU time" if kind == "hang" else f"the process ended with code {code}"
+    )
+    endings, findings = lost.setdefault(index, ({}, []))
+    endings[w.at] = kind
+    findings.append(Finding(w.at, kind, text))
+    new = _Worker(limit)
+    new.give(index, scene, [x for x in methods if x != w.at])
+    return new

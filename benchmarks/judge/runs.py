@@ -1,0 +1,119 @@
+"""One run of one method on one scene: what is asked, and how it ended."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.judge.describe import Description
+from benchmarks.judge.scales import Scales, scales
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.errors import LcpStepError, SimulationError
+
+MAX_EVENTS = 50_000
+REFERENCE = "event-driven"
+
+
+class Finding(NamedTuple):
+    """Something that is not as it has to be."""
+
+    method: str
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Way:
+    """A method as the judge asks it: made for a step h and a factor on its step or tolerance."""
+
+    make: Callable[[float, float], Any]
+    order: float  # at which its error goes down with the factor
+    code: str  # what makes it, for the reproduction
+    tolerance: float = 0.0
+
+
+N = MAX_EVENTS
+WAYS = {
+    "event-driven": Way(lambda h, f: EventDriven(1e-12 * f, 1e-12 * f, N), 1, "EventDriven()", 1e-12),
+    "event-driven-loose": Way(
+        lambda h, f: EventDriven(1e-6 * f, 1e-6 * f, N), 1, "EventDriven(1e-6, 1e-6)", 1e-6
+    ),
+    "located": Way(lambda h, f: Located(h * f, max_events=N), 2, "Located({h})"),
+    "located-4": Way(lambda h, f: Located(h * f, 4, N), 4, "Located({h}, 4)"),
+    "located-exact": Way(lambda h, f: Located(h * f, "exact", N), 9, 'Located({h}, "exact")'),
+    "located-tolerance": Way(
+        lambda h, f: Located(8 * h, 2, N, tolerance=1e-4 * f), 1, "Located(8 * {h}, tolerance=1e-4)", 1e-4
+    ),
+    "located-4-tolerance": Way(
+        lambda h, f: Located(8 * h, 4, N, tolerance=1e-6 * f), 1, "Located(8 * {h}, 4, tolerance=1e-6)", 1e-6
+    ),
+    "moreau": Way(lambda h, f: Moreau(h * f), 1, "Moreau({h})"),
+    "moreau-tolerance": Way(
+        lambda h, f: Moreau(8 * h, tolerance=1e-2 * f), 1, "Moreau(8 * {h}, tolerance=1e-2)", 1e-2
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a run went: DONE, another status, or "refused"; `motion` is what there is of it."""
+
+    method: str
+    status: str
+    text: str
+    motion: Any
+    cpu: float
+
+    @property
+    def done(self) -> bool:
+        """Whether it reached the end of the span."""
+        return self.status == "DONE"
+
+    @property
+    def usable(self) -> bool:
+        """Whether there is a motion to look at."""
+        return self.motion is not None and len(self.motion.t) > 1 and bool(np.all(np.isfinite(self.motion.q)))
+
+    @property
+    def tolerance(self) -> float:
+        """What the method promises, 0 where it takes steps of one size."""
+        return WAYS[self.method].tolerance
+
+    def scales(self, d: Description) -> Scales:
+        """Sizes of the motion, worked out once."""
+        if not hasattr(self, "_scales"):
+            object.__setattr__(self, "_scales", scales(d, self.motion.q, self.motion.v))
+        return self._scales  # type: ignore[attr-defined, no-any-return]
+
+
+def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
+    """One run; an exception that the library does not announce is an ending of its own, "raised"."""
+    scene, way = d.scene(), WAYS[name]
+    started = time.process_time()
+    try:
+        motion = simulate(scene, way.make(d.h, factor), keep=keep)
+    except SimulationError as error:
+        return Run(name, error.trajectory.status.name, str(error), error.trajectory, _since(started))
+    except LcpStepError as error:
+        return Run(name, "refused", str(error), None, _since(started))
+    except Exception as error:  # whatever it is, it is reported
+        return Run(name, "raised", f"{type(error).__name__}: {error}", None, _since(started))
+    return Run(name, motion.status.name, motion.message, motion, _since(started))
+
+
+def _since(started: float) -> float:
+    return time.process_time() - started
+
+
+def lines(d: Description, name: str) -> str:
+    """The few lines that reproduce a run."""
+    method = WAYS[name].code.format(h="d.h")
+    return (
+        "from benchmarks.judge.describe import Description\n"
+        "from lcpstep import EventDriven, Located, Moreau, simulate\n"
+        f"d = {d!r}\nmotion = simulate(d.scene(), {method})"
+    )
