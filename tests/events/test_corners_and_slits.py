@@ -153,7 +153,9 @@ def bundle(seed):
         A = random.normal(size=(n, n))
         K = A @ A.T * 10.0 ** random.uniform(-1.0, 2.0)
         force = Harmonic(constant=force, cosine=random.normal(size=n), omega=random.uniform(0.5, 5.0))
-    restitution = random.choice([0.0, 0.3, 0.5, 0.8]) if random.random() < 0.6 else random.uniform(0.0, 0.9, size=m)
+    restitution = (
+        random.choice([0.0, 0.3, 0.5, 0.8]) if random.random() < 0.6 else random.uniform(0.0, 0.9, size=m)
+    )
     return Scene(
         LinearSystem(M=np.diag(10.0 ** random.uniform(-2.0, 2.0, size=n)), K=K, force=force), q0,
         random.normal(size=n) * random.choice([0.0, 0.1, 1.0]), (0.0, 5.0),

@@ -2,8 +2,9 @@
 
 Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
 higher than the tolerance. So are hops that are as slow as the tolerance, elastic ones too, and impacts of contacts
-that nothing presses (inelastic collapse) when they have both a speed and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems
-with complete chattering, Nonlinear Dynamics 58 (2009).
+that nothing presses (inelastic collapse) when they have both a speed and a way below it. Source: A. Nordmark, P.
+Piiroinen, Simulation and stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58
+(2009).
 """
 
 from __future__ import annotations

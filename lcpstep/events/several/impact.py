@@ -27,6 +27,7 @@ from lcpstep.events.several.state import (
     IMPULSE,
     JOINT_CYCLE_IMPULSE,
     LCP_B,
+    LCP_NOISE,
     LCP_Z,
     LOADED,
     MEMBERS,
@@ -52,6 +53,7 @@ def strike(s: Any) -> bool:
         if s.mode[CLOSED, c] == 1 or (s.contact[GAP, c] == 0.0 and u <= speed_noise(s, c)):
             s.member[s.number[MEMBERS]] = c
             s.contact[LCP_B, s.number[MEMBERS]] = (1.0 + s.model.restitution[c]) * min(u, 0.0)
+            s.contact[LCP_NOISE, s.number[MEMBERS]] = speed_noise(s, c)
             s.number[MEMBERS] += 1
     hold_joints(s)
     solved = solve_contacts(s)
