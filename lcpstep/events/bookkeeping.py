@@ -18,7 +18,7 @@ N_COUNTERS = 8
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 SLACK = 4  # rows and events that one round of a loop may need
-MAX_STALLED = 1000  # events at one time
+MAX_STALLED = 100_000  # events at one time
 
 
 @by_address

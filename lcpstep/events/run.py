@@ -106,10 +106,12 @@ class Run(ABC):
         return result
 
     def empty(self) -> None:
-        """Move the buffers' contents to the recorder, but for the last row, whose step is still to come."""
-        rows = int(self.count[ROW])
-        self.recorder.empty(max(rows - 1, 0), int(self.count[EVENT]))
-        self.recorder.buffers.rows[0] = self.recorder.buffers.rows[max(rows - 1, 0)]
+        """Move the buffers' contents to the recorder, but for the last row, whose step may still be to come."""
+        rows, buffers = int(self.count[ROW]), self.recorder.buffers
+        last = max(rows - 1, 0)
+        self.recorder.empty(last, int(self.count[EVENT]))
+        for kept in (buffers.rows, buffers.dense):  # or has been made, where the run ends at an event
+            kept[:1] = kept[last : last + 1]
         self.count[ROW], self.count[EVENT] = min(rows, 1), 0
 
     def trajectory(self, status: Status, message: str) -> Trajectory:

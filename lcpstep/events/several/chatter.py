@@ -1,9 +1,10 @@
 """Chattering that is over, as kernels: contacts whose further impacts stay below the tolerance are closed.
 
 Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
-higher than the tolerance. Impacts of contacts that nothing presses (inelastic collapse) are when they have both a
-speed and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems
-with complete chattering, Nonlinear Dynamics 58 (2009).
+higher than the tolerance. So are hops that are as slow as the tolerance, elastic ones too, and impacts of contacts
+that nothing presses (inelastic collapse) when they have both a speed and a way below it. Source: A. Nordmark, P.
+Piiroinen, Simulation and stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58
+(2009).
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from lcpstep.events.several.state import (
     SINCE,
     SPEED,
     STRUCK,
+    WAS_CLOSED,
     Q,
     V,
 )
@@ -41,7 +43,8 @@ def close_chatter(s: Any, record: Any, count: Any) -> bool:
     """Close the contacts whose further impacts stay below the tolerance; whether there was one."""
     n_c, n_j, t, some = len(s.G), len(s.J), s.x[T0], False
     for c in range(n_c):
-        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] == 0.0 and s.contact[STRUCK, c] == t:
+        moved = s.contact[STRUCK, c] == t or s.mode[WAS_CLOSED, c] == 1  # struck, or driven off by another
+        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] == 0.0 and moved:
             T = chatter_left(s, c)
             if T >= 0.0:
                 u, alpha = s.contact[SPEED, c], s.contact[CURVE, c]
@@ -49,16 +52,25 @@ def close_chatter(s: Any, record: Any, count: Any) -> bool:
                 log(s, record, count, t + T, c, float(ACCUMULATION), -u, 0.0, p)
                 s.mode[CLOSED, c], s.contact[CHATTERS, c], some = 1, t + T, True
     if some:
-        hold_contacts(s)
-        for m in range(s.number[HELD_ROWS]):
-            i = s.row[m]
-            s.change[m] = 0.0 if i < n_j else -s.contact[SPEED, i - n_j]
-        solve_held(s, s.number[HELD_ROWS], s.change)
-        apply(s)
-        for c in range(n_c):
-            if s.mode[CLOSED, c] == 1:
-                s.contact[SPEED, c] = 0.0
+        for c in range(n_c):  # those that the forces have just opened meet other forces now
+            if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] == 0.0 and s.contact[SPEED, c] == 0.0:
+                s.mode[CLOSED, c] = 1
+        stop(s)
     return some
+
+
+def stop(s: Any) -> None:
+    """Take their speeds from the closed contacts."""
+    n_j = len(s.J)
+    hold_contacts(s)
+    for m in range(s.number[HELD_ROWS]):
+        i = s.row[m]
+        s.change[m] = 0.0 if i < n_j else -s.contact[SPEED, i - n_j]
+    solve_held(s, s.number[HELD_ROWS], s.change)
+    apply(s)
+    for c in range(len(s.G)):
+        if s.mode[CLOSED, c] == 1:
+            s.contact[SPEED, c] = 0.0
 
 
 def chatter_left(s: Any, c: int) -> float:
@@ -67,14 +79,19 @@ def chatter_left(s: Any, c: int) -> float:
     Pressed by alpha < 0 they accumulate after 2 u / (|alpha| (1 - r)), no hop being higher than u^2 / (2 |alpha|).
     """
     u, alpha, r = s.contact[SPEED, c], s.contact[CURVE, c], s.model.restitution[c]
-    if r == 1.0:
+    if u == 0.0:  # opened by the forces
         return -1.0
     speed = largest(s.state[V], 0.0)
     tolerance = s.plan.atol + s.plan.rtol * largest(s.state[Q], 0.0)
+    slow = u <= s.plan.atol + s.plan.rtol * speed
+    low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
+    if slow and low:
+        return 0.0
+    if r == 1.0:
+        return -1.0
     if alpha == 0.0 or abs(alpha) * s.contact[SINCE, c] <= NOISE * (u + speed):  # an inelastic collapse
-        slow = u <= s.plan.atol + s.plan.rtol * speed and u * s.contact[SINCE, c] <= tolerance
-        return 0.0 if slow else -1.0
-    if alpha > 0.0 or u * u > -2.0 * alpha * tolerance:
+        return 0.0 if slow and u * s.contact[SINCE, c] <= tolerance else -1.0
+    if not low:
         return -1.0
     T = accumulation(u, alpha, r)
     if s.x[T0] + T > min(s.x[HIGH], s.plan.t_end):

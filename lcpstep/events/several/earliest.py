@@ -18,6 +18,7 @@ from lcpstep.events.clock import RESOLUTION, T0, inside
 from lcpstep.events.dop853 import interpolate
 from lcpstep.events.several.equations import biases, constraint_rows
 from lcpstep.events.several.held import note, right_hand_side
+from lcpstep.events.several.impact import speed_noise
 from lcpstep.events.several.state import (
     ACCELERATION,
     CLOSED,
@@ -66,7 +67,10 @@ def first_event(s: Any, a: float, b: float) -> float:
         else:
             left_end = (s.contact[LEFT_GAP, c], s.contact[LEFT_SPEED, c], s.contact[LEFT_CURVE, c])
             right_end = (seen[GAP, c], seen[SPEED, c], seen[CURVE, c])
-            tau = first_contact(s, c, a, b, left_end, right_end)
+            if left_end[0] <= 0.0 and left_end[1] < -speed_noise(s, c):  # met just where the last event was
+                tau = a
+            else:
+                tau = first_contact(s, c, a, b, left_end, right_end)
             if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
                 tau, kind = a, NEVER_LEFT
         if tau != NONE and (found == NONE or tau < found):

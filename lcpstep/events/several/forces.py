@@ -32,6 +32,7 @@ from lcpstep.events.several.state import (
     HELD_JOINTS,
     HELD_ROWS,
     LCP_B,
+    LCP_NOISE,
     LCP_Z,
     LOADED,
     MEMBERS,
@@ -62,6 +63,7 @@ def contact_forces(s: Any, t: float) -> int:
         s.contact[MULTIPLIER, c] = 0.0
         if s.mode[CLOSED, c] == 1:
             s.member[s.number[MEMBERS]], s.contact[LCP_B, s.number[MEMBERS]] = c, s.contact[CURVE, c]
+            s.contact[LCP_NOISE, s.number[MEMBERS]] = 0.5 * NOISE * terms(s, c)
             s.number[MEMBERS] += 1
     solved = True
     if s.number[MEMBERS] > 0:
@@ -91,13 +93,11 @@ def presses(s: Any) -> bool:
 
 def open_contacts(s: Any, t: float) -> None:
     """Of the members, mark those that carry a force, and open those that accelerate away from the surface."""
-    n_j, k = len(s.J), s.number[MEMBERS]
+    k = s.number[MEMBERS]
     W = s.W[: k * k].reshape((k, k))
     for m in range(k):
         c, alpha = s.member[m], s.contact[LCP_B, m]
-        size = abs(s.contact[BIAS, c])
-        for j in range(s.state.shape[1]):
-            size += abs(s.R[n_j + c, j] * s.state[FREE_ACCELERATION, j])
+        size = terms(s, c)
         for b in range(k):
             alpha += W[m, b] * s.contact[LCP_Z, b]
             size += abs(W[m, b] * s.contact[LCP_Z, b])
@@ -105,6 +105,14 @@ def open_contacts(s: Any, t: float) -> None:
             s.mode[LOADED, c], s.contact[MULTIPLIER, c] = 1, s.contact[LCP_Z, m]
         elif alpha > NOISE * size and not s.contact[HELD, c] > t:
             s.mode[CLOSED, c] = 0
+
+
+def terms(s: Any, c: int) -> float:
+    """Size of the terms of a gap acceleration without contact forces."""
+    size = abs(s.contact[BIAS, c])
+    for j in range(s.state.shape[1]):
+        size += abs(s.R[len(s.J) + c, j] * s.state[FREE_ACCELERATION, j])
+    return size
 
 
 def unload(s: Any) -> None:

@@ -20,11 +20,14 @@ from lcpstep.events.several.held import REFINEMENTS, hold, hold_joints, solve_he
 from lcpstep.events.several.problem import CHECKED, solve_contacts
 from lcpstep.events.several.state import (
     CLOSED,
+    CYCLE_IMPULSE,
     GAP,
     HELD_JOINTS,
     HELD_ROWS,
     IMPULSE,
+    JOINT_CYCLE_IMPULSE,
     LCP_B,
+    LCP_NOISE,
     LCP_Z,
     LOADED,
     MEMBERS,
@@ -32,6 +35,7 @@ from lcpstep.events.several.state import (
     RATE,
     SPEED,
     SYNCHRONOUS,
+    TERMS,
     WORK,
     V,
 )
@@ -42,14 +46,14 @@ def strike(s: Any) -> bool:
 
     Velocities and contact speeds are those after it. False where none exists.
     """
-    speed = speed_noise(s)
     s.number[MEMBERS] = 0
     for c in range(len(s.G)):
         s.mode[LOADED, c] = 0
         u = 0.0 if s.mode[CLOSED, c] == 1 else s.contact[SPEED, c]
-        if s.mode[CLOSED, c] == 1 or (s.contact[GAP, c] == 0.0 and u <= speed):
+        if s.mode[CLOSED, c] == 1 or (s.contact[GAP, c] == 0.0 and u <= speed_noise(s, c)):
             s.member[s.number[MEMBERS]] = c
             s.contact[LCP_B, s.number[MEMBERS]] = (1.0 + s.model.restitution[c]) * min(u, 0.0)
+            s.contact[LCP_NOISE, s.number[MEMBERS]] = speed_noise(s, c)
             s.number[MEMBERS] += 1
     hold_joints(s)
     solved = solve_contacts(s)
@@ -149,18 +153,26 @@ def apply(s: Any) -> None:
                 v[j] += s.MR[i, j] * p
             if i < n_j:
                 s.joint[IMPULSE, i] += p
+                s.joint[JOINT_CYCLE_IMPULSE, i] += p
             else:
                 s.contact[IMPULSE, i - n_j] += p
-            if s.constant:
-                for c in range(n_c):
-                    if s.D[n_j + c, i] != 0.0:
-                        s.contact[SPEED, c] += s.D[n_j + c, i] * p
+                s.contact[CYCLE_IMPULSE, i - n_j] += p
+            for c in range(n_c):
+                if s.D[n_j + c, i] != 0.0:
+                    du = s.D[n_j + c, i] * p
+                    s.contact[TERMS, c] = max(s.contact[TERMS, c], abs(du))
+                    if s.constant:
+                        s.contact[SPEED, c] += du
                         s.contact[SYNCHRONOUS, c] = 0.0
     if not s.constant:
         for c in range(n_c):
             s.contact[SPEED, c] = product(s.R, v, n_j + c) + s.contact[RATE, c]
 
 
-def speed_noise(s: Any) -> float:
-    """Rounding of a gap velocity."""
-    return NOISE * largest(s.state[V], 0.0)
+def speed_noise(s: Any, c: int) -> float:
+    """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included."""
+    i, terms = len(s.J) + c, abs(s.contact[RATE, c])
+    for j in range(s.state.shape[1]):
+        terms += abs(s.R[i, j] * s.state[V, j])
+    s.contact[TERMS, c] = max(terms, s.contact[TERMS, c])
+    return NOISE * s.contact[TERMS, c]

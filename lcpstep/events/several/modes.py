@@ -9,9 +9,22 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.dense import assign, largest
-from lcpstep.events.bookkeeping import EVENT, FINISHED, IMPACT, NOT_FINITE, RELEASE, STICK, TOO_MANY_EVENTS
+from lcpstep.events.bookkeeping import (
+    BUFFER_FULL,
+    EVENT,
+    EVENTS,
+    FINISHED,
+    IMPACT,
+    MAX_EVENTS,
+    NOT_FINITE,
+    RELEASE,
+    STALLED,
+    STICK,
+    TOO_MANY_EVENTS,
+)
 from lcpstep.events.clock import T0
 from lcpstep.events.several.chatter import close_chatter
+from lcpstep.events.several.cycle import FOR_EVER, look_back, recurrence, sum_up
 from lcpstep.events.several.equations import measure_again
 from lcpstep.events.several.forces import CONTRADICTION, DONE, contact_forces
 from lcpstep.events.several.held import constrain, hold_contacts, note
@@ -28,50 +41,70 @@ from lcpstep.events.several.state import (
     FREE_ACCELERATION,
     GAP,
     JOINTS_DISAGREE,
+    JUMP,
     LCP_Z,
     LEFT_SPEED,
     MEMBERS,
+    NEXT,
     NO_FORCES,
     NO_IMPULSES,
     SINCE,
     SPEED,
     STRUCK,
+    TERMS,
     WAS_CLOSED,
     Q,
 )
 
-ROUNDS = 1000  # problems of impacts at one instant
+ROUNDS = 100_000  # problems of impacts at one instant
 
 
 def jump(s: Any, record: Any, count: Any) -> int:
-    """Impacts at the state Q, V until no contact that is closed approaches.
-
-    A contact without speed to rounding, on the surface to rounding, is closed.
-    """
-    n_c, t = len(s.G), s.x[T0]
-    tolerance = touching(s)
+    """Impacts at the state Q, V until no contact that is closed approaches."""
+    before = count[STALLED]
+    for c in range(len(s.G)):
+        s.contact[TERMS, c] = 0.0
     for turn in range(ROUNDS):
-        noise, hit = speed_noise(s), False
-        for c in range(n_c):
-            g, u = s.contact[GAP, c], s.contact[SPEED, c]
-            if s.mode[CLOSED, c] == 0 and g <= tolerance and u <= noise:
+        if not approaches(s):
+            count[STALLED] = min(count[STALLED], before + 1)  # the impacts of one instant count as one
+            return FINISHED
+        if count[EVENT] + 4 * len(s.G) + 4 > len(record.events):
+            s.number[NEXT] = JUMP
+            return BUFFER_FULL
+        if count[EVENTS] > count[MAX_EVENTS]:
+            return TOO_MANY_EVENTS
+        ratio = recurrence(s) if turn > 0 else 0.0
+        if ratio >= FOR_EVER:
+            return TOO_MANY_EVENTS
+        if ratio > 0.0:
+            sum_up(s, record, count, ratio)
+        else:
+            if turn & (turn - 1) == 0:  # Brent's search for a cycle looks back to powers of two
+                look_back(s)
+            if not strike(s):
+                return NO_IMPULSES
+            tell_impacts(s, record, count, s.x[T0])
+            if s.constant:
+                synchronise(s)
+    return TOO_MANY_EVENTS
+
+
+def approaches(s: Any) -> bool:
+    """Whether a contact on the surface approaches it; one there without speed to rounding is closed."""
+    hit, tolerance = False, touching(s)
+    for c in range(len(s.G)):
+        u = s.contact[SPEED, c]
+        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] <= tolerance:
+            noise = speed_noise(s, c)
+            if u <= noise:
                 if not s.constant:
                     lift(s, c)
                 s.contact[GAP, c] = 0.0
                 if u >= -noise:
                     s.mode[CLOSED, c], s.contact[SPEED, c] = 1, 0.0
                 hit = hit or u < -noise
-            s.contact[LEFT_SPEED, c] = s.contact[SPEED, c]
-        if not hit:
-            return FINISHED
-        if count[EVENT] + 4 * n_c + 4 > len(record.events) or turn == ROUNDS - 1:
-            return TOO_MANY_EVENTS
-        if not strike(s):
-            return NO_IMPULSES
-        tell_impacts(s, record, count, t)
-        if s.constant:
-            synchronise(s)
-    return TOO_MANY_EVENTS
+        s.contact[LEFT_SPEED, c] = s.contact[SPEED, c]
+    return hit
 
 
 def touching(s: Any) -> float:
@@ -81,10 +114,9 @@ def touching(s: Any) -> float:
 
 def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:
     """Log the impacts of the problem just solved; contacts that it leaves without speed are closed."""
-    noise = speed_noise(s)
     for m in range(s.number[MEMBERS]):
         c, p = s.member[m], s.contact[LCP_Z, m]
-        before = s.contact[LEFT_SPEED, c]
+        before, noise = s.contact[LEFT_SPEED, c], speed_noise(s, c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
             log(s, record, count, t, c, float(IMPACT), before, u, p)

@@ -2,7 +2,8 @@
 
     0 <= W z + b  complementary to  z >= 0,      W = D_cc - D_cj D_jj^-1 D_jc
 
-W is the Delassus matrix of the contacts on the joints; z are impulses (`impact`) or forces (`forces`). Source: V.
+W is the Delassus matrix of the contacts on the joints; z are impulses (`impact`) or forces (`forces`). Opposite
+contacts can make it a problem without an answer by as little as rounding of b; then b is lifted by it. Source: V.
 Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 5.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.compiled import call_solver
-from lcpstep.events.several.state import HELD_JOINTS, LCP_B, LCP_Z, LOADED, MEMBERS
+from lcpstep.events.several.state import HELD_JOINTS, LCP_B, LCP_NOISE, LCP_Z, LOADED, MEMBERS
 from lcpstep.lcp.status import SOLVED
 
 CHECKED = 1e-10  # relative violation that an answer found without the solver may have
@@ -20,8 +21,8 @@ CHECKED = 1e-10  # relative violation that an answer found without the solver ma
 def solve_contacts(s: Any) -> bool:
     """Solve the members' problem with b in LCP_B; z, at least zero, into LCP_Z, and who carries a force.
 
-    Where the solver fails (W has lost too many digits), all that could are said to carry one, with z = 0: an
-    answer to be checked.
+    LCP_NOISE is the rounding of b. Where the solver fails (W has lost too many digits), all that could are said to
+    carry one, with z = 0: an answer to be checked.
     """
     k = s.number[MEMBERS]
     z, b = s.contact[LCP_Z], s.contact[LCP_B]
@@ -30,6 +31,11 @@ def solve_contacts(s: Any) -> bool:
         z[a] = 0.0
     contact_matrix(s, W)
     solved = bool(call_solver(s.solver, W, b[:k], z[:k], s.lcp) == SOLVED)
+    if not solved:
+        for a in range(k):
+            b[a] += s.contact[LCP_NOISE, a]
+            z[a] = 0.0
+        solved = bool(call_solver(s.solver, W, b[:k], z[:k], s.lcp) == SOLVED)
     for a in range(k):
         z[a] = z[a] if solved else 0.0
         s.mode[LOADED, s.member[a]] = 1 if z[a] > 0.0 or not solved else 0

@@ -67,7 +67,7 @@ def start(scene: Scene, m: Model, joints: Model, method: Any, fast: bool) -> at.
     return at.Several(
         model=m, joints=joints, plan=p, constant=constant,
         corners=np.zeros(0) if constant else np.array(scene.corners), x=x, state=state, contact=contact,
-        joint=np.zeros((at.SHIFTED + 1, n_j)), mode=np.zeros((at.N_MODE, n_c), np.int64),
+        joint=np.zeros((at.N_JOINT, n_j)), mode=np.zeros((at.N_MODE, n_c), np.int64),
         number=np.zeros(at.N_NUMBER, np.int64), y=np.zeros(2 * n_q), M=np.zeros((n_q, n_q)),
         G=np.zeros((n_c, n_q)), J=np.zeros((n_j, n_q)), R=rows[0], MR=rows[1], D=squares[0], L=squares[1],
         row=np.zeros(n_r, np.int64), held=np.zeros(n_r), change=np.zeros(n_r), kept=np.zeros(n_r, np.int64),

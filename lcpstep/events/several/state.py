@@ -20,7 +20,12 @@ LEFT_GAP, LEFT_SPEED, LEFT_CURVE, LEFT_MULTIPLIER = range(8, 12)  # at the left 
 STRUCK, SINCE, HELD = range(12, 15)  # time of the last impact, since the one before; no release before HELD
 # Right-hand side and solution of the contacts' problem; whether gap and speed are those of Q, V; end of chattering
 LCP_B, LCP_Z, SYNCHRONOUS, CHATTERS = range(15, 19)
-N_CONTACT = 19
+LCP_NOISE = 22  # rounding of the right-hand side
+# Of the impacts at one instant: size of the terms of a speed; speed, and impulse since, a number of impacts ago
+TERMS, CYCLE_SPEED, CYCLE_IMPULSE = range(19, 22)
+N_CONTACT = 23
+JOINT_CYCLE_IMPULSE = SHIFTED + 1  # the last row of Several.joint
+N_JOINT = SHIFTED + 2
 # Rows of Several.mode
 CLOSED, WAS_CLOSED, LOADED = range(3)  # lasting contact; so when last told; carries a force
 N_MODE = 3
@@ -45,7 +50,7 @@ class Several(NamedTuple):
     x: Any  # (N_NUMBERS,)
     state: Any  # (N_STATE, n_q)
     contact: Any  # (N_CONTACT, n_c)
-    joint: Any  # (SHIFTED + 1, n_j)
+    joint: Any  # (N_JOINT, n_j)
     mode: Any  # (N_MODE, n_c)
     number: Any  # (N_NUMBER,) integers
     y: Any  # (2 n_q,)

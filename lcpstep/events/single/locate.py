@@ -80,15 +80,18 @@ def first_in_half(
 def short_hop(s: Any, guess: float, longest: float) -> float:
     """End of a hop that left the surface at the base of the piece, or NONE if it is longer than `longest`.
 
-    Solves g(tau)/tau = 0, from the acceleration alone; see `motion.near_surface`.
+    Solves g(tau)/tau = 0, from the acceleration alone; see `motion.near_surface`. NONE as well where the acceleration
+    changes too much for the quadrature: such hops are seen in the gap itself.
     """
     a, b = 0.0, longest
-    f_b, _ = near_surface(s, b)
+    f_b, _, _ = near_surface(s, b)
     if f_b > 0.0:
         return NONE
     x = min(guess, b)
     for _ in range(MAX_ITERATIONS):
-        f, u = near_surface(s, x)
+        f, u, exact = near_surface(s, x)
+        if not exact:
+            return NONE
         if f > 0.0:
             a = x
         else:

@@ -218,7 +218,7 @@ def arrive(s: Any, record: Any, count: Any, stop: float) -> int:
     if not finite(0.0, u, alpha):
         return NOT_FINITE
     if is_hop:
-        _, u = near_surface(s, stop)
+        _, u, _ = near_surface(s, stop)
     state_at(s, stop)
     if x[MODE] == CLOSED:
         release(s, record, count, JUST_RELEASED)

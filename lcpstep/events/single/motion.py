@@ -5,12 +5,13 @@ A piece starts at a base time with the state (q, v) and is one DOP853 step long,
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from lcpstep.dense import assign, join, largest, split
 from lcpstep.dynamics import gap_rates, gaps, product
 from lcpstep.events.acceleration import free_acceleration
-from lcpstep.events.clock import T0, inside, start_at
+from lcpstep.events.clock import RESOLUTION, T0, inside, start_at
 from lcpstep.events.contact import ALPHA0, ON_SURFACE, ON_THE_SURFACE, SPEED0
 from lcpstep.events.dop853 import interpolate
 from lcpstep.events.single.equations import LENGTH, contact_response, gap_bias
@@ -21,6 +22,9 @@ GAUSS = (  # nodes and weights on [0, 1]
     (0.6699905217924281, 0.32607257743127307),
     (0.9305681557970263, 0.17392742256872692),
 )
+NODES = tuple(node for node, _ in GAUSS)
+# What the quadrature leaves of the first power that it does not integrate, x^8: (4!)^4 / (9 (8!)^2)
+REMAINDER = math.factorial(4) ** 4 / (9 * math.factorial(8) ** 2)
 
 
 def rebase(s: Any, t: float) -> None:
@@ -60,20 +64,46 @@ def gap_acceleration(s: Any, tau: float) -> float:
     return alpha
 
 
-def near_surface(s: Any, tau: float) -> tuple[float, float]:
+def near_surface(s: Any, tau: float) -> tuple[float, float, bool]:
     """g / tau and u after leaving the surface at the base of the piece, from the acceleration alone.
 
     g = tau (u0 + tau int_0^1 (1-s) alpha(s tau) ds), u = u0 + tau int_0^1 alpha(s tau) ds: no difference of
     nearly equal positions is taken, so the smallest hops keep all their digits. The integrals are of alpha less
-    its value at the base, so that equal hops under constant acceleration stay equal to the last digit.
+    its value at the base, so that equal hops under constant acceleration stay equal to the last digit. Last, whether
+    the quadrature is as good as what rounding of the positions leaves of the gap.
     """
     alpha0 = s.x[ALPHA0]
-    mean, weighted = alpha0, 0.5 * alpha0
-    for node, weight in GAUSS:
-        change = gap_acceleration(s, node * tau) - alpha0
+    mean, weighted, most = alpha0, 0.5 * alpha0, abs(alpha0)
+    d0 = d1 = d2 = d3 = 0.0
+    for k in range(len(GAUSS)):
+        node, weight = GAUSS[k]
+        alpha = gap_acceleration(s, node * tau)
+        change = alpha - alpha0
         mean += weight * change
         weighted += weight * (1.0 - node) * change
-    return s.x[SPEED0] + tau * weighted, s.x[SPEED0] + tau * mean
+        most = max(most, abs(alpha))
+        d0, d1, d2, d3 = d1, d2, d3, change / node
+    speed = s.x[SPEED0] + tau * weighted
+    left = tau * tau * REMAINDER * eighth_power(d0, d1, d2, d3, most)
+    exact = left <= RESOLUTION * max(largest(s.q0, 0.0), s.x[SPEED0] * tau)
+    return speed, s.x[SPEED0] + tau * mean, exact
+
+
+def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> float:
+    """Estimate of the coefficient of x^8 in a function of size `most`; d: its change since x = 0 over x, at NODES.
+
+    Coefficients fall like powers of one ratio, which is the largest that those of x^2, x^3 and x^4 show.
+    """
+    n0, n1, n2, n3 = NODES
+    d01, d12, d23 = (d1 - d0) / (n1 - n0), (d2 - d1) / (n2 - n1), (d3 - d2) / (n3 - n2)
+    d02, d13 = (d12 - d01) / (n2 - n0), (d23 - d12) / (n3 - n1)
+    c4 = (d13 - d02) / (n3 - n0)
+    c3 = d02 - c4 * (n0 + n1 + n2)
+    c2 = d01 - (n0 + n1) * d02 + c4 * (n0 * n1 + n0 * n2 + n1 * n2)
+    if most == 0.0:
+        return 0.0
+    ratio = max(math.sqrt(abs(c2) / most), (abs(c3) / most) ** (1.0 / 3.0), (abs(c4) / most) ** 0.25)
+    return most * ratio**8
 
 
 def contact_impulse(s: Any, a: float, b: float) -> float:

@@ -1,0 +1,182 @@
+"""Bodies in corners, grooves and slits without clearance: impacts without end at one instant, by their sums."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lcpstep import EventDriven, Kind, Status, simulate
+
+GRAVITY = 9.81
+FORCES = {"constant": 1.0, "harmonic": Harmonic(constant=1.0, cosine=2.0, omega=3.0)}
+
+
+def slit(restitution, force, v0, t_end=10.0):
+    return Scene(
+        LinearSystem(M=1.0, force=force), 0.0, v0, (0.0, t_end),
+        LinearContacts(G=[[1.0], [-1.0]], restitution=restitution), name="slit",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("force", FORCES.values(), ids=FORCES)
+@pytest.mark.parametrize("v0", [-1.0, 0.0, 1.0, 1e-9])
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 0.999, (0.3, 0.9), (1.0, 0.5)])
+def test_a_body_in_a_slit_without_clearance_comes_to_rest_at_once(restitution, v0, force):
+    m = simulate(slit(restitution, force, v0), EventDriven())
+    assert m.status is Status.DONE, m.message
+    np.testing.assert_array_equal(m.q, 0.0)
+    np.testing.assert_array_equal(m.v[1:], 0.0)
+    # the walls take the blows, a geometric series, and then push against the force
+    r = np.broadcast_to(restitution, 2)
+    first = 0 if v0 < 0.0 else 1
+    blows, ratio = np.zeros(2), r[0] * r[1]
+    blows[first] = abs(v0) * (1.0 + r[first]) / (1.0 - ratio)
+    blows[1 - first] = abs(v0) * r[first] * (1.0 + r[1 - first]) / (1.0 - ratio)
+    t = np.linspace(0.0, 10.0, 1_000_001)
+    f = 1.0 + (2.0 * np.cos(3.0 * t) if isinstance(force, Harmonic) else 0.0 * t)
+    pushes = [np.trapezoid(np.maximum(-f, 0.0), t), np.trapezoid(np.maximum(f, 0.0), t)]
+    np.testing.assert_allclose(m.impulse.sum(0), blows + pushes, rtol=1e-9)
+
+
+@pytest.mark.parametrize("force", FORCES.values(), ids=FORCES)
+def test_an_elastic_slit_has_no_end_and_says_so(force):
+    m = simulate(slit(1.0, force, 1.0), EventDriven())
+    assert m.status is Status.TOO_MANY_EVENTS
+    assert "without end at one time" in m.message
+    assert "[0, 1]" in m.message
+
+
+def test_what_strikes_along_a_slit_goes_on_and_across_it_stays():
+    # a point that falls along x + 2 y = 0 between two walls, struck against one of them
+    n, along = np.array([1.0, 2.0]) / math.sqrt(5.0), np.array([2.0, -1.0]) / math.sqrt(5.0)
+    v0 = 0.3 * n + 0.2 * along
+    scene = Scene(
+        LinearSystem(M=np.eye(2), force=[0.0, -GRAVITY]), [0.0, 0.0], v0, (0.0, 1.0),
+        LinearContacts(G=[n, -n], restitution=0.7),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    assert m.status is Status.DONE
+    distance = 0.2 * m.t - 0.5 * GRAVITY * along[1] * m.t**2
+    np.testing.assert_allclose(m.q, distance[:, None] * along, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("stiff", [False, True], ids=["constant", "springs"])
+@pytest.mark.parametrize("angle", [0.3, 0.05, 0.01])
+def test_a_sharp_corner_is_left_after_its_many_impacts(angle, stiff):
+    # elastic, at the tip itself: as by billiards in a wedge, out again after finitely many reflections
+    G = [[0.0, 1.0], [math.sin(angle), -math.cos(angle)]]
+    scene = Scene(
+        LinearSystem(M=np.eye(2), K=1e-12 * np.eye(2) if stiff else None), [0.0, 0.0], [-1.0, 0.001], (0.0, 1.0),
+        LinearContacts(G=G, restitution=1.0),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    assert m.status is Status.DONE, m.message
+    assert len(m.impacts) == pytest.approx(math.pi / angle, abs=2)
+    np.testing.assert_allclose(np.hypot(*m.v[-1]), math.hypot(1.0, 0.001), rtol=1e-9)
+    assert np.min(np.asarray(G) @ m.q[-1]) > 0.0
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_a_wall_that_is_met_where_the_force_of_another_vanishes_is_struck(restitution):
+    # along y = 0 towards x = 0, pressed by the spring between them: its force ends where the wall x = 0 is met
+    scene = Scene(
+        LinearSystem(M=np.eye(2), K=[[2.0, 0.5], [0.5, 1.0]]), [1.0, 0.0], [0.0, 0.0], (0.0, 6.0),
+        LinearContacts(G=np.eye(2), restitution=restitution),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    w = math.sqrt(2.0)
+    strikes = m.impacts[(m.impacts.kind == Kind.IMPACT) & (m.impacts.before < -1e-6)]
+    n = 1 if restitution == 0.0 else 3
+    np.testing.assert_allclose(strikes.time, (np.arange(n) + 0.5) * math.pi / w, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(strikes.before, -w * restitution ** np.arange(n), rtol=0, atol=1e-10)
+    assert np.all(strikes.contact == 0)
+    np.testing.assert_allclose(m.q[:, 1], 0.0, rtol=0, atol=1e-11)
+    gaps = m.at(np.linspace(0.0, 6.0, 601))[0]
+    assert gaps.min() > -1e-10
+
+
+# --- random scenes
+
+
+def groove(seed):
+    """A point that falls between two planes and comes to rest on both of them."""
+    random = np.random.default_rng(seed)
+    a, b = random.uniform(0.1, 1.4, size=2)
+    restitution = float(random.choice([0.0, 0.3, 0.5, 0.8]))
+    K = 0.01 * np.eye(2) if random.random() < 0.5 else None
+    return Scene(
+        LinearSystem(M=np.eye(2), K=K, force=[0.0, -GRAVITY]), [random.uniform(-0.2, 0.2), 1.5],
+        0.3 * random.normal(size=2), (0.0, 60.0),
+        LinearContacts(G=[[math.sin(a), math.cos(a)], [-math.sin(b), math.cos(b)]], restitution=restitution),
+        name=f"groove {seed}",
+    )  # fmt: skip
+
+
+def check_groove(seed):
+    m = simulate(groove(seed), EventDriven(1e-10, 1e-10))
+    assert m.status is Status.DONE, m.message
+    assert len(m.impacts) < 3000
+    np.testing.assert_allclose(m.q[-1], 0.0, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(m.v[-1], 0.0, rtol=0, atol=1e-8)
+    gaps = m.q @ np.asarray(m.scene.contacts.G).T
+    assert gaps.min() > -1e-9
+    energy = 0.5 * np.sum(m.v**2, 1) + GRAVITY * m.q[:, 1] + 0.5 * m.scene.system.K[0, 0] * np.sum(m.q**2, 1)
+    assert np.max(np.diff(energy)) < 1e-8
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_point_comes_to_rest_in_a_groove(seed):
+    check_groove(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20, 400))
+def test_so_it_does_in_many_more_grooves(seed):
+    check_groove(seed)
+
+
+def bundle(seed):
+    """One to four coordinates before one to five planes, of which some meet at the start: parallel, opposite, any."""
+    random = np.random.default_rng(seed)
+    n, m = int(random.integers(1, 5)), int(random.integers(1, 6))
+    G = random.normal(size=(m, n))
+    kind = random.choice(["any", "parallel", "opposite"])
+    if kind != "any" and m > 1:
+        G[-1] = random.uniform(0.5, 2.0) * (G[0] if kind == "parallel" else -G[0])
+    q0 = random.normal(size=n) * random.choice([0.0, 1.0])
+    offset = -G @ q0 + (random.random(m) < 0.6) * random.exponential(size=m)
+    if kind == "opposite" and m > 1:
+        offset[0], offset[-1] = -G[0] @ q0, -G[-1] @ q0
+    force, K = random.normal(size=n) * random.choice([0.0, 1.0, 10.0]), None
+    if random.random() < 0.5:
+        A = random.normal(size=(n, n))
+        K = A @ A.T * 10.0 ** random.uniform(-1.0, 2.0)
+        force = Harmonic(constant=force, cosine=random.normal(size=n), omega=random.uniform(0.5, 5.0))
+    restitution = (
+        random.choice([0.0, 0.3, 0.5, 0.8]) if random.random() < 0.6 else random.uniform(0.0, 0.9, size=m)
+    )
+    return Scene(
+        LinearSystem(M=np.diag(10.0 ** random.uniform(-2.0, 2.0, size=n)), K=K, force=force), q0,
+        random.normal(size=n) * random.choice([0.0, 0.1, 1.0]), (0.0, 5.0),
+        LinearContacts(G=G, offset=offset, restitution=restitution), name=f"bundle {seed}",
+    )  # fmt: skip
+
+
+def check_bundle(seed):
+    m = simulate(bundle(seed), EventDriven(1e-10, 1e-10, max_events=200_000))
+    assert m.status is Status.DONE, m.message
+    assert np.all(np.isfinite(m.q))
+    size = 1.0 + np.abs(m.q).max()
+    assert m.penetration.max(initial=0.0) < 1e-8 * size
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_bundles_of_planes_end_and_hold(seed):
+    check_bundle(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(60, 1000))
+def test_many_more_bundles_of_planes_end_and_hold(seed):
+    check_bundle(seed)
