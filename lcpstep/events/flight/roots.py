@@ -117,7 +117,9 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: 
             b = tau
         step = -f / slope if slope != 0.0 else before
         bent = abs(curvature * step)
+        # Near the end at which f has not turned yet it may still run away from its root
         near = level == 0 and bent <= STRAIGHT * abs(slope) and abs(step) <= STRAIGHT * width
+        near = near and slope * f_a < 0.0
         if 0.0 < bent <= abs(slope):
             step -= 0.5 * curvature * step * step / slope
         small = RESOLUTION * abs(tau) if level == 0 else COARSE * width
