@@ -51,6 +51,7 @@ from lcpstep.events.flight.motion import (
     SCAN,
     T_END,
     V0,
+    G,
     free,
     on_obstacle,
     rebase,
@@ -94,8 +95,9 @@ def begin(s: Any, record: Any, count: Any) -> bool:
     s.q[0], s.v[0] = x[Q0], x[V0]
     if not finite(g, u, alpha):
         return False
-    small = ON_THE_SURFACE * max(1.0, abs(x[V0]))
-    if x[CONTACT] == 1.0 and g <= ON_THE_SURFACE * max(1.0, abs(x[Q0])):
+    # What rounding of the state may make of rest, and rounding of the time
+    small = ON_THE_SURFACE * max(1.0, abs(x[G] * x[V0])) + abs(alpha) * NUDGE * max(abs(t), x[SCALE])
+    if x[CONTACT] == 1.0 and g <= ON_THE_SURFACE * max(1.0, abs(x[G] * x[Q0])):
         if u < -small:
             impact(s, record, count, u)
         else:

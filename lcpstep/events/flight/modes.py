@@ -38,8 +38,10 @@ from lcpstep.events.flight.motion import (
     GAP0,
     PEAK,
     Q0,
+    RATE,
     RESPONSE,
     RTOL,
+    SIZE,
     T_END,
     V0,
     G,
@@ -96,7 +98,7 @@ def chatter_left(s: Any, u: float, alpha: float) -> float:
     to second order in the change of the acceleration, which itself must be so small that T0 alone would do.
     """
     x = s.x
-    tolerance = x[ATOL] + x[RTOL] * abs(x[Q0])
+    tolerance = x[ATOL] + x[RTOL] * x[SIZE]
     if u * u > -2.0 * alpha * tolerance:
         return NONE
     A = -alpha if x[DELTA] == 0.0 else -alpha_at(s, x[NOW])
@@ -105,7 +107,7 @@ def chatter_left(s: Any, u: float, alpha: float) -> float:
         return NONE
     later = alpha_at(s, x[NOW] + T)
     change = abs(later + A) + abs(alpha + A)
-    if not (later < 0.0 and change * T * max(1.0, abs(x[V0])) <= A * tolerance):
+    if not (later < 0.0 and change * T * x[RATE] <= A * tolerance):
         return NONE
     return float(T * (1.0 + (later + A) / (3.0 * A) - x[DELTA] * T / 3.0))
 
