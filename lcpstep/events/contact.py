@@ -29,6 +29,7 @@ N_CONTACT = N_CLOCK + 10
 FREE, CLOSED = 0.0, 1.0  # modes
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
+UNSEEN = 4 * RESOLUTION  # of the time: a hop this short is none
 NONE = -1.0  # in place of a root's time
 
 
@@ -49,7 +50,7 @@ def accumulation(u: float, alpha: float, r: float) -> float:
 
 def sticks(u: float, alpha: float, t: float) -> bool:
     """Whether a hop would be shorter than what the time t resolves; alpha <= 0."""
-    return u == 0.0 or 2.0 * u <= -alpha * 4.0 * RESOLUTION * abs(t)
+    return u == 0.0 or 2.0 * u <= -alpha * UNSEEN * abs(t)
 
 
 def log(s: Any, record: Any, count: Any, t: float, kind: int, before: float, after: float, p: float) -> None:

@@ -40,19 +40,20 @@ def above(motion, height=0.4):
 @pytest.mark.parametrize("rpm", [125.0, 700.0])
 def test_the_cam_stays_below_its_reach(rpm, coordinates):
     scene = cam_follower(rpm=rpm, coordinates=coordinates)
-    clear, bend = reach(scene, plain_model(scene))
+    seen = reach(scene, plain_model(scene))
     f = scene.system.frame or scene.contacts.motion
     now = np.zeros((20_000, 1, 3))
     for t, out in zip(np.linspace(0.0, scene.period, len(now)), now, strict=True):
         f(t, scene.q0, scene.v0, scene.p, out)
-    assert np.max(now[:, 0, 0]) < clear < np.max(now[:, 0, 0]) + 0.02
-    assert np.max(np.abs(now[:, 0, 2])) < bend
+    assert np.max(now[:, 0, 0]) < seen.clear < np.max(now[:, 0, 0]) + 0.02
+    assert np.max(np.abs(now[:, 0, 2])) < seen.bend
+    assert seen.size == pytest.approx(np.max(np.abs(now[:, 0, 0])), rel=1e-3)
+    assert seen.speed == pytest.approx(np.max(np.abs(now[:, 0, 1])), rel=1e-2)
 
 
 def test_a_tooth_between_near_corners_is_seen_and_struck():
     scene = above(tooth)
-    clear, _ = reach(scene, plain_model(scene))
-    assert clear > 0.4
+    assert reach(scene, plain_model(scene)).clear > 0.4
     # It meets the mass in the middle of its flight, which would touch the floor at 0.631 s only
     first = simulate(scene, EventDriven()).impacts[0]
     assert PULSE[0] < first.time < PULSE[1]
@@ -62,7 +63,7 @@ def test_a_tooth_between_near_corners_is_seen_and_struck():
 
 def test_an_obstacle_that_does_not_repeat_has_no_reach():
     scene = above(rising)
-    assert reach(scene, plain_model(scene))[0] == np.inf
+    assert reach(scene, plain_model(scene)).clear == np.inf
 
 
 def test_states_within_a_leap_are_those_of_the_free_motion():

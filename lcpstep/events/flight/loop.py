@@ -34,18 +34,31 @@ from lcpstep.events.contact import (
     MODE,
     NONE,
     NOW,
-    ON_SURFACE,
     ON_THE_SURFACE,
+    UNSEEN,
     finite,
-    hop,
     keep,
 )
 from lcpstep.events.flight.clear import WORTH, clear_until, suspect
 from lcpstep.events.flight.keep import keep_event, keep_times
-from lcpstep.events.flight.modes import impact, release, settle, settle_again, turn_corner
-from lcpstep.events.flight.motion import CLEAR, CONTACT, PEAK, Q0, SCAN, T_END, V0, free, on_obstacle, rebase
+from lcpstep.events.flight.modes import go_on, impact, release, settle, settle_again, turn_corner
+from lcpstep.events.flight.motion import (
+    CLEAR,
+    CONTACT,
+    GAP0,
+    PEAK,
+    Q0,
+    SCAN,
+    T_END,
+    V0,
+    G,
+    free,
+    on_obstacle,
+    rebase,
+)
+from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, stretch
 from lcpstep.events.flight.rest import contact_impulse, first_release
-from lcpstep.events.flight.roots import SHORT, first_contact, polish, short_hop, small_hop
+from lcpstep.events.flight.roots import first_contact, polish
 
 STRIDE = 3.0  # scan intervals in one stride, where the obstacle is far
 
@@ -82,8 +95,9 @@ def begin(s: Any, record: Any, count: Any) -> bool:
     s.q[0], s.v[0] = x[Q0], x[V0]
     if not finite(g, u, alpha):
         return False
-    small = ON_THE_SURFACE * max(1.0, abs(x[V0]))
-    if x[CONTACT] == 1.0 and g <= ON_THE_SURFACE * max(1.0, abs(x[Q0])):
+    # What rounding of the state may make of rest, and rounding of the time
+    small = ON_THE_SURFACE * max(1.0, abs(x[G] * x[V0])) + abs(alpha) * NUDGE * max(abs(t), x[SCALE])
+    if x[CONTACT] == 1.0 and g <= ON_THE_SURFACE * max(1.0, abs(x[G] * x[Q0])):
         if u < -small:
             impact(s, record, count, u)
         else:
@@ -106,6 +120,8 @@ def fly(s: Any, record: Any, count: Any) -> bool:
     a, b = x[NOW] - x[T0], end - x[T0]
     tau, u = hop_end(s, a, b)
     is_hop = tau != NONE
+    if not is_hop and is_low(x, a):
+        return skim(s, record, count)
     if not is_hop:
         if x[CLEAR] < math.inf and leap(s, record, count):
             return True
@@ -119,7 +135,7 @@ def fly(s: Any, record: Any, count: Any) -> bool:
             free(s, a)
             return False
         if is_near and x[CONTACT] == 1.0:
-            tau = flight_end(s, a, b, g, u, alpha)
+            tau = first_contact(s, a, b, g, u, alpha)
             if tau == NONE and x[EDGE_G] <= 0.0 and g < 0.0:
                 # It seemed to open, by less than rounding: it is closed, for this interval at least
                 x[HOLD] = end
@@ -148,28 +164,32 @@ def fly(s: Any, record: Any, count: Any) -> bool:
     return True
 
 
-@inline
-def hop_end(s: Any, a: float, b: float) -> tuple[float, float]:
-    """End of the short hop that begins at a, and the gap velocity there; NONE if none does before b."""
+def skim(s: Any, record: Any, count: Any) -> bool:
+    """A stretch of a flight hardly above the obstacle, or up to its end; False where the motion is not finite."""
     x = s.x
-    if a == 0.0 and x[ON_SURFACE] == 1.0 and x[EDGE_ALPHA] < 0.0 and x[EDGE_U] > 0.0:
-        guess = hop(x[EDGE_U], x[EDGE_ALPHA])
-        if guess < SHORT * x[SCAN]:
-            return short_hop(s, guess, b)
-    return NONE, 0.0
-
-
-@inline
-def flight_end(s: Any, a: float, b: float, g: float, u: float, alpha: float) -> float:
-    """The first contact in (a, b], or NONE; g, u, alpha: at b."""
-    x = s.x
-    tau = NONE
-    # After a release alpha is zero to rounding, and its sign there says nothing
-    if x[EDGE_ALPHA] != JUST_RELEASED:
-        tau = first_contact(s, a, b, g, u, alpha)
-    if tau == NONE and x[EDGE_G] <= 0.0 and g < 0.0:
-        tau = small_hop(s, a, b, g)
-    return tau
+    border = min(x[T_END], x[HIGH])
+    h = stretch(x)
+    tau, u = low_end(s, h)
+    g, rise, alpha = along(x, 0, h, 1.0), along(x, 1, h, 1.0), along(x, 2, h, 1.0)
+    if not finite(g, rise, alpha):
+        return False
+    if tau == NONE:
+        t = border if h < SHORT * x[SCAN] else after(x, h)
+        keep_times(s, record, count, t, t >= x[T_END])
+        x[NOW] = t
+        go_on(s, t, g, rise)
+        if is_due(record, count):
+            keep(s, record, count, t)
+        return True
+    t = min(after(x, tau), border)
+    keep_times(s, record, count, t, False)
+    x[NOW] = t
+    if tau <= UNSEEN * abs(t) and x[GAP0] == 0.0:
+        x[HOLD] = t + h
+        settle_again(s, record, count)
+    else:
+        impact(s, record, count, min(u, 0.0))
+    return True
 
 
 @inline
@@ -206,7 +226,9 @@ def rest(s: Any, record: Any, count: Any) -> bool:
     x = s.x
     start, end = x[NOW], min(x[T_END], x[HIGH], x[NOW] + x[SCAN])
     t = NONE
-    if start >= x[HOLD]:
+    if start < x[HOLD]:
+        end = min(end, x[HOLD])
+    else:
         t = first_release(s, start, min(x[EDGE_ALPHA], 0.0), end)
     stop = end if t == NONE else t
     if record.every > 0 or record.on_events or len(record.times) > 0:  # or nobody asks for it

@@ -32,7 +32,10 @@ CLEAR, BEND = range(N_CONTACT + 17, N_CONTACT + 19)
 Z0, DZ0, Q0, V0, PEAK = range(N_CONTACT + 19, N_CONTACT + 24)
 # The time after the base last asked for, and the absolute motion there
 TAU, Y_TAU, W_TAU, A_TAU = range(N_CONTACT + 24, N_CONTACT + 28)
-N_NUMBERS = N_CONTACT + 28
+# How large the positions are of which the gap is the difference, and the velocities of what moves by itself; the gap
+# at the base, where that is known better than by a difference; the cubic of the acceleration, see `near`
+SIZE, RATE, GAP0, C1, C2, C3 = range(N_CONTACT + 28, N_CONTACT + 34)
+N_NUMBERS = N_CONTACT + 34
 
 
 @by_address
@@ -128,7 +131,7 @@ def leave_from(s: Any, t: float, y: float, w: float) -> None:
     rest, rest_velocity = steady(x, t)
     x[Z0], x[DZ0] = y - rest, w - rest_velocity
     start_at(x, t)
-    x[ON_SURFACE], x[SPEED0] = 0.0, 0.0
+    x[ON_SURFACE], x[SPEED0], x[GAP0] = 0.0, 0.0, 0.0
     x[TAU] = math.nan
 
 
@@ -137,9 +140,9 @@ def rebase(s: Any, t: float) -> None:
     y, w = s.q[0], s.v[0]
     s.x[Q0], s.x[V0] = y, w
     if s.frame != ABSENT:
-        call(s.frame, t, s.q, s.v, s.p, s.now)
-        y += s.now[0, 0]
-        w += s.now[0, 1]
+        c, dc, _ = moved(s, s.frame, t)
+        y += c
+        w += dc
     leave_from(s, t, y, w)
 
 

@@ -12,7 +12,7 @@ piece is looked at, however short.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,14 +38,20 @@ def looked_at(scene: Scene, m: Model, f: Any, times: Array) -> Array:
     return out
 
 
-def reach(scene: Scene, m: Model) -> tuple[float, float]:
-    """The bounds above: the position that is clear, and the acceleration.
+class Reach(NamedTuple):
+    """What is known of a moving obstacle."""
 
-    The position is infinite where nothing moves, and strides do as well, and where the motion does not repeat.
-    """
+    clear: float  # the position above; infinite where nothing moves, and where the motion does not repeat
+    bend: float  # the acceleration above
+    size: float  # largest displacement
+    speed: float  # largest velocity
+
+
+def reach(scene: Scene, m: Model) -> Reach:
+    """The bounds above, and the size of the motion that is seen."""
     G, offset = float(m.G[0, 0]), float(m.offset[0])
-    if (m.frame == ABSENT and m.motion == ABSENT) or not math.isfinite(scene.period):
-        return math.inf, 0.0
+    if m.frame == ABSENT and m.motion == ABSENT:
+        return Reach(math.inf, 0.0, 0.0, 0.0)
 
     def samples(times: Array) -> Array:
         result = G * looked_at(scene, m, m.frame, times) + looked_at(scene, m, m.motion, times)
@@ -54,19 +60,23 @@ def reach(scene: Scene, m: Model) -> tuple[float, float]:
     regular = sample_times(scene)
     found = samples(np.concatenate([regular, _between_corners(scene)]))
     size = np.max(np.abs(found), axis=0)
+    far = Reach(math.inf, 0.0, float(size[0]), float(size[1]))
+    if not math.isfinite(scene.period):
+        return far
     late = regular[::AGAIN] + scene.period
     late = late[late <= scene.t_span[1]]
     again = np.abs(samples(late) - found[:SAMPLES:AGAIN][: len(late)])
     if not np.all(np.isfinite(size)) or np.any(again[:, :2] > SAME * size[:2]):
-        return math.inf, 0.0
+        return far
     spacing = sampled_length(scene) / SAMPLES
-    return float(np.max(found[:, 0]) + STEEPER * spacing * size[1] - offset), float(HARDER * size[2])
+    clear = float(np.max(found[:, 0]) + STEEPER * spacing * size[1] - offset)
+    return far._replace(clear=clear, bend=float(HARDER * size[2]))
 
 
 def _between_corners(scene: Scene) -> Array:
     """Times inside of every smooth piece of the period at the start of the span."""
     corners = np.asarray(scene.corners, dtype=float)
-    if len(corners) == 0:
+    if len(corners) == 0 or not math.isfinite(scene.period):
         return np.zeros(0)
     start = scene.period * math.floor(scene.t_span[0] / scene.period)
     ends = start + np.append(corners, corners[0] + scene.period)

@@ -2,8 +2,8 @@
 
 On an interval short enough for the gap acceleration to change its sign at most once, that sign change splits the gap
 velocity into monotone parts, whose sign changes split the gap into monotone parts. So the first root is found even
-where the gap dips below zero and returns within the interval (grazing). The shortest hops are followed by the
-acceleration alone. Source of the polishing: Halley's and Newton's methods safeguarded by bisection, W. Press et al.,
+where the gap dips below zero and returns within the interval (grazing). For flights that stay hardly above the
+obstacle see `near`. Source of the polishing: Halley's and Newton's methods safeguarded by bisection, W. Press et al.,
 Numerical Recipes, section 9.4.
 """
 
@@ -13,21 +13,15 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.events.clock import RESOLUTION
-from lcpstep.events.contact import ALPHA0, EDGE_ALPHA, EDGE_G, EDGE_U, NONE, ON_THE_SURFACE, SPEED0
-from lcpstep.events.flight.motion import SCAN, free
+from lcpstep.events.contact import EDGE_ALPHA, EDGE_G, EDGE_U, NONE
+from lcpstep.events.flight.motion import free
 
 MAX_ITERATIONS = 100
 STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it
 GUESSES = 3  # steps of Newton's on the cubic of a first guess
 COARSE = 1e-9  # of the bracket: where a gap turns it changes by the square of this
-SHORT = 0.02  # of the scan interval: hops below it are followed by the acceleration alone
-SETTLED = 1e-7  # change of the length of the longest hop that needs no further pass
-PASSES = 8  # of the search for the end of a short hop; two are the rule
-LONGER = 3.0  # how much longer than its guess a short hop may last
-HALVINGS = 40  # of an interval, in search of a positive gap
 # Steps of Newton's at the end of a flight: how many, the largest, relative to flight and velocity, and the last
 POLISHES, POLISH, POLISHED = 3, 1e-3, 1e-8
-GAUSS = (0.1127016653792583, 0.5, 0.8872983346207417)  # nodes on [0, 1]
 
 
 def first_contact(s: Any, a: float, b: float, g_b: float, u_b: float, alpha_b: float) -> float:
@@ -58,17 +52,6 @@ def first_in_half(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float
         return gap_root(s, a, g_a, u_a, m, g_m, u_m) if g_m <= 0.0 else NONE
     if g_a > 0.0 and g_b <= 0.0:
         return gap_root(s, a, g_a, u_a, b, g_b, u_b)
-    return NONE
-
-
-def small_hop(s: Any, a: float, b: float, g_b: float) -> float:
-    """End of a hop within (a, b) that begins so gently that only a gap well inside it is positive, or NONE."""
-    m = b
-    for _ in range(HALVINGS):
-        m, end, g_end = a + 0.5 * (m - a), m, g_b
-        g_b, _, _ = free(s, m)
-        if g_b > ON_THE_SURFACE * max(1.0, abs(s.q[0])):
-            return root(s, 0, m, g_b, end, g_end, NONE)
     return NONE
 
 
@@ -117,7 +100,9 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: 
             b = tau
         step = -f / slope if slope != 0.0 else before
         bent = abs(curvature * step)
+        # Near the end at which f has not turned yet it may still run away from its root
         near = level == 0 and bent <= STRAIGHT * abs(slope) and abs(step) <= STRAIGHT * width
+        near = near and slope * f_a < 0.0
         if 0.0 < bent <= abs(slope):
             step -= 0.5 * curvature * step * step / slope
         small = RESOLUTION * abs(tau) if level == 0 else COARSE * width
@@ -142,47 +127,3 @@ def polish(s: Any, tau: float) -> tuple[float, float, float]:
         if abs(past) <= POLISHED * tau:
             break
     return tau, u, alpha
-
-
-def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
-    """End of a hop that left the obstacle at the base, and the gap velocity there; NONE if it is longer.
-
-    The gap from the acceleration alone, so that no difference of nearly equal positions is taken and the smallest
-    hops keep all their digits: with sigma = s / tau and alpha - alpha0 = c1 sigma + c2 sigma^2 + c3 sigma^3 through
-    its values at three Gauss nodes,
-
-        u = u0 + alpha0 tau + tau (c1/2 + c2/3 + c3/4),    g / tau = u0 + alpha0 tau/2 + tau (c1/6 + c2/12 + c3/20)
-
-    which is Gauss' quadrature of degree five at the solution.
-    """
-    x = s.x
-    u0, alpha0 = x[SPEED0], x[ALPHA0]
-    tau = guess
-    n1, n2, n3 = GAUSS
-    for _ in range(PASSES):
-        if not 0.0 < tau <= longest:
-            return NONE, 0.0
-        _, _, f1 = free(s, n1 * tau)
-        _, _, f2 = free(s, n2 * tau)
-        _, _, f3 = free(s, n3 * tau)
-        # Newton's divided differences of (alpha - alpha0) / sigma
-        d1, d2, d3 = (f1 - alpha0) / n1, (f2 - alpha0) / n2, (f3 - alpha0) / n3
-        d12, d23 = (d2 - d1) / (n2 - n1), (d3 - d2) / (n3 - n2)
-        c3 = (d23 - d12) / (n3 - n1)
-        c2 = d12 - c3 * (n1 + n2)
-        c1 = d1 - n1 * (c2 + n1 * c3)
-        r = 1.0
-        for _ in range(PASSES):
-            F = u0 + tau * r * (0.5 * alpha0 + r * (c1 / 6.0 + r * (c2 / 12.0 + r * c3 / 20.0)))
-            dF = tau * (0.5 * alpha0 + r * (c1 / 3.0 + r * (c2 / 4.0 + r * c3 / 5.0)))
-            step = -F / dF if dF < 0.0 else 1.0
-            r += step
-            if abs(step) <= RESOLUTION or not 0.0 < r < LONGER:
-                break
-        if not 0.0 < r < LONGER:
-            return NONE, 0.0
-        tau *= r
-        # The nodes were those of another length: the cubic's error beyond them, times by how much it was another
-        if abs(r - 1.0) <= SETTLED * (SHORT * x[SCAN] / tau) ** 4:
-            return tau, u0 + tau * (alpha0 + r * (c1 / 2.0 + r * (c2 / 3.0 + r * c3 / 4.0)))
-    return NONE, 0.0

@@ -50,7 +50,11 @@ def numbers(scene: Scene, m: Model, o: Oscillator, method: Any) -> Array:
     if scene.n_c == 1:
         G = float(m.G[0, 0])
         x[motion.CONTACT], x[motion.G], x[motion.OFFSET] = 1.0, G, m.offset[0]
-        x[motion.CLEAR], x[motion.BEND] = reach(scene, m)
+        seen = reach(scene, m)
+        x[motion.CLEAR], x[motion.BEND] = seen.clear, seen.bend
+        forced = abs(G) * math.hypot(o.X, o.Y)
+        x[motion.SIZE] = seen.size + abs(m.offset[0]) + forced
+        x[motion.RATE] = seen.speed + forced * abs(o.Omega)
         x[motion.R], x[motion.RESPONSE] = m.restitution[0], G * G / mass
     return x
 

@@ -1,0 +1,173 @@
+"""Flights hardly above the obstacle, as kernels: their gap from its acceleration alone.
+
+Where the gap is far smaller than the positions of which it is the difference, it is written relative to the base of
+the flight. With sigma = tau / h and alpha = alpha0 + c1 sigma + c2 sigma^2 + c3 sigma^3 through its values at three
+Gauss nodes of (0, h),
+
+    u = u0 + h (alpha0 sigma + c1 sigma^2/2 + c2 sigma^3/3 + c3 sigma^4/4)
+    g = g0 + h u0 sigma + h^2 (alpha0 sigma^2/2 + c1 sigma^3/6 + c2 sigma^4/12 + c3 sigma^5/20)
+
+which is Gauss' quadrature of degree five at the end. No difference of nearly equal positions is taken, so the
+smallest hops keep all their digits, and so do those that cross a corner: there gap and velocity go on, and only the
+acceleration is asked for anew.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from lcpstep.compiled import inline
+from lcpstep.events.clock import HIGH, RESOLUTION, T0, T0_REST
+from lcpstep.events.contact import ALPHA0, EDGE_ALPHA, EDGE_U, NONE, ON_SURFACE, SPEED0
+from lcpstep.events.flight.motion import C1, C2, C3, GAP0, SCAN, SIZE, T_END, free
+
+SHORT = 0.02  # of the scan interval: the cubic resolves the acceleration to rounding
+LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their difference
+SETTLED = 1e-7  # change of the length of the longest hop that needs no further pass
+PASSES = 8  # of the search for the end of a short hop; two are the rule
+LONGER = 3.0  # how much longer than its guess a short hop may last
+HALVINGS = 60  # of a stretch, in search of the first root of the gap
+GAUSS = (0.1127016653792583, 0.5, 0.8872983346207417)  # nodes on [0, 1]
+
+
+@inline
+def hop_end(s: Any, a: float, b: float) -> tuple[float, float]:
+    """End of the short hop that begins at a, and the gap velocity there; NONE if none does before b."""
+    x = s.x
+    if a == 0.0 and x[ON_SURFACE] == 1.0 and x[EDGE_ALPHA] < 0.0 and (x[EDGE_U] > 0.0 or x[GAP0] > 0.0):
+        guess = fall(x[GAP0], x[EDGE_U], x[EDGE_ALPHA])
+        if guess < SHORT * x[SCAN]:
+            return short_hop(s, guess, b)
+    return NONE, 0.0
+
+
+@inline
+def fall(g: float, u: float, alpha: float) -> float:
+    """Time in which a gap g >= 0 closes that begins with the velocity u, under a constant acceleration alpha < 0."""
+    if g == 0.0:
+        return 2.0 * u / -alpha
+    root = math.sqrt(u * u - 2.0 * alpha * g)
+    return (root + u) / -alpha if u > 0.0 else 2.0 * g / (root - u)
+
+
+@inline
+def stretch(x: Any) -> float:
+    """How far the cubic is taken from the base: not beyond a corner."""
+    return min(SHORT * x[SCAN], (min(x[T_END], x[HIGH]) - x[T0]) - x[T0_REST])
+
+
+@inline
+def is_low(x: Any, a: float) -> bool:
+    """Whether the flight begins at a from a known gap, and stays low for a stretch."""
+    if a != 0.0 or x[ON_SURFACE] != 1.0:
+        return False
+    h = stretch(x)
+    return bool(x[GAP0] + h * (abs(x[SPEED0]) + 0.5 * h * abs(x[ALPHA0])) <= LOW * x[SIZE])
+
+
+@inline
+def fit(s: Any, h: float) -> None:
+    """The cubic of the acceleration over the first h of the flight, into x[C1 .. C3]."""
+    x = s.x
+    alpha0 = x[ALPHA0]
+    n1, n2, n3 = GAUSS
+    _, _, f1 = free(s, n1 * h)
+    _, _, f2 = free(s, n2 * h)
+    _, _, f3 = free(s, n3 * h)
+    # Newton's divided differences of (alpha - alpha0) / sigma
+    d1, d2, d3 = (f1 - alpha0) / n1, (f2 - alpha0) / n2, (f3 - alpha0) / n3
+    d12, d23 = (d2 - d1) / (n2 - n1), (d3 - d2) / (n3 - n2)
+    x[C3] = (d23 - d12) / (n3 - n1)
+    x[C2] = d12 - x[C3] * (n1 + n2)
+    x[C1] = d1 - n1 * (x[C2] + n1 * x[C3])
+
+
+def along(x: Any, level: int, h: float, sigma: float) -> float:
+    """Gap (level 0), its velocity (1) or acceleration (2) at sigma of the stretch h that `fit` has seen."""
+    c1, c2, c3 = x[C1], x[C2], x[C3]
+    if level == 2:
+        return float(x[ALPHA0] + sigma * (c1 + sigma * (c2 + sigma * c3)))
+    if level == 1:
+        change = x[ALPHA0] + sigma * (c1 / 2.0 + sigma * (c2 / 3.0 + sigma * c3 / 4.0))
+        return float(x[SPEED0] + h * sigma * change)
+    change = 0.5 * x[ALPHA0] + sigma * (c1 / 6.0 + sigma * (c2 / 12.0 + sigma * c3 / 20.0))
+    return float(x[GAP0] + h * sigma * (x[SPEED0] + h * sigma * change))
+
+
+def turn(x: Any, level: int, h: float, a: float, b: float) -> float:
+    """Where a monotone gap, velocity or acceleration changes its sign between a and b; b if it does not."""
+    rising = along(x, level, h, a) > 0.0
+    if rising == (along(x, level, h, b) > 0.0):
+        return b
+    for _ in range(HALVINGS):
+        middle = 0.5 * (a + b)
+        if (along(x, level, h, middle) > 0.0) == rising:
+            a = middle
+        else:
+            b = middle
+    return b
+
+
+def first_fall(x: Any, h: float) -> float:
+    """First sigma in [0, 1] at which the gap falls to zero, or NONE; 0 where it does not even rise.
+
+    The acceleration changes its sign at most once: that splits the velocity into monotone parts, whose changes of
+    sign split the gap.
+    """
+    bend = turn(x, 2, h, 0.0, 1.0)
+    start, g = 0.0, along(x, 0, h, 0.0)
+    for end in (turn(x, 1, h, 0.0, bend), bend, turn(x, 1, h, bend, 1.0), 1.0):
+        if end > start:
+            g_end = along(x, 0, h, end)
+            if g_end <= 0.0:
+                return turn(x, 0, h, start, end) if g > 0.0 else start
+            start, g = end, g_end
+    return NONE
+
+
+def low_end(s: Any, h: float) -> tuple[float, float]:
+    """End of a low flight within its first h, and the gap velocity there; NONE if it is longer."""
+    fit(s, h)
+    x = s.x
+    sigma = first_fall(x, h)
+    if sigma == NONE or sigma == 0.0:
+        return sigma, 0.0
+    u = along(x, 1, h, sigma)
+    tau, u_hop = short_hop(s, sigma * h, h)
+    if tau == NONE:  # hardly a touch: it is not known better than the stretch tells
+        fit(s, h)
+        return sigma * h, u
+    return tau, u_hop
+
+
+def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
+    """End of a hop from the base, and the gap velocity there; NONE if it is longer."""
+    x = s.x
+    g0, u0, alpha0 = x[GAP0], x[SPEED0], x[ALPHA0]
+    tau = guess
+    for _ in range(PASSES):
+        if not 0.0 < tau <= longest:
+            return NONE, 0.0
+        fit(s, tau)
+        c1, c2, c3 = x[C1], x[C2], x[C3]
+        r = 1.0
+        for _ in range(PASSES):
+            F = u0 + tau * r * (0.5 * alpha0 + r * (c1 / 6.0 + r * (c2 / 12.0 + r * c3 / 20.0)))
+            dF = tau * (0.5 * alpha0 + r * (c1 / 3.0 + r * (c2 / 4.0 + r * c3 / 5.0)))
+            if g0 != 0.0:
+                F += g0 / (tau * r)
+                dF -= g0 / (tau * r * r)
+            step = -F / dF if dF < 0.0 else 1.0
+            r += step
+            if abs(step) <= RESOLUTION or not 0.0 < r < LONGER:
+                break
+        if not 0.0 < r < LONGER:
+            return NONE, 0.0
+        tau *= r
+        # The nodes were those of another length: the cubic's error beyond them, times by how much it was another
+        if abs(r - 1.0) <= SETTLED * (SHORT * x[SCAN] / tau) ** 4:
+            if tau > longest:
+                return NONE, 0.0
+            return tau, u0 + tau * (alpha0 + r * (c1 / 2.0 + r * (c2 / 3.0 + r * c3 / 4.0)))
+    return NONE, 0.0
