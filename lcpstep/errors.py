@@ -58,8 +58,9 @@ class NotWritten(LcpStepError, OSError):
     """A file that could not be written; the one that was there before is unchanged."""
 
     def __init__(self, file: object, reason: OSError) -> None:
-        super().__init__(f"{file} could not be written: {reason.strerror or reason}")
-        self.errno, self.file = reason.errno, str(file)
+        self.reason, self.file = reason.strerror or str(reason), str(file)
+        super().__init__(f"{file} could not be written: {self.reason}")
+        self.errno = reason.errno
 
 
 class DamagedFile(LcpStepError, ValueError):
