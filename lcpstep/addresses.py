@@ -31,8 +31,9 @@ class Address(types.Type):
 
     def __init__(self, record: Any) -> None:
         self.record = record
-        digest = hashlib.sha256(record.name.encode()).hexdigest()[:DIGITS]
-        super().__init__(f"{record.instance_class.__name__}_{digest}")
+        cls = record.instance_class
+        text = f"{cls.__module__} {record.fields} {record.name}"  # its own name tells types, but not of which field
+        super().__init__(f"{cls.__name__}_{hashlib.sha256(text.encode()).hexdigest()[:DIGITS]}")
 
 
 @register_default(Address)

@@ -18,16 +18,14 @@ import abc
 import dis
 import functools
 import hashlib
-import logging
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from types import BuiltinFunctionType, FunctionType, ModuleType
+from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numpy as np
 
-LOG = logging.getLogger(__name__)
 Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type[Any])
@@ -162,8 +160,7 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
 
     copy = _with_compiled_callees(f, without)
     dispatcher = numba.njit(nogil=not hasattr(f, "brief"), **OPTIONS)(copy)
-    if _keep_on_disk(dispatcher, f) and not dispatcher._cache._cache_file._load_index():
-        LOG.warning("compiling %s.%s; this takes a while, once per machine", f.__module__, f.__name__)
+    _keep_on_disk(dispatcher, f, copy, "kernel")
     return dispatcher
 
 
@@ -187,36 +184,34 @@ def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any, dependenc
     """C function of f; compiled anew where what f depends on has changed since."""
     from numba.core.ccallback import CFunc
 
-    c_function = CFunc(_with_compiled_callees(f, frozenset()), (arguments, returned), {}, OPTIONS)
-    _keep_on_disk(c_function, f)
+    copy = _with_compiled_callees(f, frozenset())
+    c_function = CFunc(copy, (arguments, returned), {}, OPTIONS)
+    _keep_on_disk(c_function, f, copy, "callback")
     c_function.compile()
     return c_function
 
 
-def _keep_on_disk(compilable: Any, f: FunctionType) -> bool:
-    """Cache the machine code of f beside its source; False where it would not be found again.
+def _keep_on_disk(compilable: Any, f: FunctionType, copy: FunctionType, kind: str) -> None:
+    """Keep the machine code of f, compiled from this copy of it, unless it would not be found again.
 
     That is so for functions typed into a terminal or made by exec, and for those that read objects of which
     nobody can tell whether they have changed. They are compiled afresh in each process.
     """
     home = sys.modules.get(f.__module__)
     if not os.path.exists(f.__code__.co_filename) or vars(home or os) is not f.__globals__:
-        return False
+        return
     if UNKNOWN in _dependencies(f):
-        return False
-    compilable.enable_caching()
-    try:
-        compilable._cache._cache_file._load_index()
-    except Exception:  # an entry of another version, whose types are no longer there
-        compilable._cache._cache_file.flush()
-    return True
+        return
+    from lcpstep.kept import Kept
+
+    compilable._cache = Kept(copy, kind)
 
 
 def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) -> FunctionType:
     """A copy of f in which every plain function that it names is replaced by its compiled twin.
 
-    Its name carries a fingerprint of all that its machine code depends on. For machine code from the cache is
-    linked by name, and judged by the age of f's own file alone: two variants must never share a name.
+    Its name carries a fingerprint of all that its machine code depends on, for machine code is linked and kept on
+    disk by name: two variants must never share one.
     """
     callees = {
         name: _callee(absent, frozenset()) if g in without else _callee(g, without and without & _reached(g))
@@ -242,7 +237,32 @@ def _callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
 @functools.cache
 def _global_names(f: FunctionType) -> list[str]:
     """Globals that f reads; its attribute names, which `co_names` mixes with these, left out."""
-    return sorted({i.argval for i in dis.get_instructions(f) if i.opname == "LOAD_GLOBAL"})
+    return sorted({name for name in _names_read(f) if "." not in name})
+
+
+@functools.cache
+def _names_read(f: FunctionType) -> list[str]:
+    """Globals that f and functions inside it read, and attributes of these that are read at once: "np", "np.pi"."""
+    names: set[str] = set()
+    for code in _codes(f.__code__):
+        chain = ""
+        for i in dis.get_instructions(code):
+            if i.opname == "LOAD_GLOBAL":
+                chain = i.argval
+            elif i.opname in ("LOAD_ATTR", "LOAD_METHOD") and chain:
+                chain += f".{i.argval}"
+            else:
+                chain = ""
+            names.update([chain] if chain else [])
+    return sorted(names)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """The code of a function and of those defined inside it."""
+    yield code
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from _codes(inner)
 
 
 def _dependencies(f: FunctionType) -> str:
@@ -263,13 +283,29 @@ def _reached(f: FunctionType) -> frozenset[FunctionType]:
 
 
 def _code_text(f: FunctionType) -> str:
-    code = f.__code__
-    literals = [c for c in code.co_consts if not hasattr(c, "co_code")]
-    names = [(name, f.__globals__[name]) for name in _global_names(f) if name in f.__globals__]
-    cells = zip(code.co_freevars, (cell.cell_contents for cell in f.__closure__ or ()), strict=True)
-    read = [f"{name}={_value_text(value)}" for name, value in [*names, *cells]]
+    cells = zip(f.__code__.co_freevars, (cell.cell_contents for cell in f.__closure__ or ()), strict=True)
+    read = [f"{name}={_value_text(value)}" for name, value in [*_values_read(f), *cells]]
+    defaults = [_value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
     marks = [name for name in ("inline", "brief") if hasattr(f, name)]
-    return f"{f.__module__}.{f.__qualname__} {marks} {code.co_code.hex()} {code.co_names} {literals} {read}"
+    codes = []
+    for code in _codes(f.__code__):
+        literals = [c for c in code.co_consts if not isinstance(c, CodeType)]
+        codes.append(f"{code.co_code.hex()} {code.co_names} {literals}")
+    return f"{f.__module__}.{f.__qualname__} {marks} {codes} {defaults} {read}"
+
+
+def _values_read(f: FunctionType) -> Iterator[tuple[str, Any]]:
+    """What f reads by name: globals, and attributes of modules and classes, which numba freezes as well."""
+    for name in _names_read(f):
+        first, *attributes = name.split(".")
+        if first not in f.__globals__:
+            continue
+        value = f.__globals__[first]
+        for attribute in attributes:
+            frozen = isinstance(value, (ModuleType, type)) and hasattr(value, attribute)
+            value = getattr(value, attribute) if frozen else None
+        if not attributes or not _value_text(value).startswith(UNKNOWN):
+            yield name, value
 
 
 def _value_text(value: Any) -> str:

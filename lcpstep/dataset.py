@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import importlib
 import json
-import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from lagrangian import Scene
+from lcpstep.files import replacing
 from lcpstep.simulate import Method
 
 COMPRESSION = {"zlib": True, "complevel": 4}
@@ -57,14 +57,17 @@ def save(data: Any, file: Path | str, *, overwrite: bool = False) -> Path:
     Raises
     ------
     FileExistsError   the file exists and `overwrite` is not set
+    NotWritten   there is no space for it, or no permission; a file that was there before is unchanged
     """
     file = Path(file)
     check_new(file, overwrite)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    partial = file.with_name(file.name + ".partial")
     packed = {name: COMPRESSION for name, x in data.data_vars.items() if x.size > 1 and x.dtype.kind in "fiu"}
-    data.to_netcdf(partial, engine="netcdf4", encoding=packed)
-    os.replace(partial, file)
+    with replacing(file) as draft:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            data.to_netcdf(draft, engine="netcdf4", encoding=packed)
+        except RuntimeError as error:  # what the library makes of a disk that is full
+            raise OSError(f"the NetCDF library says {error}") from error
     return file
 
 

@@ -54,5 +54,18 @@ class StudyInterrupted(KeyboardInterrupt):
         self.study = study
 
 
+class NotWritten(LcpStepError, OSError):
+    """A file that could not be written; the one that was there before is unchanged."""
+
+    def __init__(self, file: object, reason: OSError) -> None:
+        self.reason, self.file = reason.strerror or str(reason), str(file)
+        super().__init__(f"{file} could not be written: {self.reason}")
+        self.errno = reason.errno
+
+
+class DamagedFile(LcpStepError, ValueError):
+    """A file of the library's own that is not what was written."""
+
+
 class SweepStopped(LcpStepError):
     """A long computation that could not go on; the parts finished before are kept where it was told to keep them."""

@@ -6,6 +6,7 @@ impact falls at another place of its step for every h, and one h scatters by a f
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,10 +24,11 @@ from lcpstep.analysis.errors import MEASURES, Difference
 from lcpstep.analysis.horizon import LOST, Growth, growth
 from lcpstep.analysis.reference import TIGHTEST, Reference, find_reference
 from lcpstep.analysis.work_precision import Level, Study
-from lcpstep.errors import LcpStepError, StudyInterrupted, UnknownName
+from lcpstep.errors import DamagedFile, LcpStepError, StudyInterrupted, UnknownName
 from lcpstep.simulate import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
 
+LOG = logging.getLogger(__name__)
 SPREAD = (0.87, 0.93, 1.0, 1.07, 1.15)
 # Default: steps in the span, how many times more in each further level, levels
 COARSEST, FINER, LEVELS = 250, 4, 5
@@ -69,7 +71,8 @@ def study(
     horizon : compare up to this time only [s]; at most up to where chaos separates trajectories
     repeats : rounds of timing; the median counts. Levels of more than two seconds are timed once
     spread : factors of the nearby steps that each level averages over
-    save : a .json or .csv file, written after every level; an existing .json of the same study is carried on
+    save : a .json or .csv file, written after every level; an existing .json of the same study is carried
+        on, a damaged one is put aside as FILE.damaged
     progress : called with a line of text before every level
 
     Returns
@@ -279,7 +282,13 @@ def _earlier(save: str | Path | None, question: dict[str, Any]) -> dict[tuple[st
         return {}
     if Path(save).suffix != ".json":
         raise FileExistsError(f"save: {save} exists already")
-    earlier = Study.load(save)
+    try:
+        earlier = Study.load(save)
+    except DamagedFile as error:
+        aside = Path(save).with_name(Path(save).name + ".damaged")
+        Path(save).replace(aside)
+        LOG.warning("%s; it is now %s, and the study starts anew", error, aside.name)
+        return {}
     if earlier.question != question:
         raise FileExistsError(f"save: {save} exists already and holds another study")
     return {(x.method, x.settings): x for x in earlier.levels}

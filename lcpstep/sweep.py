@@ -8,9 +8,11 @@ same result to the last bit.
 
 from __future__ import annotations
 
+import hashlib
+import io
 import json
+import logging
 import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from pathlib import Path
@@ -20,11 +22,14 @@ import numpy as np
 
 from lagrangian import checks
 from lcpstep.errors import LcpStepError, SweepStopped
+from lcpstep.files import replacing
 
+LOG = logging.getLogger(__name__)
 Arrays = dict[str, Any]  # named arrays
 Work = Callable[[Any, Arrays | None], tuple[Arrays, Arrays | None]]
 MANIFEST = "manifest.json"
 CARRY = "carry:"  # before the names of what a part hands to the next
+SEAL = "seal"
 
 
 def sweep(
@@ -133,54 +138,84 @@ def _of_the_work(error: Exception) -> bool:
 
 
 class Store:
-    """Finished parts in a folder, and a manifest that says of what."""
+    """Finished parts in a folder, and a manifest that says of what.
+
+    A part carries a seal over what the manifest says and its own numbers. Only a part whose seal fits is taken; one
+    that is damaged, or was left by another sweep or version, is made again.
+    """
 
     def __init__(self, folder: Path | str | None, inputs: Mapping[str, Any]) -> None:
         self.folder = None if folder is None else Path(folder)
+        self.digest = digest(inputs)
         if self.folder is None:
             return
-        text = json.dumps({"sweep": inputs}, indent=1, sort_keys=True, default=str)
         manifest = self.folder / MANIFEST
         if manifest.exists():
-            if manifest.read_text() != text:
+            found = stated(manifest)
+            if found == self.digest:
+                return
+            if found is not None:
                 raise SweepStopped(
                     f"out: {self.folder} holds the parts of another sweep; choose another folder"
                 )
-            return
-        if self.folder.exists() and any(self.folder.iterdir()):
+            LOG.warning("%s is damaged and is written again", manifest)
+        elif self.folder.exists() and any(not x.name.startswith(".") for x in self.folder.iterdir()):
             raise FileExistsError(f"out: {self.folder} exists and is no folder of this sweep")
         self.folder.mkdir(parents=True, exist_ok=True)
-        write_atomically(manifest, lambda file: file.write(text.encode()))
+        with replacing(manifest) as draft:
+            text = json.dumps({"sweep": inputs, "digest": self.digest}, indent=1, sort_keys=True, default=str)
+            draft.write_text(text)
 
     def save(self, i: int, k: int, arrays: Arrays, handed: Arrays | None) -> None:
         """Keep a part."""
         if self.folder is not None:
             named = arrays | {CARRY + name: x for name, x in (handed or {}).items()}
-            write_atomically(self.file(i, k), lambda file: np.savez(file, **named))
+            named[SEAL] = self.seal(named)
+            with replacing(self.file(i, k)) as draft:
+                np.savez(draft, **named)
 
     def load(self, i: int, k: int) -> tuple[Arrays, Arrays | None] | None:
         """A part that was kept, or None."""
         if self.folder is None or not self.file(i, k).exists():
             return None
-        with np.load(self.file(i, k)) as part:
-            arrays = {name: part[name] for name in part.files if not name.startswith(CARRY)}
-            handed = {name[len(CARRY) :]: part[name] for name in part.files if name.startswith(CARRY)}
+        content = self.file(i, k).read_bytes()
+        try:
+            with np.load(io.BytesIO(content)) as part:
+                named = {name: part[name] for name in part.files}
+        except Exception:  # there is no end to what garbled bytes can look like to those who read them
+            named = {}
+        if str(named.pop(SEAL, None)) != self.seal(named):
+            LOG.warning("%s is damaged or of another version, and is made again", self.file(i, k))
+            return None
+        arrays = {name: x for name, x in named.items() if not name.startswith(CARRY)}
+        handed = {name[len(CARRY) :]: x for name, x in named.items() if name.startswith(CARRY)}
         return arrays, handed or None
+
+    def seal(self, named: Arrays) -> str:
+        """What fits this sweep and these numbers alone."""
+        found = hashlib.sha256(self.digest.encode())
+        for name, x in sorted(named.items()):
+            a = np.ascontiguousarray(x)
+            found.update(f"{name} {a.dtype} {a.shape}".encode() + a.tobytes())
+        return found.hexdigest()
 
     def file(self, i: int, k: int) -> Path:
         """Where a part lies."""
         return Path(self.folder or "") / f"part-{i:05d}-{k:05d}.npz"
 
 
-def write_atomically(file: Path, write: Callable[[Any], Any]) -> None:
-    """Write a file that appears complete or not at all."""
-    handle, name = tempfile.mkstemp(dir=file.parent, prefix=file.name, suffix=".partial")
+def digest(inputs: Any) -> str:
+    """Of what a sweep depends on."""
+    text = json.dumps(inputs, indent=1, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def stated(manifest: Path) -> str | None:
+    """The digest that a manifest gives, "" for one without; None where it is damaged."""
     try:
-        with os.fdopen(handle, "wb") as stream:
-            write(stream)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(name, file)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        found = json.loads(manifest.read_bytes())
+    except ValueError:
+        return None
+    if not (isinstance(found, dict) and {"sweep", "digest"} <= found.keys()):
+        return ""
+    return digest(found["sweep"]) if digest(found["sweep"]) == found["digest"] else None

@@ -7,15 +7,17 @@ The diagram of error over CPU time is that of E. Hairer, G. Wanner, Solving Ordi
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import math
-import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from lcpstep.analysis.orders import Cost, Order, cost_of, fitted_order
+from lcpstep.errors import DamagedFile
+from lcpstep.files import replacing
 
 UNFIT = ("unmatched", "penetration")  # measures that follow no power of h
 COLUMNS = (
@@ -135,17 +137,18 @@ class Study:
         Raises
         ------
         ValueError   another ending
+        NotWritten   there is no space for it, or no permission
         """
         path = Path(path)
         if path.suffix not in (".json", ".csv"):
             raise ValueError(f"save: expected a name that ends in .json or .csv, got {path.name!r}")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        beside = path.with_name(path.name + ".part")
-        if path.suffix == ".json":
-            beside.write_text(json.dumps(self.as_dict(), indent=1) + "\n")
-        else:
-            self._write_csv(beside)
-        os.replace(beside, path)
+        with replacing(path) as draft:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.suffix == ".json":
+                stored = self.as_dict()
+                draft.write_text(json.dumps(stored | {"checksum": checksum(stored)}, indent=1) + "\n")
+            else:
+                self._write_csv(draft)
 
     def as_dict(self) -> dict[str, Any]:
         """Everything as numbers and texts; an error that is not finite is null."""
@@ -154,14 +157,26 @@ class Study:
 
     @classmethod
     def load(cls, path: str | Path) -> Study:
-        """A study from the .json file that `save` wrote; ValueError for anything else."""
+        """A study from the .json file that `save` wrote.
+
+        Raises
+        ------
+        DamagedFile   a study that has been changed since, was cut off, or is of another version
+        ValueError   something else
+        """
         try:
-            stored = json.loads(Path(path).read_text())
+            stored = json.loads(Path(path).read_bytes())
+        except ValueError as error:
+            raise DamagedFile(f"{path} holds no whole study: {error}") from error
+        if not (isinstance(stored, dict) and {"question", "levels"} <= stored.keys()):
+            raise ValueError(f"{path} holds no study")
+        if stored.pop("checksum", None) != checksum(stored):
+            raise DamagedFile(f"{path} holds a study that was changed, or of another version")
+        try:
             stored.pop("orders")
-            levels = [_level(x) for x in stored.pop("levels")]
-            return cls(levels=levels, **stored)
-        except (json.JSONDecodeError, KeyError, TypeError, AttributeError) as error:
-            raise ValueError(f"{path} holds no study: {error}") from error
+            return cls(levels=[_level(x) for x in stored.pop("levels")], **stored)
+        except (KeyError, TypeError) as error:
+            raise DamagedFile(f"{path} holds a study of another version: {error}") from error
 
     def _write_csv(self, path: Path) -> None:
         facts = {k: v for k, v in self.as_dict().items() if k not in ("levels", "orders")}
@@ -188,6 +203,11 @@ class Study:
         if any(x.separated for x in self.levels):
             lines.append("! the motion has lost the reference: this error says only how large the motion is")
         return "\n".join([*lines, *(f"note: {x}" for x in self.notes)])
+
+
+def checksum(stored: dict[str, Any]) -> str:
+    """Of a study as numbers and texts."""
+    return hashlib.sha256(json.dumps(stored).encode()).hexdigest()
 
 
 def _level(stored: dict[str, Any]) -> Level:

@@ -6,6 +6,7 @@ Exit status: 0 done; 1 a run ended early, and its status says why; 2 a wrong arg
 from __future__ import annotations
 
 import argparse
+import errno
 import sys
 from collections.abc import Sequence
 
@@ -13,9 +14,10 @@ from lcpstep import __version__
 from lcpstep.cli import abs as abs_
 from lcpstep.cli import attractor, basin, bifurcation, compare, corner, hard, orbit, scenes, simulate, study
 from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
-from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.errors import LcpStepError, NotWritten, SimulationError, SimulationInterrupted
 
 COMMANDS = (compare, simulate, scenes, study, hard, attractor, bifurcation, basin, orbit, corner, abs_)
+NO_SPACE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, None}  # None: a library that does not say why
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -29,6 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except SimulationError as error:
         print(f"lcpstep: {error}", file=sys.stderr)
         return FAILED
+    except NotWritten as error:
+        print(f"lcpstep: {error}", file=sys.stderr)
+        return FAILED if error.errno in NO_SPACE else USAGE
     except (LcpStepError, ValueError, OSError) as error:  # OSError: a file or folder that cannot be written
         print(f"lcpstep: {error}", file=sys.stderr)
         return USAGE

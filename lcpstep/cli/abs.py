@@ -28,9 +28,10 @@ from lcpstep.analysis.abs_cycle import (
     vanishing,
     with_thresholds,
 )
-from lcpstep.cli.common import DONE, FAILED, INTERRUPTED
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text
 from lcpstep.errors import StudyInterrupted
 from lcpstep.events import EventDriven
+from lcpstep.files import replacing
 from lcpstep.simulate import simulate
 from lcpstep.trajectory import Status
 
@@ -96,18 +97,16 @@ def run_abs(options: argparse.Namespace) -> int:
     _save(options, result)
     if options.out is not None:
         if found is not None:
-            np.savez_compressed(
-                options.out / FILES[1],
-                slip=found.slip,
-                torque=found.torque,
-                labels=found.labels,
-                outcomes=OUTCOMES,
-            )
+            names = np.array(OUTCOMES)
+            with replacing(options.out / FILES[1]) as draft:
+                np.savez_compressed(
+                    draft, slip=found.slip, torque=found.torque, labels=found.labels, outcomes=names
+                )
         if not options.no_picture:
             from lcpstep.plot.abs_cycle import overview
 
             title = f"hybrid anti-lock controller, {options.road} road, model {options.model!r}"
-            overview(scene, cycle, over, found, title).savefig(options.out / FILES[2], dpi=150)
+            save_figure(overview(scene, cycle, over, found, title), options.out / FILES[2])
     print(json.dumps(result, indent=1) if options.json else _text(result))
     return status
 
@@ -120,9 +119,8 @@ def _run_stop(scene: HybridScene, options: argparse.Namespace) -> int:
     if options.out is not None and not options.no_picture:
         from lcpstep.plot.abs_cycle import stopping as draw
 
-        draw(run, f"hybrid anti-lock controller, {options.road} road, full model").savefig(
-            options.out / FILES[2], dpi=150
-        )
+        title = f"hybrid anti-lock controller, {options.road} road, full model"
+        save_figure(draw(run, title), options.out / FILES[2])
     if options.json:
         print(json.dumps(stop, indent=1))
     else:
@@ -205,8 +203,7 @@ def _basins(scene: HybridScene, options: argparse.Namespace) -> tuple[Basins, in
 
 def _save(options: argparse.Namespace, result: dict[str, Any]) -> None:
     if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
-        (options.out / FILES[0]).write_text(json.dumps(result, indent=1) + "\n")
+        save_text(json.dumps(result, indent=1), options.out / FILES[0])
 
 
 def _text(result: dict[str, Any]) -> str:

@@ -5,14 +5,17 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from lagrangian import Scene
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau
 from lcpstep.errors import UnknownName
+from lcpstep.files import replacing
 
 DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130  # exit status
+DPI = 150  # of pictures
 
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
@@ -78,6 +81,19 @@ def event_driven(options: argparse.Namespace) -> EventDriven:
     """The event-driven integrator at the tolerance of the options, 1e-12 where none is given."""
     tolerance = 1e-12 if options.tolerance is None else options.tolerance
     return EventDriven(rtol=tolerance, atol=tolerance)
+
+
+def save_figure(figure: Any, file: Path) -> None:
+    """Write a picture, or leave the one that is there as it is."""
+    with replacing(file) as draft:
+        figure.savefig(draft, dpi=DPI)
+
+
+def save_text(text: str, file: Path) -> None:
+    """Write a text, its folder included, or leave the file that is there as it is."""
+    with replacing(file) as draft:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        draft.write_text(text + "\n")
 
 
 @contextmanager

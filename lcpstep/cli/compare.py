@@ -15,6 +15,7 @@ from lcpstep.cli.common import (
     event_driven,
     moreau,
     progress_bar,
+    save_figure,
     scene_arguments,
     scene_of,
     stepping_arguments,
@@ -149,5 +150,5 @@ def _draw(
         figures[f"maps-{options.map_rpm:g}-rpm.png"] = maps(found, title, HALF_TURN, corner)
     options.out.mkdir(parents=True, exist_ok=True)
     for name, figure in figures.items():
-        figure.savefig(options.out / name, dpi=150)
+        save_figure(figure, options.out / name)
     return [options.out / name for name in figures]

@@ -16,7 +16,7 @@ from lcpstep import EventDriven, simulate
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify, diagram
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.corners import CornerImpact, agreement, corner_impact, estimate, local_map
-from lcpstep.cli.common import DONE, scene_arguments, scene_of
+from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_of
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
 
@@ -80,10 +80,9 @@ def run_corner(options: argparse.Namespace) -> int:
     found = classify(chain)
     result = _result(options, orbit, chain, agreement(fitted.map, chain), found)
     if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
         values, local, full = _diagrams(options, orbit, chain)
         data = {"values": values.tolist(), "local": _lists(local), "full": _lists(full)}
-        (options.out / "corner.json").write_text(json.dumps(result | {"diagrams": data}, indent=1))
+        save_text(json.dumps(result | {"diagrams": data}, indent=1), options.out / "corner.json")
         if not options.no_picture:
             _draw(options, orbit, values, local, full, found.words)
     print(json.dumps(result, indent=2) if options.json else _text(result))
@@ -189,7 +188,7 @@ def _draw(
 
     title = f"{orbit.scene.name}: corner impact at {options.parameter} = {orbit.p:.6f}, {words}"
     names = (options.parameter, "position on the section [m]")
-    diagrams(values, local, full, orbit.p, names, title).savefig(options.out / "corner.png", dpi=150)
+    save_figure(diagrams(values, local, full, orbit.p, names, title), options.out / "corner.png")
     print(f"wrote {options.out / 'corner.png'}")
 
 
@@ -202,8 +201,7 @@ def _run_chattering(options: argparse.Namespace) -> int:
     found: list[Crossing] = corner_crossings(make, (low, high), points=max(2, options.points))
     rows = [c._asdict() for c in found]
     if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
-        (options.out / "chattering.json").write_text(json.dumps(rows, indent=1))
+        save_text(json.dumps(rows, indent=1), options.out / "chattering.json")
     if options.json:
         print(json.dumps(rows, indent=2))
         return DONE

@@ -19,11 +19,13 @@ from lcpstep.cli.common import (
     located,
     moreau,
     progress_bar,
+    save_figure,
     scene_arguments,
     scene_of,
     stepping_arguments,
 )
 from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.files import replacing
 from lcpstep.simulate import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
 
@@ -63,6 +65,8 @@ def run_simulate(options: argparse.Namespace) -> int:
     """`lcpstep simulate`."""
     scene = scene_of(options)
     method = METHODS[options.method](options)
+    if options.out and options.out.suffix != ".npz":
+        options.out = options.out.with_name(options.out.name + ".npz")
     if options.out and options.out.exists():
         raise FileExistsError(f"--out: {options.out} exists already")
     try:
@@ -75,7 +79,7 @@ def run_simulate(options: argparse.Namespace) -> int:
     if options.picture:
         from lcpstep.plot.motion import overview
 
-        overview(run).savefig(options.picture, dpi=150)
+        save_figure(overview(run), options.picture)
     balance = {"energy": _balance(run)} if options.energy else {}
     print(json.dumps(_summary(run) | balance, indent=2) if options.json else _sentence(run, balance))
     return DONE if run.status == Status.DONE else FAILED
@@ -140,12 +144,6 @@ def _words(e: dict[str, Any]) -> str:
 def _save(file: Path | None, run: Trajectory) -> None:
     if file is not None:
         log = np.asarray(run.impacts)
-        np.savez_compressed(
-            file,
-            t=run.t,
-            q=run.q,
-            v=run.v,
-            impulse=run.impulse,
-            impacts=log,
-            summary=json.dumps(_summary(run)),
-        )
+        arrays: dict[str, Any] = {"t": run.t, "q": run.q, "v": run.v, "impulse": run.impulse, "impacts": log}
+        with replacing(file) as draft:
+            np.savez_compressed(draft, **arrays, summary=json.dumps(_summary(run)))

@@ -12,7 +12,15 @@ from typing import Any
 
 from lagrangian import Scene
 from lcpstep import dataset
-from lcpstep.cli.common import FAILED, event_driven, moreau, scene_arguments, scene_of, stepping_arguments
+from lcpstep.cli.common import (
+    FAILED,
+    event_driven,
+    moreau,
+    save_figure,
+    scene_arguments,
+    scene_of,
+    stepping_arguments,
+)
 from lcpstep.dataset import Progress
 from lcpstep.errors import SweepStopped
 from lcpstep.simulate import Method
@@ -63,7 +71,7 @@ def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:
 def finish(options: argparse.Namespace, data: Any, figure: Any, names: tuple[Path, Path]) -> None:
     """Save data and picture, and drop the parts of the sweep, which are no longer needed."""
     dataset.save(data, names[0], overwrite=options.overwrite)
-    figure.savefig(names[1], dpi=150)
+    save_figure(figure, names[1])
     shutil.rmtree(options.out / PARTS, ignore_errors=True)
     for name in names:
         print(f"wrote {name}")

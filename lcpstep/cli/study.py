@@ -14,7 +14,7 @@ from lcpstep.analysis.errors import MEASURES
 from lcpstep.analysis.reference import find_reference
 from lcpstep.analysis.solvers import LEVELS, compare_solvers
 from lcpstep.analysis.work_precision import Study
-from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, scene_arguments, scene_of
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text, scene_arguments, scene_of
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulate import Method
 
@@ -102,8 +102,7 @@ def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
     )  # fmt: skip
     text = json.dumps(found.as_dict() | {"reference": reference.text}, indent=1)
     if options.out is not None:
-        options.out.mkdir(parents=True, exist_ok=True)
-        (options.out / "solvers.json").write_text(text + "\n")
+        save_text(text, options.out / "solvers.json")
     print(text if options.json else f"{found}\nreference: {reference.text}")
     return DONE
 
@@ -117,7 +116,7 @@ def _report(result: Study, options: argparse.Namespace) -> None:
             from lcpstep.plot.work_precision import work_precision
 
             files.append(options.out / "study.png")
-            work_precision(result).savefig(files[-1], dpi=150)
+            save_figure(work_precision(result), files[-1])
     print(json.dumps(result.as_dict(), indent=1) if options.json else result)
     if not options.json:
         for file in files:

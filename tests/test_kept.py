@@ -1,0 +1,241 @@
+"""Machine code on disk: found again, never taken for another, made again where damaged."""
+
+import importlib.util
+import itertools
+import logging
+import os
+import sys
+import tempfile
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from lcpstep.compiled import by_address, compiled, jit_disabled
+
+pytestmark = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+KERNELS = """
+def double(x):
+    return 2.0 * x
+
+def triple(x):
+    return 3.0 * x
+"""
+NUMBERS = itertools.count()
+
+
+@pytest.fixture
+def load(tmp_path, monkeypatch):
+    """A function that imports the kernels of a file anew, as the next process would."""
+    import numba
+
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "user"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    name, file = f"kernels_{next(NUMBERS)}", tmp_path / "source" / "kernels.py"
+    file.parent.mkdir()
+    file.write_text(KERNELS)
+
+    def imported():
+        spec = importlib.util.spec_from_file_location(name, file)
+        module = importlib.util.module_from_spec(spec)
+        monkeypatch.setitem(sys.modules, name, module)
+        spec.loader.exec_module(module)
+        return module
+
+    return imported
+
+
+def entries(folder):
+    return sorted(folder.rglob("*.kernel"))
+
+
+def from_disk(f, x=1.5):
+    """Whether machine code for the kernel was found; it must be right."""
+    kernel = compiled(f)
+    assert kernel(x) == f(x)
+    return sum(kernel.stats.cache_hits.values()) == 1
+
+
+def said(caplog, what):
+    return sum(what in record.getMessage() for record in caplog.records)
+
+
+def test_machine_code_lies_beside_its_source_and_is_found_again(load, tmp_path):
+    assert [from_disk(load().double) for _ in range(3)] == [False, True, True]
+    assert len(entries(tmp_path / "source" / "__pycache__")) == len(entries(tmp_path)) == 1
+
+
+def test_other_types_and_other_tools_have_their_own(load, tmp_path, monkeypatch):
+    from lcpstep import kept
+
+    assert not from_disk(load().double)
+    assert not from_disk(load().double, 1)
+    assert from_disk(load().double, 1)
+    monkeypatch.setattr(kept, "toolchain", lambda: "another version of numba")
+    assert not from_disk(load().double)
+    assert len(entries(tmp_path)) == 3
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda x: b"",
+        lambda x: x[: len(x) // 2],
+        lambda x: np.random.default_rng(1).bytes(len(x)),
+        lambda x: x[:-1],
+    ],
+    ids=["empty", "half", "noise", "one byte less"],
+)
+def test_a_damaged_entry_is_said_and_made_again(load, tmp_path, caplog, damage):
+    from_disk(load().double)
+    (entry,) = entries(tmp_path)
+    entry.write_bytes(damage(entry.read_bytes()))
+    assert not from_disk(load().double)
+    assert said(caplog, f"{entry} is damaged") == 1
+    assert from_disk(load().double)
+    assert said(caplog, "is damaged") == 1
+
+
+def test_no_flipped_bit_passes(load, tmp_path):
+    from lcpstep.kept import own_number, read
+
+    from_disk(load().double)
+    (entry,) = entries(tmp_path)
+    content = entry.read_bytes()
+    assert read(entry, {own_number()}) is not None
+    for k in range(0, 8 * len(content), 8 * len(content) // 200):
+        flipped = bytearray(content)
+        flipped[k // 8] ^= 1 << (k % 8)
+        entry.write_bytes(flipped)
+        assert read(entry, {own_number()}) is None
+
+
+def close(tmp_path):
+    """Leave no folder to write to beside the source or in the user's cache, for the administrator either."""
+    (tmp_path / "source" / "__pycache__").write_text("no folder")
+    (tmp_path / "user").write_text("no folder")
+
+
+@pytest.fixture
+def silent(monkeypatch):
+    """As if nothing had been said before in this process."""
+    from lcpstep import kept
+
+    monkeypatch.setattr(kept, "TOLD", [])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders for temporary files are the user's own there")
+def test_a_read_only_package_keeps_its_machine_code_in_a_private_folder(load, tmp_path, caplog, silent):
+    sys.dont_write_bytecode, before = True, sys.dont_write_bytecode
+    try:
+        close(tmp_path)
+        assert [from_disk(load().double), from_disk(load().triple)] == [False, False]
+        assert [from_disk(load().double), from_disk(load().triple)] == [True, True]
+    finally:
+        sys.dont_write_bytecode = before
+    private = tmp_path / "temporary" / f"lcpstep-{os.getuid()}"
+    assert private.stat().st_mode & 0o777 == 0o700
+    assert len(entries(private)) == 2
+    assert said(caplog, "cannot be kept where it belongs") == said(caplog, f"{private} takes it") == 1
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders for temporary files are the user's own there")
+@pytest.mark.parametrize("why", ["open to others", "a link", "missing"])
+def test_where_no_folder_takes_it_each_process_compiles(load, tmp_path, caplog, silent, monkeypatch, why):
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    close(tmp_path)
+    private = tmp_path / "temporary" / f"lcpstep-{os.getuid()}"
+    if why == "open to others":
+        private.mkdir(mode=0o777)
+        private.chmod(0o777)
+    elif why == "a link":
+        (tmp_path / "elsewhere").mkdir(mode=0o700)
+        private.symlink_to(tmp_path / "elsewhere")
+    else:
+        monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    assert [from_disk(load().double), from_disk(load().triple)] == [False, False]
+    assert not from_disk(load().double)
+    assert said(caplog, "each process compiles anew") == said(caplog, "cannot be kept") == 1
+    assert entries(tmp_path) == []
+
+
+@pytest.mark.skipif(
+    not hasattr(os, "getuid") or os.getuid() != 0, reason="only the administrator gives files away"
+)
+def test_machine_code_of_another_user_is_not_run(load, tmp_path):
+    from_disk(load().double)
+    (entry,) = entries(tmp_path)
+    os.chown(entry, 12345, -1)
+    assert not from_disk(load().double)
+    os.chown(entry, 12345, -1)
+    os.chown(tmp_path / "source" / "kernels.py", 12345, -1)  # whose source is run, may have compiled it
+    assert from_disk(load().double)
+
+
+def test_a_disk_that_is_full_stops_no_run(load, tmp_path, caplog, silent):
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        assert not from_disk(load().double)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert entries(tmp_path) == []
+    assert said(caplog, "each process compiles anew") == 1
+    assert [from_disk(load().double) for _ in range(2)] == [False, True]
+
+
+READING = """
+import os
+from enum import IntEnum
+from types import ModuleType
+
+NUMBER = float(os.environ["NUMBER"])
+settings = ModuleType("settings")
+settings.MASS = NUMBER
+
+class Box(IntEnum):
+    SIDE = int(NUMBER)
+
+def double(x, y=NUMBER):
+    {body}
+"""
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["return settings.MASS", "return Box.SIDE", "return y", "f = lambda z: NUMBER * z\n    return f(1.0)"],
+    ids=["attribute of a module", "member of an enumeration", "default", "read by a function inside"],
+)
+def test_what_a_kernel_reads_in_other_places_is_noticed(load, tmp_path, monkeypatch, body):
+    (tmp_path / "source" / "kernels.py").write_text(READING.replace("{body}", body))
+    hits = []
+    for number in (2.0, 3.0, 2.0):
+        monkeypatch.setenv("NUMBER", str(number))
+        f = load().double
+        assert compiled(f)(1.0) == f(1.0) == number
+        hits.append(from_disk(f))
+    assert hits == [False, False, True]
+
+
+def marked(*names):
+    """A class of tuples by address with these fields, of one name for all."""
+    return by_address(NamedTuple("Pair", [(name, float) for name in names]))
+
+
+def test_tuples_are_told_apart_by_their_fields(load):
+    from numba import typeof
+
+    from lcpstep import addresses
+
+    one, other = (typeof(marked(*names)(1.0, 2.0)) for names in (("a", "b"), ("b", "a")))
+    assert isinstance(one, addresses.Address)
+    assert str(one) != str(other)
+
+
+@pytest.fixture(autouse=True)
+def heard(caplog):
+    caplog.set_level(logging.WARNING, logger="lcpstep.kept")
