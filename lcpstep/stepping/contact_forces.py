@@ -28,6 +28,7 @@ from lcpstep.stepping.located_work import (
     END,
     EVENT,
     EVENTS,
+    FIRST_COORDINATE,
     FORCE,
     FORCE_NOW,
     FREE,
@@ -39,6 +40,7 @@ from lcpstep.stepping.located_work import (
     IMPULSE,
     INERTIA,
     JOLT,
+    LAST_COORDINATE,
     LEFT,
     MADE_WITH,
     OLDER,
@@ -286,6 +288,7 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
     return True
 
 
+@inline
 def speed_terms(plan: Any, w: Any, c: int) -> float:
     """What a gap velocity is made of in this step, signs left aside: velocities, impulses, accelerations.
 
@@ -293,6 +296,6 @@ def speed_terms(plan: Any, w: Any, c: int) -> float:
     beside itself.
     """
     size = abs(w.num[GAP_T, c])
-    for i in range(w.vec.shape[1]):
+    for i in range(w.mark[FIRST_COORDINATE, c], w.mark[LAST_COORDINATE, c] + 1):
         size += abs(w.G[c, i]) * (w.vec[SWING, i] + abs(w.vec[V, i]) + plan.h * abs(w.vec[FREE, i]))
     return size

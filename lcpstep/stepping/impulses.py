@@ -56,6 +56,7 @@ from lcpstep.stepping.refine import solve_chosen
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
+SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are an inelastic collapse
 
 
@@ -180,7 +181,9 @@ def push(plan: Any, w: Any, x: Any, d: int, p: float) -> None:
         change = w.W[c, d] * p
         if change != 0.0:
             w.num[RATE, c] += change
-            if abs(w.num[RATE, c]) <= ROUNDING * abs(change) and w.num[GAP, c] <= plan.slack:
+            u = abs(w.num[RATE, c])
+            touches = u <= SMALL * abs(change) and w.num[GAP, c] <= plan.slack
+            if touches and u <= ROUNDING * speed_terms(plan, w, c):
                 w.num[GAP, c] = w.num[RATE, c] = 0.0
                 w.mark[GROUNDED, c], x[TOUCHING] = GROUND, 1.0
             elif w.mark[GROUNDED, c] == LEFT:

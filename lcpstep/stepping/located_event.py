@@ -6,7 +6,7 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, product
-from lcpstep.stepping.contact_forces import idle, stick
+from lcpstep.stepping.contact_forces import idle, speed_terms, stick
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
@@ -41,9 +41,9 @@ from lcpstep.stepping.smooth import (
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
     """The impact of contact c at x[SIGMA], or that of a corner, and what it changes."""
     now = t + x[SIGMA]
-    if c != CORNER and w.num[RATE, c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
+    if c != CORNER and w.num[RATE, c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
-        if w.num[RATE, c] == 0.0:
+        if w.num[RATE, c] <= ROUNDING * speed_terms(plan, w, c):
             stick(m, plan, w, record, count, x, c, now)
         idle(x, count)
         return FINISHED

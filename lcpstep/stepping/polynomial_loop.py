@@ -12,7 +12,7 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
-from lcpstep.stepping.contact_forces import hold, idle, release, stick
+from lcpstep.stepping.contact_forces import hold, idle, release, speed_terms, stick
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
@@ -53,6 +53,7 @@ from lcpstep.stepping.located_work import (
     OPEN,
     Q_STAGE,
     RATE,
+    ROUNDING,
     ROW,
     SAME_TIME,
     SIGMA,
@@ -303,9 +304,10 @@ def slide(m: Any, w: Any, t: float) -> None:
 
 def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: int, count: Any) -> int:
     """Contact c lands at x[SIGMA]: an impact, or a touch without one."""
-    if c != CORNER and w.num[RATE, c] >= 0.0:
+    still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
+    if c != CORNER and w.num[RATE, c] >= -still:
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
-        if w.num[RATE, c] == 0.0 or x[SIGMA] - w.num[LAST, c] <= SLOW * plan.h:
+        if w.num[RATE, c] <= still or x[SIGMA] - w.num[LAST, c] <= SLOW * plan.h:
             stick(m, plan, w, record, count, x, c, t)
         w.num[LAST, c] = x[SIGMA]
         idle(x, count)
