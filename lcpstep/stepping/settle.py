@@ -87,7 +87,7 @@ def settle(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any)
     now = t + x[SIGMA]
     if not meet(m, plan, w, x, now, span, count):
         return LCP_FAILED
-    count[CUT] += 1 if span > UNTOLD * plan.h or strikes_elastic(m, w) else 0
+    count[CUT] += 1 if matters(m, w, span > UNTOLD * plan.h) else 0
     for i in range(n):
         w.vec[V, i] += span * w.vec[FREE, i]
     for c in range(w.num.shape[1]):
@@ -125,11 +125,12 @@ def meet(m: Any, plan: Any, w: Any, x: Any, t: float, span: float, count: Any) -
     return solve_chosen(m, plan, w, w.W, INERTIA, n_c, count)
 
 
-def strikes_elastic(m: Any, w: Any) -> bool:
-    """Whether an elastic contact loses energy that it would keep."""
+def matters(m: Any, w: Any, long: bool) -> bool:
+    """Whether the stretch is told: it is long and there was an impact, or an elastic contact loses energy."""
     some = False
     for c in range(w.num.shape[1]):
-        some = some or (w.num[Z, c] > 0.0 and w.num[BEFORE, c] < 0.0 and m.restitution[c] == 1.0)
+        elastic = w.num[BEFORE, c] < 0.0 and m.restitution[c] == 1.0
+        some = some or (w.num[Z, c] > 0.0 and (long or elastic))
     return some
 
 
