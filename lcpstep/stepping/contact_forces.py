@@ -14,25 +14,34 @@ from typing import Any
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import product
+from lcpstep.model import ABSENT
 from lcpstep.recording import write_event
 from lcpstep.stepping.joint_tasks import PIECE
 from lcpstep.stepping.located_joints import pass_on
 from lcpstep.stepping.located_work import (
     A_TRY,
     ALPHA,
+    BIAS,
     CHOSEN,
     CLOSED,
     CLOSED_NOW,
     END,
     EVENT,
     EVENTS,
+    FIRST_COORDINATE,
+    FORCE,
     FORCE_NOW,
     FREE,
     GAP,
     GAP_T,
+    GROUND,
     GROUNDED,
+    IDLE,
     IMPULSE,
     INERTIA,
+    JOLT,
+    LAST_COORDINATE,
+    LEFT,
     MADE_WITH,
     OLDER,
     OLDER_TIME,
@@ -41,15 +50,25 @@ from lcpstep.stepping.located_work import (
     RELEASE,
     ROUNDING,
     SIGMA,
+    STALLED,
     STATUS,
     STICK,
+    SWING,
+    TOUCHING,
+    TURNED,
+    TURNS,
     A,
     B,
     P,
+    Q,
     V,
     Z,
 )
 from lcpstep.stepping.refine import keep_closed, solve_chosen
+
+COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
+TURNS_AT_ONCE = 16  # of one contact at one instant: more are no motion but a sequence that has no end
+STRIKES_AT_ONCE = 100_000  # the same of elastic impacts
 
 
 @inline
@@ -60,15 +79,13 @@ def log(record: Any, count: Any, t: float, c: int, before: float, after: float, 
 
 
 def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, count: Any) -> bool:
-    """Forces of the closed contacts from w.num[ALPHA], and the acceleration with them; who needs none opens."""
-    n, n_c, n_k = w.vec.shape[1], w.num.shape[1], 0
+    """Forces of the contacts that rest from w.num[ALPHA], and the acceleration with them; who needs none opens.
+
+    All that touch at rest are decided in one problem: to add them one by one could go on for ever.
+    """
+    n = w.vec.shape[1]
     assign(w.vec[A], w.vec[FREE])
-    for c in range(n_c):
-        if w.mark[STATUS, c] == CLOSED:
-            w.mark[CHOSEN, n_k] = c
-            w.num[Z, n_k] = w.num[FORCE_NOW, c]
-            w.num[B, n_k] = w.num[ALPHA, c]
-            n_k += 1
+    n_k = choose_resting(w, x)
     if n_k == 0:
         return True
     rest = x[END] - x[SIGMA]
@@ -90,16 +107,84 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
     for k in range(n_k):
         c, force = w.mark[CHOSEN, k], w.num[Z, k]
         if force == 0.0:
-            alpha, size = w.num[B, k], abs(w.num[B, k])
-            for j in range(n_k):
-                alpha += W[c, w.mark[CHOSEN, j]] * w.num[Z, j]
-                size += abs(W[c, w.mark[CHOSEN, j]] * w.num[Z, j])
-            if alpha > ROUNDING * size:
-                release(w, record, count, x, c, release_time(w, c, t, rest, alpha / W[c, c]), 0.0)
+            alpha = leaving(m, w, W, k, n_k)
+            if alpha > 0.0:
+                if w.mark[STATUS, c] == CLOSED:
+                    at = release_time(w, c, t, rest, alpha / W[c, c])
+                    release(m, plan, w, record, count, x, c, at, 0.0)
+                w.mark[GROUNDED, c] = LEFT
                 continue
+        if w.mark[STATUS, c] == OPEN:
+            stick(m, plan, w, record, count, x, c, t)
         w.num[OLDER, c], w.num[OLDER_TIME, c] = force, t + 0.5 * rest
         w.num[FORCE_NOW, c] = force
     return True
+
+
+def choose_resting(w: Any, x: Any) -> int:
+    """Contacts that rest on their obstacles, closed or just touching; their number."""
+    n_k = 0
+    for c in range(w.num.shape[1]):
+        closed = w.mark[STATUS, c] == CLOSED
+        if closed or (x[TOUCHING] > 0.0 and w.mark[GROUNDED, c] == GROUND and w.num[RATE, c] == 0.0):
+            w.mark[CHOSEN, n_k] = c
+            w.num[Z, n_k] = w.num[FORCE_NOW, c] if closed else 0.0
+            w.num[B, n_k] = w.num[ALPHA, c]
+            n_k += 1
+    x[TOUCHING] = 0.0
+    return n_k
+
+
+def leaving(m: Any, w: Any, W: Any, k: int, n_k: int) -> float:
+    """Acceleration with which the k-th chosen contact, which carries no force, opens; 0 if it is but rounding."""
+    c = w.mark[CHOSEN, k]
+    alpha, size = w.num[B, k], 0.0
+    for j in range(n_k):
+        d = w.mark[CHOSEN, j]
+        alpha += W[c, d] * w.num[Z, j]
+        size += abs(W[c, d] * w.num[Z, j])
+    if alpha <= ROUNDING * (size + abs(w.num[B, k])):
+        return 0.0
+    return alpha if alpha > ROUNDING * (size + acceleration_terms(m, w, c)) else 0.0
+
+
+def pulls(m: Any, w: Any, c: int) -> bool:
+    """Whether the negative force in w.num[P] of closed contact c is more than rounding of what it balances."""
+    size = 0.0
+    for d in range(w.num.shape[1]):
+        if w.mark[STATUS, d] == CLOSED:
+            size += abs(w.W[c, d] * w.num[P, d])
+    return -w.W[c, c] * w.num[P, c] > ROUNDING * (size + acceleration_terms(m, w, c))
+
+
+def acceleration_terms(m: Any, w: Any, c: int) -> float:
+    """What the acceleration of a gap without contact forces is made of, signs left aside."""
+    acting(m, w)
+    size = abs(w.num[BIAS, c])
+    for i in range(w.vec.shape[1]):
+        size += abs(w.G[c, i]) * w.vec[A_TRY, i]
+    return size
+
+
+def acting(m: Any, w: Any) -> None:
+    """What the terms of the accelerations without contact add up to, their signs left aside, into w.vec[A_TRY].
+
+    Their sum may be zero where a spring carries a weight; what rounds is each of them. Of a force that the scene
+    gives as a whole nothing finer is known.
+    """
+    n = w.vec.shape[1]
+    for i in range(n):
+        w.vec[JOLT, i] = 0.0 if m.mass != ABSENT else abs(w.vec[FORCE, i])
+        if m.linear:
+            if m.force == ABSENT:
+                w.vec[JOLT, i] += abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
+            for j in range(n):
+                w.vec[JOLT, i] += abs(m.C[i, j] * w.vec[V, j]) + abs(m.K[i, j] * w.vec[Q, j])
+    for i in range(n):
+        w.vec[A_TRY, i] = abs(w.vec[FREE, i])
+        if m.mass == ABSENT:
+            for j in range(n):
+                w.vec[A_TRY, i] += abs(m.M_inverse[i, j]) * w.vec[JOLT, j]
 
 
 def zero_rounding(plan: Any, w: Any) -> None:
@@ -111,12 +196,34 @@ def zero_rounding(plan: Any, w: Any) -> None:
                 w.vec[V, i] = 0.0
 
 
-def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
+@inline
+def idle(x: Any, count: Any) -> None:
+    """Count a round of the loop in which nothing was noted: these have an end too."""
+    x[EVENTS] += 1.0
+    count[IDLE] += 1
+
+
+def turn(m: Any, plan: Any, w: Any, x: Any, c: int, struck: bool) -> None:
+    """Note that contact c strikes, closes or opens; where it goes on so at one instant, the motion there is settled.
+
+    An elastic contact may be struck as often as masses are unlike; only at one and the same time is that counted.
+    """
+    elastic = struck and m.restitution[c] == 1.0
+    if x[SIGMA] - w.num[TURNED, c] > (0.0 if elastic else COLLAPSE * plan.h):
+        w.num[TURNS, c] = 0.0
+    w.num[TURNED, c] = x[SIGMA]
+    w.num[TURNS, c] += TURNS_AT_ONCE / STRIKES_AT_ONCE if elastic else 1.0
+    if w.num[TURNS, c] >= TURNS_AT_ONCE:
+        x[STALLED] = 1.0
+
+
+def stick(m: Any, plan: Any, w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
     """A contact stays closed from here on."""
     w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
     x[CLOSED_NOW] += 1
     w.num[OLDER, c] = w.num[FORCE_NOW, c] = 0.0
     log(record, count, t, c, 0.0, 0.0, 0.0, STICK)
+    turn(m, plan, w, x, c, False)
 
 
 @inline
@@ -131,13 +238,16 @@ def release_time(w: Any, c: int, t: float, rest: float, deficit: float) -> float
     return min(max(found, w.num[OLDER_TIME, c]), t + rest)
 
 
-def release(w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: float) -> None:
+def release(
+    m: Any, plan: Any, w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: float
+) -> None:
     """A closed contact opens."""
-    w.mark[STATUS, c], w.mark[GROUNDED, c] = OPEN, 1
+    w.mark[STATUS, c], w.mark[GROUNDED, c] = OPEN, GROUND
     x[CLOSED_NOW] -= 1
     w.num[FORCE_NOW, c] = w.num[OLDER, c] = 0.0
     w.num[GAP, c], w.num[RATE, c] = 0.0, after
     log(record, count, t, c, 0.0, after, 0.0, RELEASE)
+    turn(m, plan, w, x, c, False)
     x[EVENTS] += 1
 
 
@@ -169,12 +279,23 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
     for k in range(n_k):
         c = w.mark[CHOSEN, k]
         if w.num[P, c] == 0.0 and tau > 0.0:
-            u, size = product(w.G, w.vec[V], c) + w.num[GAP_T, c], abs(w.num[GAP_T, c])
-            for i in range(w.vec.shape[1]):
-                size += abs(w.G[c, i] * w.vec[V, i])
-            if u > ROUNDING * size:
+            u = product(w.G, w.vec[V], c) + w.num[GAP_T, c]
+            if u > ROUNDING * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * W[c, c])
                 force = w.num[FORCE_NOW, c]
                 share = force / (force + lost) if force > 0.0 else 0.0
-                release(w, record, count, x, c, t - tau + tau * share, u)
+                release(m, plan, w, record, count, x, c, t - tau + tau * share, u)
     return True
+
+
+@inline
+def speed_terms(plan: Any, w: Any, c: int) -> float:
+    """What a gap velocity is made of in this step, signs left aside: velocities, impulses, accelerations.
+
+    Its rounding is measured against that: a speed that falls from impact to impact would never be found small
+    beside itself.
+    """
+    size = abs(w.num[GAP_T, c])
+    for i in range(w.mark[FIRST_COORDINATE, c], w.mark[LAST_COORDINATE, c] + 1):
+        size += abs(w.G[c, i]) * (w.vec[SWING, i] + abs(w.vec[V, i]) + plan.h * abs(w.vec[FREE, i]))
+    return size

@@ -24,6 +24,7 @@ from lcpstep.stepping.located_work import (
     CLOSED,
     GAP,
     GAP_T,
+    GROUND,
     GROUNDED,
     HIGH,
     RATE,
@@ -83,6 +84,6 @@ def choose_jumping(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
             near = plan.slack + 4.0 * plan.margin * (abs(before) + abs(after))
             if w.mark[STATUS, c] == CLOSED or (w.num[GAP, c] <= near and min(before, after) < 0.0):
                 w.mark[CHOSEN, n_s] = c
-                w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+                w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
                 n_s += 1
     return n_s

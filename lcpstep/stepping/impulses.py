@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.stepping.contact_forces import log, release, stick
+from lcpstep.stepping.contact_forces import COLLAPSE, log, release, speed_terms, stick, turn
 from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import pass_on
@@ -28,6 +28,7 @@ from lcpstep.stepping.located_work import (
     END,
     EVENTS,
     GAP,
+    GROUND,
     GROUNDED,
     HALF,
     HITS,
@@ -35,12 +36,15 @@ from lcpstep.stepping.located_work import (
     IMPULSE,
     INERTIA,
     LAST,
+    LEFT,
     OPEN,
     PLASTIC,
     RATE,
     ROUNDING,
     SIGMA,
     STATUS,
+    SWING,
+    TOUCHING,
     V_TRY,
     B,
     P,
@@ -51,9 +55,9 @@ from lcpstep.stepping.refine import solve_chosen
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
-COLLAPSE = 1e-9  # of a step: impacts as close as this,
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
-IN_A_ROW = 8  # so many of them in a row, are an inelastic collapse
+SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
+IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are an inelastic collapse
 
 
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
@@ -79,12 +83,9 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
             w.num[B, k] = w.num[RATE, c]
     if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, count):
         return -1
-    jump(w, n_s)
-    still = 0.0
+    jump(plan, w, x, n_s)
     for k in range(n_s):
-        still = max(still, ROUNDING * abs(w.num[BEFORE, w.mark[CHOSEN, k]]))
-    for k in range(n_s):
-        after_impact(m, w, x, record, w.mark[CHOSEN, k], w.num[Z, k], t, still, count)
+        after_impact(m, plan, w, x, record, w.mark[CHOSEN, k], w.num[Z, k], t, count)
     x[EVENTS] += 1
     return n_s
 
@@ -97,15 +98,15 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
     """
     w.mark[CHOSEN, 0] = first
     u, n_s = w.num[RATE, first], 1
-    touched = w.mark[GROUNDED, first] == 1 and w.num[LAST, first] < 0.0
-    w.num[GAP, first], w.mark[GROUNDED, first] = 0.0, 1
+    touched = w.mark[GROUNDED, first] >= GROUND and w.num[LAST, first] < 0.0
+    w.num[GAP, first], w.mark[GROUNDED, first] = 0.0, GROUND
     for c in range(w.num.shape[1]):
         w.num[BEFORE, c] = w.num[RATE, c]
         if c != first and w.mark[STATUS, c] == OPEN and w.num[RATE, c] < 0.0 and w.num[GAP, c] <= plan.slack:
-            pushed = touched and w.mark[GROUNDED, c] == 1 and w.num[LAST, c] < 0.0
+            pushed = touched and w.mark[GROUNDED, c] >= GROUND and w.num[LAST, c] < 0.0
             if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u):
                 w.mark[CHOSEN, n_s] = c
-                w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+                w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
                 n_s += 1
     return n_s
 
@@ -153,9 +154,9 @@ def closes(m: Any, plan: Any, w: Any, x: Any, c: int, alone: bool) -> bool:
     ) or hop < COLLAPSE * SHORT * plan.h
 
 
-def jump(w: Any, n_s: int) -> None:
+def jump(plan: Any, w: Any, x: Any, n_s: int) -> None:
     """Velocities after the impulses z of the chosen contacts; what rounding leaves of zero is zero."""
-    n, n_c = w.vec.shape[1], w.num.shape[1]
+    n = w.vec.shape[1]
     for i in range(n):
         w.vec[V_TRY, i] = abs(w.vec[V, i])
     for k in range(n_s):
@@ -166,17 +167,31 @@ def jump(w: Any, n_s: int) -> None:
                 w.vec[V, i] += w.MG[c, i] * p
                 w.vec[V_TRY, i] += abs(w.MG[c, i] * p)
     for i in range(n):
+        w.vec[SWING, i] = max(w.vec[SWING, i], w.vec[V_TRY, i])
         if abs(w.vec[V, i]) <= ROUNDING * w.vec[V_TRY, i]:
             w.vec[V, i] = 0.0
     for k in range(n_s):
-        d, p = w.mark[CHOSEN, k], w.num[Z, k]
-        if p > 0.0:
-            for c in range(n_c):
-                w.num[RATE, c] += w.W[c, d] * p
+        if w.num[Z, k] > 0.0:
+            push(plan, w, x, w.mark[CHOSEN, k], w.num[Z, k])
+
+
+def push(plan: Any, w: Any, x: Any, d: int, p: float) -> None:
+    """Gap velocities after the impulse of contact d; a contact that touches may be left at rest by it."""
+    for c in range(w.num.shape[1]):
+        change = w.W[c, d] * p
+        if change != 0.0:
+            w.num[RATE, c] += change
+            u = abs(w.num[RATE, c])
+            touches = u <= SMALL * abs(change) and w.num[GAP, c] <= plan.slack
+            if touches and u <= ROUNDING * speed_terms(plan, w, c):
+                w.num[GAP, c] = w.num[RATE, c] = 0.0
+                w.mark[GROUNDED, c], x[TOUCHING] = GROUND, 1.0
+            elif w.mark[GROUNDED, c] == LEFT:
+                w.mark[GROUNDED, c], x[TOUCHING] = GROUND, 1.0
 
 
 def after_impact(
-    m: Any, w: Any, x: Any, record: Any, c: int, p: float, t: float, still: float, count: Any
+    m: Any, plan: Any, w: Any, x: Any, record: Any, c: int, p: float, t: float, count: Any
 ) -> None:
     """Note the impact of a contact; the velocity it leaves with, to the last digit."""
     r, before = m.restitution[c], min(w.num[BEFORE, c], 0.0)
@@ -185,8 +200,8 @@ def after_impact(
         if p > 0.0:
             w.num[RATE, c] = 0.0
             log(record, count, t, c, 0.0, 0.0, p, IMPACT)
-        elif w.num[RATE, c] > still:
-            release(w, record, count, x, c, t, w.num[RATE, c])
+        elif w.num[RATE, c] > ROUNDING * speed_terms(plan, w, c):
+            release(m, plan, w, record, count, x, c, t, w.num[RATE, c])
         else:
             w.num[RATE, c] = 0.0
         return
@@ -198,31 +213,12 @@ def after_impact(
             T = r * before / w.num[HALF, c] / (1.0 - r)
             p += -2.0 * w.num[HALF, c] * T / w.W[c, c]
         log(record, count, t + T, c, before, 0.0, p, ACCUMULATION)
-        stick(w, record, count, x, c, t + T)
+        stick(m, plan, w, record, count, x, c, t + T)
         return
     w.num[RATE, c] = -r * before if r > 0.0 else 0.0
     log(record, count, t, c, before, w.num[RATE, c], p, IMPACT)
+    turn(m, plan, w, x, c, True)
     if r == 0.0:
-        stick(w, record, count, x, c, t)
-
-
-def settle_rest(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
-    """After too many events in one step: one problem for the rest of it, plastic and without penetration.
-
-    0 <= g + rest (u+ + rest half)  complementary to  p >= 0.
-    """
-    n_c, rest = w.num.shape[1], x[END] - x[SIGMA]
-    for c in range(n_c):
-        w.mark[CHOSEN, c], w.num[Z, c] = c, 0.0
-        w.num[B, c] = w.num[GAP, c] / rest + w.num[RATE, c] + rest * w.num[HALF, c]
-        w.num[BEFORE, c] = w.num[RATE, c]
-    if not solve_chosen(m, plan, w, w.W, INERTIA, n_c, count):
-        return False
-    jump(w, n_c)
-    for c in range(n_c):
-        w.num[IMPULSE, c] += w.num[Z, c]
-        if w.num[Z, c] > 0.0:
-            log(record, count, t, c, w.num[BEFORE, c], w.num[RATE, c], w.num[Z, c], IMPACT)
-        elif w.mark[STATUS, c] == CLOSED and w.num[RATE, c] > 0.0:
-            release(w, record, count, x, c, t, w.num[RATE, c])
-    return True
+        stick(m, plan, w, record, count, x, c, t)
+    elif before == 0.0:
+        x[TOUCHING] = 1.0

@@ -6,7 +6,7 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, product
-from lcpstep.stepping.contact_forces import stick
+from lcpstep.stepping.contact_forces import idle, speed_terms, stick
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
@@ -17,6 +17,7 @@ from lcpstep.stepping.located_work import (
     FORCES,
     FREE,
     GAP,
+    GROUND,
     GROUNDED,
     LCP_FAILED,
     NOT_FINITE,
@@ -40,10 +41,11 @@ from lcpstep.stepping.smooth import (
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
     """The impact of contact c at x[SIGMA], or that of a corner, and what it changes."""
     now = t + x[SIGMA]
-    if c != CORNER and w.num[RATE, c] >= 0.0:  # a touch: the velocity at the end of the piece does not strike
-        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
-        if w.num[RATE, c] == 0.0:
-            stick(w, record, count, x, c, now)
+    if c != CORNER and w.num[RATE, c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
+        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
+        if w.num[RATE, c] <= ROUNDING * speed_terms(plan, w, c):
+            stick(m, plan, w, record, count, x, c, now)
+        idle(x, count)
         return FINISHED
     if not plan.constant:
         if not refactor(m, w, now):
@@ -51,6 +53,7 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
         respond(m, w)
     n_s = strike(m, plan, w, x, record, c, now, count)
     if n_s <= 0:
+        idle(x, count)
         return LCP_FAILED if n_s < 0 else FINISHED
     if plan.plain:  # rounding of the state must not add up over many impacts
         for k in range(n_s):

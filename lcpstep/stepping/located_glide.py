@@ -19,6 +19,7 @@ from lcpstep.stepping.located_work import (
     RATE,
     SAME_TIME,
     STEP,
+    TURNED,
     WHOLE,
     Q,
     V,
@@ -82,5 +83,7 @@ def glide(model: Any, plan: Any, w: Any, x: Any, count: Any, t0: float, first: i
     w.vec[Q, 0], w.vec[V, 0], w.vec[FORCE, 0] = q, v, f
     if contact:
         w.num[GAP, 0], w.num[RATE, 0] = g, u
+        if k > start:
+            w.num[TURNED, 0] = -h
     count[STEP] = k
     count[FORCES] += k - start

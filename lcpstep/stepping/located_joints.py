@@ -165,6 +165,14 @@ def meet_joints(w: Any, t: float, tau: float) -> None:
         num[PIECE, k] += 0.5 * tau * (num[LOAD, k] + num[FREE, k]) + num[ANSWER, k]
 
 
+def hold_joints(w: Any, span: float) -> None:
+    """Impulses of the joints over a short stretch of time, those that answer contacts left aside."""
+    if w.joints is not None:
+        num = w.joints.own.num
+        for k in range(num.shape[1]):
+            num[IMPULSE, k] += span * num[FREE, k]
+
+
 def pass_on(w: Any, c: int, p: float, row: int) -> None:
     """Impulses of the joints that answer the impulse p of contact c, into a row: PIECE, or IMPULSE at an impact."""
     if w.joints is not None:
@@ -212,5 +220,5 @@ def share_out(w: Any, record: Any, count: Any, first: int, now: float, tau: floa
 
 HOOKS = (
     take_joints, join_acceleration, reduce_mobility, put_on_joints, settle_velocity, turn_with_joints, joints_failed,
-    load_joints, reach_joints, meet_joints, pass_on, write_joints, take_back, share_out,
+    load_joints, reach_joints, meet_joints, hold_joints, pass_on, write_joints, take_back, share_out,
 )  # fmt: skip

@@ -13,8 +13,8 @@ from typing import Any
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, moves, obstacle, product
 from lcpstep.recording import quiet_until
+from lcpstep.stepping.contact_forces import idle
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
-from lcpstep.stepping.impulses import settle_rest
 from lcpstep.stepping.located_event import event
 from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import (
@@ -30,7 +30,6 @@ from lcpstep.stepping.located_work import (
     CLOSED,
     CLOSED_NOW,
     CORNER,
-    CUT,
     END,
     END_S,
     EPS,
@@ -43,10 +42,12 @@ from lcpstep.stepping.located_work import (
     FREE,
     GAP,
     GAP_T,
+    GROUND,
     GROUNDED,
     HALF,
     HIGH,
     HITS,
+    IDLE,
     LAST,
     LATE,
     LCP_FAILED,
@@ -59,16 +60,21 @@ from lcpstep.stepping.located_work import (
     Q_TIME,
     RATE,
     ROW,
+    SETTLED,
     SIGMA,
+    STALLED,
     STATUS,
     STEP,
+    SWING,
     TOO_MANY_EVENTS,
+    TURNED,
     UNDER_WAY,
     WHOLE,
     Q,
     V,
 )
 from lcpstep.stepping.race import race
+from lcpstep.stepping.settle import endless, settle
 from lcpstep.stepping.smooth import (
     free_acceleration,
     measure,
@@ -95,7 +101,7 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
             w.num[ALPHA, c] = product(m.G, w.vec[FREE], c)
     for c in range(w.num.shape[1]):
         if w.num[GAP, c] <= plan.slack:
-            w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
+            w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
             size = abs(w.num[GAP_T, c])
             for i in range(w.vec.shape[1]):
                 size += abs(w.G[c, i] * w.vec[V, i])
@@ -146,56 +152,58 @@ def run(
 def begin_step(w: Any, x: Any) -> None:
     """Nothing has happened in this step yet, but for what happened at the very end of the last one."""
     end = x[SIGMA]
+    if x[EVENTS] > 0.0:
+        x[SETTLED] = x[STALLED] = 0.0
+        for i in range(w.vec.shape[1]):
+            w.vec[SWING, i] = 0.0
     x[SIGMA] = x[EVENTS] = x[END] = 0.0
     x[UNDER_WAY] = 1.0
     for c in range(w.num.shape[1]):
         w.mark[HITS, c] = w.mark[CLOSE_HITS, c] = 0
         w.num[LAST, c] = 0.0 if end > 0.0 and w.num[LAST, c] == end else -1.0
+        w.num[TURNED, c] -= end
 
 
 @inline
 def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:
     """The rest of the step that began at t: from x[SIGMA] to its end."""
     n_c = w.num.shape[1]
-    settled = False
     while True:
         if count[EVENT] + 4 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
-        if count[EVENT] > count[EVENTS_LEFT]:
+        if count[EVENT] + count[IDLE] > count[EVENTS_LEFT]:
             return TOO_MANY_EVENTS
         c = NOBODY
         if x[SIGMA] >= x[END]:
             if x[END] >= plan.h:
                 return FINISHED
-            settled = False
             c = CORNER if begin_interval(model, plan, w, x, count, t) else NOBODY
         if c == NOBODY:
             if not begin_piece(model, plan, w, x, record, t + x[SIGMA], count):
                 return LCP_FAILED if finite(w) else NOT_FINITE
+            if endless(plan, x):
+                code = settle(model, plan, w, x, record, t, count)
+                if code != FINISHED:
+                    return code
+                continue
             rest = x[END] - x[SIGMA]
-            tau = rest
-            if not settled and x[EVENTS] > plan.per_step:
-                settled = True
-                count[CUT] += 1
-                if not settle_rest(model, plan, w, x, record, t + x[SIGMA], count):
-                    return LCP_FAILED
-            if not settled:
-                c, tau = first_contact(plan, w, rest, t + x[END])
-                if c != NOBODY and not plan.plain:
-                    c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
-                if c != NOBODY and plan.plain and plan.steady and racing(w, x, record, count, t):
-                    most = min(count[EVENTS_LEFT] - count[EVENT], plan.per_step - int(x[EVENTS])) + 1
-                    most = min(
-                        most, len(record.events) - count[EVENT] - 4 * n_c, len(record.rows) - count[ROW] - 4
-                    )
-                    done = race(model, plan, w, record, count, t, x[SIGMA], x[END], most)
-                    if done > 0:
-                        x[SIGMA] = w.vec[Q_TIME, 0]
-                        x[EVENTS] += done
-                        continue
-                if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
-                    c, tau = NOBODY, rest
-            x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
+            c, tau = first_contact(plan, w, rest, t + x[END])
+            if c != NOBODY and not plan.plain:
+                c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
+            if c != NOBODY and plan.plain and plan.steady and racing(w, x, record, count, t):
+                most = min(count[EVENTS_LEFT] - count[EVENT], plan.per_step - int(x[EVENTS])) + 1
+                most = min(
+                    most, len(record.events) - count[EVENT] - 4 * n_c, len(record.rows) - count[ROW] - 4
+                )
+                done = race(model, plan, w, record, count, t, x[SIGMA], x[END], most)
+                if done > 0:
+                    x[SIGMA] = w.vec[Q_TIME, 0]
+                    x[EVENTS] += done
+                    continue
+            if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
+                c, tau = NOBODY, rest
+            if c == NOBODY and tau < rest:
+                idle(x, count)
             code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
             if code != FINISHED:
                 return code

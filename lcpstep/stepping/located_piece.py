@@ -36,6 +36,7 @@ from lcpstep.stepping.located_work import (
     GROUNDED,
     HALF,
     LCP_FAILED,
+    LEFT,
     MADE_WITH,
     NEXT_FORCE,
     NEXT_TIME,
@@ -48,6 +49,7 @@ from lcpstep.stepping.located_work import (
     SAME_TIME,
     SIGMA,
     STATUS,
+    TOUCHING,
     UNCHANGED,
     A,
     Q,
@@ -78,7 +80,7 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     if n_c == 0:
         assign(w.vec[A], w.vec[FREE])
         return True
-    closed = x[CLOSED_NOW] > 0
+    closed = x[CLOSED_NOW] > 0 or x[TOUCHING] > 0.0
     if x[UNCHANGED] == 1.0 and not closed:
         return True
     x[UNCHANGED] = 1.0 if plan.steady and plan.plain and not closed else 0.0
@@ -104,7 +106,7 @@ def begin_piece(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
     for c in range(n_c):
         if w.mark[STATUS, c] == CLOSED:
             w.num[GAP, c] = w.num[RATE, c] = w.num[HALF, c] = 0.0
-        elif w.mark[GROUNDED, c] == 1 and w.num[RATE, c] == 0.0:  # just released
+        elif w.mark[GROUNDED, c] == LEFT:
             w.num[HALF, c] = max(w.num[HALF, c], 0.0)
     return True
 
@@ -142,7 +144,7 @@ def fitted(m: Any, w: Any, t: float, rest: float) -> None:
         w.vec[Q_TRY, i] = w.vec[Q, i] + rest * (w.vec[V, i] + 0.5 * rest * w.vec[A, i])
     gaps(m, t + rest, w.vec[Q_TRY], w.vec[V], w.num[GAP_TRY])
     for c in range(w.num.shape[1]):
-        if w.mark[GROUNDED, c] == 1:
+        if w.mark[GROUNDED, c] != 0:
             w.num[HALF, c] = 0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c])
         else:
             w.num[HALF, c] = (w.num[GAP_TRY, c] - w.num[GAP, c] - rest * w.num[RATE, c]) / (rest * rest)
@@ -153,7 +155,7 @@ def needs_bias(w: Any) -> bool:
     """Whether some contact is closed or has just been left."""
     some = False
     for c in range(w.num.shape[1]):
-        some = some or w.mark[STATUS, c] == CLOSED or w.mark[GROUNDED, c] == 1
+        some = some or w.mark[STATUS, c] == CLOSED or w.mark[GROUNDED, c] != 0
     return some
 
 

@@ -8,19 +8,25 @@ from lcpstep.compiled import by_address
 
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION = range(7)
-# Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact, contacts
-# of the last problem of several
-STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS = range(9)
-N_COUNTERS = 9
+# Places in the array of counters; the last: events still allowed, stretches of motion cut short by one plastic
+# impact, contacts of the last problem of several, rounds of the loop that found no event
+STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS, IDLE = range(10)
+N_COUNTERS = 10
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
-# that the piece was made with
+# that the piece was made with, whether an open contact may touch at rest, whether events go on at one instant, how
+# often that has been settled in this step, the time from the base of a piece at which its contact forces were decided
 SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
-N_NUMBERS = 9
+TOUCHING, STALLED, SETTLED, AHEAD = range(9, 13)
+N_NUMBERS = 13
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
+GROUND, LEFT = (
+    1,
+    2,
+)  # values of GROUNDED: the piece begins at gap zero; and the contact has just lost its force
 NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity jumps at a corner
 WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest of one;
 INERTIA = 2  # in their place: M alone
@@ -46,7 +52,8 @@ Q_FROM = 11  # state, acceleration at the base of a piece within which states ar
 V_FROM = 12
 A_FROM = 13
 Q_TIME = 14  # time since the start of the step up to which a coordinate has been moved on
-N_VEC = 15
+SWING = 15  # largest sum of the terms of a velocity at the impacts of this step
+N_VEC = 16
 # Rows of Work.num, a number per contact
 GAP = 0  # g
 RATE = 1  # u
@@ -73,10 +80,14 @@ BEFORE = 21  # gap velocity just before a corner
 IMPULSE_FROM = 22  # impulses at the base of a piece within which states are kept
 SINCE = 23  # time since the start of the step to which gap and gap velocity belong, and of the next zero
 NEXT_ZERO = 24
-N_NUM = 25
+TURNED = (
+    25  # time since the start of the step at which a contact last struck, closed or opened, and how often
+)
+TURNS = 26  # it has done so with hardly any time between
+N_NUM = 27
 # Rows of Work.mark, a whole number per contact
 STATUS = 0  # OPEN or CLOSED
-GROUNDED = 1  # the piece began at gap zero
+GROUNDED = 1  # 0, GROUND or LEFT
 HITS = 2  # impacts in this step
 CLOSE_HITS = 3  # the latest of them that came at hardly any distance
 PLASTIC = 4  # restitution of the event at hand is zero

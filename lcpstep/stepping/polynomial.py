@@ -16,21 +16,23 @@ import math
 from typing import Any
 
 from lcpstep.compiled import call, inline
-from lcpstep.dense import assign, factorise, solve
+from lcpstep.dense import assign, grow_factor, solve_factored
 from lcpstep.dynamics import gap_rates, gaps, obstacle, product
 from lcpstep.model import ABSENT
 from lcpstep.stepping.located_work import (
     A_TRY,
     ALPHA,
     BIAS,
-    CHOSEN,
+    CHANGE,
     CLOSED,
     CLOSED_NOW,
     DEGREE,
+    DOUBT,
     FORCE_NOW,
     FORCES,
     GAP_T,
     GAP_T_TRY,
+    HELD,
     Q_END,
     Q_STAGE,
     STATUS,
@@ -40,11 +42,12 @@ from lcpstep.stepping.located_work import (
     P,
     Q,
     V,
-    Z,
 )
 from lcpstep.stepping.smooth import free_acceleration, gap_bias, respond, within
 
 QUINTIC = 5
+DOUBTFUL = 64.0  # rounding of a factor's diagonal, in its own units, from which on forces are corrected,
+CORRECTIONS = 2  # so many times
 NODES = (
     (0.06943184420297371, 0.17392742256872692),
     (0.33000947820757187, 0.32607257743127307),
@@ -90,41 +93,57 @@ def constrained(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any, v: Any, out
         respond(m, w)
     for c in range(w.num.shape[1]):
         w.num[ALPHA, c] = product(w.G, out, c) + w.num[BIAS, c]
-    if not factor_closed(w, False) and not factor_closed(w, True):
-        return False
-    n_k = closed_forces(w)
-    for k in range(n_k):
-        for i in range(len(out)):
-            out[i] += w.MG[w.mark[CHOSEN, k], i] * w.num[Z, k]
+    factor_closed(w)
+    press(w, out, 1.0)
     return True
 
 
-def factor_closed(w: Any, loaded: bool) -> bool:
-    """Factors of the closed contacts' Delassus matrix; of those under load only, where all depend on each other."""
-    n_k = 0
-    for c in range(w.num.shape[1]):
-        w.num[P, c] = 0.0
-        if w.mark[STATUS, c] == CLOSED and (w.num[FORCE_NOW, c] > 0.0 or not loaded):
-            w.mark[CHOSEN, n_k] = c
-            n_k += 1
-    w.pivots[w.num.shape[1]] = n_k
-    W = w.problem[: n_k * n_k].reshape((n_k, n_k))
-    for i in range(n_k):
-        for j in range(n_k):
-            W[i, j] = w.W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
-    return factorise(W, w.pivots)
+def factor_closed(w: Any) -> None:
+    """Cholesky's factor of the closed contacts' Delassus matrix: of the independent ones, those under load first."""
+    n_c, n_k = w.num.shape[1], 0
+    L = w.problem.reshape((n_c, n_c))
+    for loaded in (True, False):
+        for c in range(n_c):
+            if w.mark[STATUS, c] == CLOSED and (w.num[FORCE_NOW, c] > 0.0) == loaded:
+                w.mark[HELD, n_k] = c
+                if grow_factor(w.W, L, w.mark[HELD], w.num[DOUBT], n_k):
+                    n_k += 1
+    w.pivots[n_c] = n_k
 
 
 @inline
-def closed_forces(w: Any) -> int:
-    """Forces that cancel w.num[ALPHA] of the closed contacts, into w.num[Z] and w.num[P]; their number."""
-    n_k = w.pivots[w.num.shape[1]]
+def press(w: Any, out: Any, share: float) -> None:
+    """Forces that cancel w.num[ALPHA] of the closed contacts, into w.num[P]; what they do to the acceleration `out`.
+
+    Where the factor is in doubt, as beside very unlike masses, what the acceleration leaves of `share` of the
+    obstacles' own w.num[BIAS] is taken out of both.
+    """
+    n_c, n_k, doubt = w.num.shape[1], w.pivots[w.num.shape[1]], 0.0
+    for c in range(n_c):
+        w.num[P, c] = 0.0
     for k in range(n_k):
-        w.num[Z, k] = -w.num[ALPHA, w.mark[CHOSEN, k]]
-    solve(w.problem[: n_k * n_k].reshape((n_k, n_k)), w.pivots, w.num[Z, :n_k])
+        doubt = max(doubt, w.num[DOUBT, k])
+    add_forces(w, out, n_k)
+    if doubt > DOUBTFUL:
+        for _ in range(CORRECTIONS):
+            for k in range(n_k):
+                c = w.mark[HELD, k]
+                w.num[ALPHA, c] = product(w.G, out, c) + share * w.num[BIAS, c]
+            add_forces(w, out, n_k)
+
+
+@inline
+def add_forces(w: Any, out: Any, n_k: int) -> None:
+    """Add to w.num[P] and to the acceleration what cancels w.num[ALPHA]."""
+    n_c = w.num.shape[1]
     for k in range(n_k):
-        w.num[P, w.mark[CHOSEN, k]] = w.num[Z, k]
-    return n_k
+        w.num[CHANGE, k] = -w.num[ALPHA, w.mark[HELD, k]]
+    solve_factored(w.problem.reshape((n_c, n_c)), n_k, w.num[CHANGE])
+    for k in range(n_k):
+        c, force = w.mark[HELD, k], w.num[CHANGE, k]
+        w.num[P, c] += force
+        for i in range(len(out)):
+            out[i] += w.MG[c, i] * force
 
 
 @inline
@@ -149,8 +168,8 @@ def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
             z.T[1, i] += m.frame_now[i, 1]
     if on_surface(m, plan, w, x):
         return True
-    if x[CLOSED_NOW] > 0 and not factor_closed(w, False) and not factor_closed(w, True):
-        return False
+    if x[CLOSED_NOW] > 0:
+        factor_closed(w)
     c_k, s_k = math.cos(m.omega * t), math.sin(m.omega * t)
     for k in range(DEGREE - 1):
         for i in range(n):
@@ -162,10 +181,7 @@ def taylor(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float) -> bool:
         if x[CLOSED_NOW] > 0:
             for c in range(w.num.shape[1]):
                 w.num[ALPHA, c] = product(m.G, w.vec[V_TRY], c)
-            n_k = closed_forces(w)
-            for d in range(n_k):
-                for i in range(n):
-                    w.vec[V_TRY, i] += w.MG[w.mark[CHOSEN, d], i] * w.num[Z, d]
+            press(w, w.vec[V_TRY], 0.0)
         for i in range(n):
             z.T[k + 2, i] = w.vec[V_TRY, i] / ((k + 1) * (k + 2))
         c_k, s_k = -m.omega * s_k / (k + 1), m.omega * c_k / (k + 1)
@@ -262,4 +278,4 @@ def contacts_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float,
 def force_at(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, tau: float, count: Any) -> bool:
     """Forces of the closed contacts at tau after the base of the piece, into w.num[P]."""
     state_at(m, plan, w, x, z, t, tau)
-    return acceleration(m, plan, w, x, t + tau, z.vec[Q], z.vec[V], w.vec[A_TRY], count)
+    return acceleration(m, plan, w, x, t + tau, z.vec[Q], z.vec[V], w.vec[V_TRY], count)

@@ -12,13 +12,14 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
-from lcpstep.stepping.contact_forces import hold, release, stick
+from lcpstep.stepping.contact_forces import hold, idle, release, speed_terms, stick
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
-from lcpstep.stepping.impulses import settle_rest, strike
+from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_loop import begin_step, finite
 from lcpstep.stepping.located_piece import penetrates
 from lcpstep.stepping.located_work import (
+    AHEAD,
     ALPHA,
     BIAS,
     BUFFER_FULL,
@@ -26,37 +27,42 @@ from lcpstep.stepping.located_work import (
     CLOSED,
     CLOSED_NOW,
     CORNER,
-    CUT,
     END,
     EPS,
     EVENT,
-    EVENTS,
     EVENTS_LEFT,
     FINISHED,
     FREE,
     GAP,
     GAP_T,
     GAP_TRY,
+    GROUND,
     GROUNDED,
     HALF,
     HIGH,
+    IDLE,
     IMPULSE,
     LAST,
     LATE,
     LCP_FAILED,
+    LEFT,
     LOW,
     NEXT_TIME,
     NOT_FINITE,
     OLDER,
     OPEN,
+    Q_STAGE,
     RATE,
+    ROUNDING,
     ROW,
     SAME_TIME,
     SIGMA,
     STATUS,
     STEP,
     TOO_MANY_EVENTS,
+    TOUCHING,
     UNDER_WAY,
+    V_STAGE,
     WHOLE,
     A,
     P,
@@ -72,7 +78,8 @@ from lcpstep.stepping.polynomial import (
     on_surface,
     state_at,
 )
-from lcpstep.stepping.scan import NOBODY, first_landing, first_release
+from lcpstep.stepping.scan import NOBODY, SOON, first_landing, first_release
+from lcpstep.stepping.settle import endless, settle
 from lcpstep.stepping.smooth import (
     free_acceleration,
     measure,
@@ -84,7 +91,8 @@ from lcpstep.stepping.smooth import (
     within,
 )
 
-STALLED = 1e-3  # of a step: a touch is no event twice within so short a time
+SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
+UNDECIDED = -1.0  # in place of a time ahead
 
 
 def run(
@@ -119,7 +127,7 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
     while True:
         if count[EVENT] + 4 * n_c + 4 > len(record.events) or count[ROW] + 4 > len(record.rows):
             return BUFFER_FULL
-        if count[EVENT] > count[EVENTS_LEFT]:
+        if count[EVENT] + count[IDLE] > count[EVENTS_LEFT]:
             return TOO_MANY_EVENTS
         now = t + x[SIGMA]
         if x[SIGMA] >= x[END]:
@@ -141,13 +149,13 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             x[SIGMA] = x[END]
             continue
         length = min(x[END] - x[SIGMA], plan.longest)
-        if not load(m, plan, w, x, record, now, count):
+        if not load(m, plan, w, x, z, record, now, length, count):
             return LCP_FAILED if finite(w) else NOT_FINITE
-        if x[EVENTS] > plan.per_step:
-            x[EVENTS] = 0.0
-            count[CUT] += 1
-            if not settle_rest(m, plan, w, x, record, now, count):
-                return LCP_FAILED
+        if endless(plan, x):
+            code = settle(m, plan, w, x, record, t, count)
+            if code != FINISHED:
+                return code
+            continue
         if not expand(m, plan, w, x, z, now, length, count):
             return NOT_FINITE
         opening, stop = first_release(m, plan, w, x, z, now, length, count)
@@ -163,32 +171,77 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             if code != FINISHED:
                 return code
         elif opening != NOBODY:
-            release(w, record, count, x, opening, t + x[SIGMA], 0.0)
-            if record.on_events or record.every == 1:
-                keep(w, record, count, t + x[SIGMA])
+            lose_force(m, plan, w, x, record, t + x[SIGMA], opening, count)
+
+
+def lose_force(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> None:
+    """The force of closed contact c has vanished: it opens, or where others are closed they decide together."""
+    if x[CLOSED_NOW] > 1:
+        x[AHEAD] = UNDECIDED
+        idle(x, count)
+        return
+    release(m, plan, w, record, count, x, c, t, 0.0)
+    w.mark[GROUNDED, c] = LEFT
+    if record.on_events or record.every == 1:
+        keep(w, record, count, t)
 
 
 @inline
-def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> bool:
+def load(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, length: float, count: Any) -> bool:
     """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
     n_c = w.num.shape[1]
     if n_c == 0:
         return True
+    undecided = x[AHEAD] == UNDECIDED
+    x[AHEAD] = 0.0
+    if undecided:
+        x[AHEAD] = SOON * length
+        return look_ahead(m, plan, w, x, z, record, t, x[AHEAD], count)
     if not free_acceleration(m, w, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FREE]):
         return False
-    needed = x[CLOSED_NOW] > 0
+    needed = x[CLOSED_NOW] > 0 or x[TOUCHING] > 0.0
     for c in range(n_c):
-        needed = needed or w.mark[GROUNDED, c] == 1
+        needed = needed or w.mark[GROUNDED, c] != 0
         w.num[OLDER, c] = 0.0
     if not needed:
         return True
-    gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
-    biases(m, plan, w, x, t, w.vec[Q], w.vec[V])
+    return decide(m, plan, w, x, record, t, w.vec[Q], w.vec[V], t, count)
+
+
+def look_ahead(
+    m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, ahead: float, count: Any
+) -> bool:
+    """The same where a contact force vanishes: which contacts are closed from now on shows a little later.
+
+    There forces are as their first derivative that does not vanish says. The way there is that of the forces now.
+    """
+    if not acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
+        return False
+    q, v = z.vec[Q_STAGE], z.vec[V_STAGE]
+    for i in range(len(q)):
+        q[i] = w.vec[Q, i] + ahead * (w.vec[V, i] + 0.5 * ahead * w.vec[A, i])
+        v[i] = w.vec[V, i] + ahead * w.vec[A, i]
+    later = t + ahead
+    if not free_acceleration(m, w, within(plan, x, later), q, v, w.vec[FREE]):
+        return False
+    x[TOUCHING] = 1.0
+    for c in range(w.num.shape[1]):
+        w.num[OLDER, c] = 0.0
+        if w.mark[GROUNDED, c] == LEFT:
+            w.mark[GROUNDED, c] = GROUND
+    return decide(m, plan, w, x, record, later, q, v, t, count)
+
+
+def decide(
+    m: Any, plan: Any, w: Any, x: Any, record: Any, at: float, q: Any, v: Any, t: float, count: Any
+) -> bool:
+    """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
+    n_c, before = w.num.shape[1], count[EVENT]
+    gap_rates(m, at, q, v, w.G, w.num[GAP_T])
+    biases(m, plan, w, x, at, q, v)
     for c in range(n_c):
         w.num[ALPHA, c] = product(w.G, w.vec[FREE], c) + w.num[BIAS, c]
-    if x[CLOSED_NOW] > 0 and not plan.constant:
-        if not refactor(m, w, t):
-            return False
+    if (x[CLOSED_NOW] > 0 or x[TOUCHING] > 0.0) and not plan.constant:
         respond(m, w)
     if not hold(m, plan, w, x, record, WHOLE, t, count):
         return False
@@ -196,6 +249,8 @@ def load(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -
         w.num[HALF, c] = (
             0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c]) if w.mark[STATUS, c] == OPEN else 0.0
         )
+    if count[EVENT] > before and (record.on_events or record.every == 1):
+        keep(w, record, count, t)
     return True
 
 
@@ -249,12 +304,13 @@ def slide(m: Any, w: Any, t: float) -> None:
 
 def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: int, count: Any) -> int:
     """Contact c lands at x[SIGMA]: an impact, or a touch without one."""
-    if c != CORNER and w.num[RATE, c] >= 0.0:
-        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, 1
-        if w.num[RATE, c] == 0.0 or x[SIGMA] - w.num[LAST, c] <= STALLED * plan.h:
-            stick(w, record, count, x, c, t)
+    still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
+    if c != CORNER and w.num[RATE, c] >= -still:
+        w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
+        if w.num[RATE, c] <= still or x[SIGMA] - w.num[LAST, c] <= SLOW * plan.h:
+            stick(m, plan, w, record, count, x, c, t)
         w.num[LAST, c] = x[SIGMA]
-        x[EVENTS] += 1
+        idle(x, count)
         return FINISHED
     if not acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
         return NOT_FINITE
@@ -268,6 +324,7 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
         w.num[HALF, d] = 0.5 * (product(w.G, w.vec[A], d) + w.num[BIAS, d])
     n_s = strike(m, plan, w, x, record, c, t, count)
     if n_s <= 0:
+        idle(x, count)
         return LCP_FAILED if n_s < 0 else FINISHED
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
         d = w.mark[CHOSEN, k]

@@ -22,6 +22,7 @@ from lcpstep.stepping.located_work import (
     FIRST_CONTACT,
     FIRST_COORDINATE,
     GAP,
+    GROUND,
     GROUNDED,
     HALF,
     HITS,
@@ -177,4 +178,4 @@ def gather(w: Any, now: float, struck: int) -> None:
         s = now - num[SINCE, c]
         num[GAP, c] += s * (num[RATE, c] + s * num[HALF, c])
         num[RATE, c] += 2.0 * s * num[HALF, c]
-        mark[GROUNDED, c] = 1 if c == struck else 0
+        mark[GROUNDED, c] = GROUND if c == struck else 0

@@ -12,7 +12,9 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dense import assign
+from lcpstep.stepping.contact_forces import pulls
 from lcpstep.stepping.located_work import (
+    AHEAD,
     CLOSED,
     CLOSED_NOW,
     EPS,
@@ -20,7 +22,9 @@ from lcpstep.stepping.located_work import (
     GAP_FROM,
     GAP_TO,
     GAP_TRY,
+    GROUNDED,
     HALF,
+    LEFT,
     OPEN,
     RATE,
     RATE_FROM,
@@ -34,6 +38,7 @@ from lcpstep.stepping.polynomial import NODES, contacts_at, force_at
 NOBODY = -1
 PARTS = 4  # intervals of a piece
 PROBES = 4  # of contact forces
+SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
 ITERATIONS = 60
 
 
@@ -125,7 +130,9 @@ def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: floa
                 g, _ = gap_at(m, plan, w, x, z, t, low, c)
                 if g > 0.0:
                     continue
-            tau = landing(m, plan, w, x, z, t, a, low, c, hop) if not hop or w.num[RATE, c] > 0.0 else 0.0
+            start = max(a, SOON * end) if w.mark[GROUNDED, c] == LEFT else a
+            rests = hop and start == 0.0 and w.num[RATE, c] <= 0.0
+            tau = 0.0 if rests else landing(m, plan, w, x, z, t, start, low, c, hop)
             if tau < first or found == NOBODY:
                 found, first = c, tau
         if found != NOBODY:
@@ -143,13 +150,13 @@ def first_release(
     """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does."""
     if x[CLOSED_NOW] == 0:
         return NOBODY, end
-    a, found, first = 0.0, NOBODY, end
+    a, found, first = x[AHEAD], NOBODY, end
     for probe in range(1, PROBES + 1):
         b = end * probe / PROBES
         force_at(m, plan, w, x, z, t, b, count)
         assign(z.num[RATE_TO], w.num[P])
         for c in range(w.num.shape[1]):
-            if w.mark[STATUS, c] == CLOSED and z.num[RATE_TO, c] < 0.0:
+            if w.mark[STATUS, c] == CLOSED and z.num[RATE_TO, c] < 0.0 and pulls(m, w, c):
                 tau = vanishing(m, plan, w, x, z, t, a, b, c, count)
                 if tau < first or found == NOBODY:
                     found, first = c, tau

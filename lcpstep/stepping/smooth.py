@@ -15,7 +15,15 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.compiled import inline
-from lcpstep.dense import assign, factorise, positive_definite, solve, solve_definite
+from lcpstep.dense import (
+    assign,
+    factorise,
+    grow_factor,
+    positive_definite,
+    solve,
+    solve_definite,
+    solve_factored,
+)
 from lcpstep.dynamics import bias, gap_rates, gaps, mass, product, total_force
 from lcpstep.model import ABSENT
 from lcpstep.stepping.located_joints import (
@@ -30,9 +38,10 @@ from lcpstep.stepping.located_joints import (
 from lcpstep.stepping.located_work import (
     A_TRY,
     BIAS,
-    CHOSEN,
+    CHANGE,
     CLOSED,
     CLOSED_NOW,
+    DOUBT,
     END,
     FORCE,
     FORCE_NOW,
@@ -43,6 +52,7 @@ from lcpstep.stepping.located_work import (
     GAP_T_TRY,
     GAP_TRY,
     HALF,
+    HELD,
     HIGH,
     IMPULSE,
     LOW,
@@ -58,7 +68,6 @@ from lcpstep.stepping.located_work import (
     A,
     Q,
     V,
-    Z,
 )
 
 LANDINGS = 6  # Newton iterations onto the surface
@@ -218,10 +227,7 @@ def put_on_surface(m: Any, plan: Any, w: Any, t: float) -> None:
         if not plan.constant:
             gap_rates(m, t, w.vec[Q], w.vec[V], w.G, w.num[GAP_T])
             respond(m, w)
-        if not newton_step(w, w.vec[Q]):
-            for c in range(w.num.shape[1]):
-                if w.num[GAP_TRY, c] != 0.0:
-                    lift(m, plan, w, w.vec[Q], c, -w.num[GAP_TRY, c])
+        newton_step(w, w.vec[Q])
 
 
 def settle_state(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any) -> None:
@@ -239,28 +245,23 @@ def settle_state(m: Any, plan: Any, w: Any, x: Any, t: float, q: Any) -> None:
     assign(w.vec[Q], w.vec[Q_BASE])
 
 
-def newton_step(w: Any, x: Any) -> bool:
+def newton_step(w: Any, x: Any) -> None:
     """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.num[GAP_TRY] of closed and violated contacts.
 
-    False if their constraints depend on each other.
+    Those that depend on others get no z of their own.
     """
-    n_k = 0
-    for c in range(w.num.shape[1]):
+    n_c, n_k = w.num.shape[1], 0
+    L = w.problem.reshape((n_c, n_c))
+    for c in range(n_c):
         if w.num[GAP_TRY, c] != 0.0 or w.mark[STATUS, c] == CLOSED:
-            w.mark[CHOSEN, n_k] = c
-            w.num[Z, n_k] = -w.num[GAP_TRY, c]
-            n_k += 1
-    W = w.problem[: n_k * n_k].reshape((n_k, n_k))
-    for i in range(n_k):
-        for j in range(n_k):
-            W[i, j] = w.W[w.mark[CHOSEN, i], w.mark[CHOSEN, j]]
-    if not factorise(W, w.pivots):
-        return False
-    solve(W, w.pivots, w.num[Z, :n_k])
+            w.mark[HELD, n_k] = c
+            if grow_factor(w.W, L, w.mark[HELD], w.num[DOUBT], n_k):
+                w.num[CHANGE, n_k] = -w.num[GAP_TRY, c]
+                n_k += 1
+    solve_factored(L, n_k, w.num[CHANGE])
     for k in range(n_k):
         for i in range(w.vec.shape[1]):
-            x[i] += w.MG[w.mark[CHOSEN, k], i] * w.num[Z, k]
-    return True
+            x[i] += w.MG[w.mark[HELD, k], i] * w.num[CHANGE, k]
 
 
 def lift(m: Any, plan: Any, w: Any, x: Any, c: int, distance: float) -> None:
