@@ -19,8 +19,10 @@ Rows = tuple[Row, ...]
 class Description:
     """All numbers of a scene; what is left empty is zero. The symbols are those of `callbacks`.
 
-    `restitution` is one number or one for each contact; `general`: as a `System`, whatever its matrices;
-    `function`: the force of a linear system as a function; `h`: step that its motion asks for.
+    restitution : one number, or one for each contact
+    h : the step that the motion asks for
+    gaps, general, function : gaps, or all forces, or the force of a linear system as functions, whether they
+        need it or not
     """
 
     M: Rows
@@ -47,6 +49,7 @@ class Description:
     J: Rows = ()
     joint_offset: Row = ()
     joint_bend: Row = ()
+    gaps: bool = False
     general: bool = False
     function: bool = False
     spread: float = 0.0
@@ -179,7 +182,7 @@ class Description:
         if not self.G:
             return None
         moves = any(self.amplitude)
-        if self.curved:
+        if self.curved or self.gaps:
             return Contacts(
                 self.contacts,
                 f.gap,
