@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,10 +32,10 @@ def judged(
 ) -> Verdict:
     """Runs of the methods on a scene; `tell` is called with the name of the method that is at work.
 
-    `share`: of the methods whose runs are held against others of the same question in other words.
+    `share`: of the runs that are held against others of the same question in other words; with 1 everything is done.
     """
     endings, findings, reference = {}, [], None
-    methods = list(methods)
+    methods = [x for x in methods if share == 1.0 or chance(d, x, 0).random() < WAYS[x].share]
     with np.errstate(all="ignore"):
         for name in dict.fromkeys([REFERENCE, *methods]):
             tell(name)
@@ -43,7 +43,7 @@ def judged(
             if name in methods:
                 endings[name] = r.status
                 findings += check(d, r)
-                rng = np.random.default_rng([zlib.crc32(repr(d).encode()), list(WAYS).index(name)])
+                rng = chance(d, name, 1)
                 if rng.random() < share:
                     findings += varied(d, r, rng, SEVERAL)
             if name == REFERENCE:
@@ -52,3 +52,8 @@ def judged(
             elif reference is not None and r.status != "NOT_FINITE":
                 findings += agrees(reference, r)
     return Verdict(endings, findings)
+
+
+def chance(d: Description, method: str, what: int) -> Any:
+    """Random numbers that depend on the scene and the method alone."""
+    return np.random.default_rng([zlib.crc32(repr(d).encode()), list(WAYS).index(method), what])

@@ -15,6 +15,11 @@ Row = tuple[float, ...]
 Rows = tuple[Row, ...]
 
 
+def numbers(x: Any) -> Any:
+    """An array as a row or rows of plain numbers."""
+    return tuple(map(numbers, x)) if np.ndim(x) > 1 else tuple(map(float, x))
+
+
 @dataclass(frozen=True)
 class Description:
     """All numbers of a scene; what is left empty is zero. The symbols are those of `callbacks`.

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.judge.describe import Description
+from benchmarks.judge.describe import Description, numbers
 
 
 @dataclass(frozen=True)
@@ -23,11 +23,6 @@ class Variant:
     shift: float = 0.0
     unit: Any = 1.0
     order: Any = None
-
-
-def numbers(x: Any) -> Any:
-    """An array as a row or rows of plain numbers."""
-    return tuple(map(numbers, x)) if np.ndim(x) > 1 else tuple(map(float, x))
 
 
 def longer(d: Description, rng: Any) -> Variant:

@@ -45,10 +45,9 @@ def base(d: Description, r: Run) -> Base:
     """A run with its companions."""
     times = looks(d, float(r.motion.t[-1]))
     q, size = positions(r, times), r.scales(d).length
-    by = max(ROUNDING, r.tolerance) * size
     noise = np.zeros(len(times))
     for k in range(2):
-        other = run(disturbed(d, by, 20 + k), r.method)
+        other = run(disturbed(d, max(ROUNDING, r.tolerance), size, 20 + k), r.method)
         noise = np.maximum(noise, distance(other, times, q))
     events = r.motion.counts.events + r.motion.counts.steps
     floor = (1e-9 + 1e-14 * events + (10.0 + 0.1 * events) * r.tolerance) * size
@@ -98,7 +97,10 @@ def kept(b: Base, rng: Any) -> Iterator[Finding]:
         other = run(b.d, b.run.method, keep=keep)
     except ValueError:
         return
-    if isinstance(keep, np.ndarray) and other.done and other.usable:
+    if isinstance(keep, np.ndarray) and other.done and len(other.motion.t) != len(keep):
+        text = f"{len(other.motion.t)} states of {len(keep)} times {keep.tolist()}"
+        yield Finding(b.run.method, "other: keep=times", text)
+    elif isinstance(keep, np.ndarray) and other.done and other.usable:
         apart = np.max(np.abs(other.motion.q - b.q), axis=1)
         yield from _first(b, np.maximum.accumulate(apart), "keep=times")
     yield from same_events(b, other, Variant(f"keep={keep if np.ndim(keep) == 0 else 'times'!r}", b.d))
