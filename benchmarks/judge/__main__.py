@@ -21,9 +21,7 @@ def main() -> int:
     parser.add_argument("--method", nargs="+", choices=sorted(WAYS), default=list(WAYS))
     parser.add_argument("--family", nargs="+", default=None, help="only these classes of scenes")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
-    parser.add_argument(
-        "--limit", type=float, default=CPU_LIMIT, help="CPU seconds of one method on one scene"
-    )
+    parser.add_argument("--limit", type=float, default=CPU_LIMIT, help="CPU seconds of one run")
     parser.add_argument("--shown", type=int, default=3, help="anomalies shown of each class and method")
     given = parser.parse_args()
     numbers = range(given.first, given.first + given.scenes)

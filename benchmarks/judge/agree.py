@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.judge import physics
-from benchmarks.judge.describe import Description
+from benchmarks.judge.describe import Description, numbers
 from benchmarks.judge.runs import Finding, Run, run
 from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
@@ -26,31 +26,32 @@ CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
 COMPANIONS = 6
 
 
-def disturbed(d: Description, by: float, seed: int) -> Description:
-    """The scene with everything a little different, but what is closed, at rest, or 0 or 1."""
+def disturbed(d: Description, share: float, size: float, seed: int) -> Description:
+    """The scene with everything a little different, but what is closed, at rest, or 0 or 1.
+
+    share : of every number; places are moved by that share of `size`
+    """
     rng = np.random.default_rng([seed, 99])
+    share = min(share, 0.1)
 
     def off(values: Any) -> Any:
-        return tuple(
-            float(x) for x in np.asarray(values) * (1.0 + by * rng.uniform(-1.0, 1.0, np.shape(values)))
-        )
+        return numbers(np.asarray(values) * (1.0 + share * rng.uniform(-1.0, 1.0, np.shape(values))))
 
-    q0 = np.array(d.q0) if d.J else np.array(d.q0) + by * rng.uniform(-1.0, 1.0, d.n)
-    t, scale = d.t_span[0], 1.0 + by * rng.uniform(-1.0, 1.0)
-    g = physics.gaps(d, t, np.array(d.q0)) if d.contacts else np.zeros(0)
-    offset = d.row("offset", d.contacts)
-    rates = d.rates()
+    q0 = np.array(d.q0) if d.J else np.array(d.q0) + share * size * rng.uniform(-1.0, 1.0, d.n)
+    t, faster = d.t_span[0], 1.0 + share * rng.uniform(-1.0, 1.0)
     new = replace(
-        d, q0=tuple(map(float, q0)), v0=tuple(float(x * scale) for x in d.v0), constant=off(d.constant),
-        cosine=off(d.cosine), sine=off(d.sine),
-        restitution=tuple(float(r * (1.0 - by * rng.uniform())) if r < 1.0 else 1.0 for r in rates),
+        d, q0=numbers(q0), v0=numbers(faster * np.array(d.v0)), constant=off(d.constant), cosine=off(d.cosine),
+        sine=off(d.sine),
+        restitution=numbers([r if r == 1.0 else r * (1.0 - share * rng.uniform()) for r in d.rates()]),
     )  # fmt: skip
     if not d.contacts:
         return new
-    wanted = np.maximum(np.array(off(g)), 0.0) * (g > 1e-15)
+    g = physics.gaps(d, t, np.array(d.q0))
+    wanted = np.where(g > 1e-15, np.maximum(off(g), 0.0), 0.0)
+    offset = d.row("offset", d.contacts)
     for _ in range(2):
         offset = offset + wanted - physics.gaps(replace(new, offset=tuple(offset)), t, q0)
-    return replace(new, offset=tuple(map(float, offset)))
+    return replace(new, offset=numbers(offset))
 
 
 def told_until(d: Description, log: Any, spread: float) -> float:
@@ -88,12 +89,12 @@ class Reference:
         self.size = r.scales(d).length
         self.noise = np.zeros(len(self.looks))
         for k in range(2):
-            self.noise = np.maximum(self.noise, self.companion(SMALL * self.size, k))
+            self.noise = np.maximum(self.noise, self.companion(SMALL, k))
         self.until = told_until(d, m.impacts, 1e-9 * d.length + 1e-6 * d.h)
 
-    def companion(self, by: float, k: int) -> Any:
+    def companion(self, share: float, k: int) -> Any:
         """How far a companion disturbed by so much has been from the reference until then; infinite where unknown."""
-        r = run(disturbed(self.d, by, k), self.run.method)
+        r = run(disturbed(self.d, share, self.size, k), self.run.method)
         return self.apart(r)
 
     def apart(self, r: Run) -> Any:
@@ -163,9 +164,9 @@ def _confirmed(ref: Reference, r: Run, finer: Run, k: int, own: float, distance:
     finest = run(ref.d, r.method, finer_by(r) ** 2)
     if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
         return []
-    by = max(3.0 * own, 1e-8 * ref.size)
+    share = max(3.0 * own / ref.size, 1e-8)
     for i in range(COMPANIONS):
-        if ref.companion(by, 10 + i)[k] > 0.3 * distance:
+        if ref.companion(share, 10 + i)[k] > 0.3 * distance:
             return []
     text = (
         f"{distance:.3g} from {ref.run.method} at t = {ref.looks[k]:.6g} in a motion of size {ref.size:.3g}, though "

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import REFERENCE, WAYS, Finding, run
+from benchmarks.judge.vary import varied
+
+SHARE, SEVERAL = 0.25, 2
 
 
 class Verdict(NamedTuple):
@@ -21,11 +25,17 @@ class Verdict(NamedTuple):
 
 
 def judged(
-    d: Description, methods: Iterable[str] = tuple(WAYS), tell: Callable[[str], None] = lambda name: None
+    d: Description,
+    methods: Iterable[str] = tuple(WAYS),
+    tell: Callable[[str], None] = lambda name: None,
+    share: float = SHARE,
 ) -> Verdict:
-    """Runs of the methods on a scene; `tell` is called with the name of the method that is at work."""
+    """Runs of the methods on a scene; `tell` is called with the name of the method that is at work.
+
+    `share`: of the runs that are held against others of the same question in other words; with 1 everything is done.
+    """
     endings, findings, reference = {}, [], None
-    methods = list(methods)
+    methods = [x for x in methods if share == 1.0 or chance(d, x, 0).random() < WAYS[x].share]
     with np.errstate(all="ignore"):
         for name in dict.fromkeys([REFERENCE, *methods]):
             tell(name)
@@ -33,9 +43,17 @@ def judged(
             if name in methods:
                 endings[name] = r.status
                 findings += check(d, r)
+                rng = chance(d, name, 1)
+                if rng.random() < share:
+                    findings += varied(d, r, rng, SEVERAL)
             if name == REFERENCE:
                 if r.usable:
                     reference = Reference(d, r)
             elif reference is not None and r.status != "NOT_FINITE":
                 findings += agrees(reference, r)
     return Verdict(endings, findings)
+
+
+def chance(d: Description, method: str, what: int) -> Any:
+    """Random numbers that depend on the scene and the method alone."""
+    return np.random.default_rng([zlib.crc32(repr(d).encode()), list(WAYS).index(method), what])

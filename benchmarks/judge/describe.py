@@ -15,12 +15,19 @@ Row = tuple[float, ...]
 Rows = tuple[Row, ...]
 
 
+def numbers(x: Any) -> Any:
+    """An array as a row or rows of plain numbers."""
+    return tuple(map(numbers, x)) if np.ndim(x) > 1 else tuple(map(float, x))
+
+
 @dataclass(frozen=True)
 class Description:
     """All numbers of a scene; what is left empty is zero. The symbols are those of `callbacks`.
 
-    `restitution` is one number or one for each contact; `general`: as a `System`, whatever its matrices;
-    `function`: the force of a linear system as a function; `h`: step that its motion asks for.
+    restitution : one number, or one for each contact
+    h : the step that the motion asks for
+    gaps, general, function : gaps, or all forces, or the force of a linear system as functions, whether they
+        need it or not
     """
 
     M: Rows
@@ -47,6 +54,7 @@ class Description:
     J: Rows = ()
     joint_offset: Row = ()
     joint_bend: Row = ()
+    gaps: bool = False
     general: bool = False
     function: bool = False
     spread: float = 0.0
@@ -179,7 +187,7 @@ class Description:
         if not self.G:
             return None
         moves = any(self.amplitude)
-        if self.curved:
+        if self.curved or self.gaps:
             return Contacts(
                 self.contacts,
                 f.gap,

@@ -1,21 +1,22 @@
 """Workers that can be killed: machine code cannot be interrupted, and a scene may make it run for ever or crash.
 
-A worker sets a timer on its own CPU time before every method; the system ends the process when that has run out,
-whatever it does. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
+A worker sets a timer on its own CPU time before every run; the system ends the process when that has run
+out. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
 """
 
 from __future__ import annotations
 
 import multiprocessing
 import signal
+import traceback
 from collections.abc import Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any, NamedTuple
 
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import Finding
+from benchmarks.judge.runs import Clock, Finding
 
-CPU_LIMIT = 20.0  # seconds of one method on one scene, with its variants
+CPU_LIMIT = 10.0  # seconds of one run
 WALL_LIMIT = 600.0  # without a word from a worker
 
 
@@ -32,18 +33,16 @@ def _work(pipe: Any, limit: float) -> None:
     """A worker: scenes in; names of methods at work and verdicts out."""
     from benchmarks.judge.case import judged
 
-    def tell(name: str) -> None:
-        pipe.send(name)
-        signal.setitimer(signal.ITIMER_PROF, limit)
-
+    Clock.limit = limit
     while True:
         task = pipe.recv()
         if task is None:
             return
         scene, methods = task
-        verdict = judged(scene, methods, tell)
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        pipe.send(verdict)
+        try:
+            pipe.send(judged(scene, methods, pipe.send))
+        except Exception as error:  # of the judge itself: raised where everybody sees it
+            pipe.send(RuntimeError(f"{error!r} in {scene!r}\n{traceback.format_exc()}"))
 
 
 class _Worker:
@@ -115,6 +114,8 @@ def _hear(w: _Worker) -> Any:
         word = w.pipe.recv()
     except (EOFError, OSError):
         return "dead"
+    if isinstance(word, RuntimeError):
+        raise word
     if isinstance(word, str):
         w.at = word
         return None

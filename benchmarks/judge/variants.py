@@ -1,0 +1,140 @@
+"""One scene in other words: whatever a method makes of it, it has to make the same of these.
+
+Each variant is a description, and how its motion is read as one of the first: a map of times and of coordinates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from benchmarks.judge.describe import Description, numbers
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A scene in other words: its time is t + shift, its coordinates q / unit, its contacts `order` of these."""
+
+    name: str
+    scene: Description
+    shift: float = 0.0
+    unit: Any = 1.0
+    order: Any = None
+
+
+def longer(d: Description, rng: Any) -> Variant:
+    """The same up to a later end, by whole steps."""
+    start, end = d.t_span
+    return Variant("another end", replace(d, t_span=(start, end + d.h * int(rng.integers(1, 9)))))
+
+
+def later(d: Description, rng: Any) -> Variant:
+    """The same at another time: phases of everything that is driven move with it."""
+    by = float(rng.choice([1.0, -3.0, 64.0]))
+    c, s = np.cos(d.force_omega * by), np.sin(d.force_omega * by)
+    cosine, sine = np.array([[c, -s], [s, c]]) @ np.stack([d.row("cosine"), d.row("sine")])
+    driven = any(d.cosine) or any(d.sine)
+    new = replace(
+        d, t_span=(d.t_span[0] + by, d.t_span[1] + by), phase=numbers(np.array(d.phase) - d.omega * by),
+        cosine=numbers(cosine) if driven else (), sine=numbers(sine) if driven else (),
+    )  # fmt: skip
+    return Variant("shifted in time", new, shift=by)
+
+
+def renumbered(d: Description, rng: Any) -> Variant:
+    """Contacts in another order."""
+    order = rng.permutation(d.contacts)
+
+    def mixed(x: Any) -> Any:
+        return tuple(x[i] for i in order) if isinstance(x, tuple) and x else x
+
+    names = ("G", "offset", "restitution", "amplitude", "phase", "bend", "round")
+    return Variant("contacts renumbered", replace(d, **{k: mixed(getattr(d, k)) for k in names}), order=order)
+
+
+def reordered(d: Description, rng: Any) -> Variant:
+    """Coordinates in another order."""
+    order = rng.permutation(d.n)
+    return _turned(d, np.eye(d.n)[order], "coordinates renumbered")
+
+
+def rescaled(d: Description, rng: Any) -> Variant:
+    """Coordinates in other units, powers of two, so that nothing is rounded."""
+    return _turned(d, np.diag(2.0 ** rng.integers(-3, 4, d.n)), "coordinates rescaled")
+
+
+def _turned(d: Description, T: Any, name: str) -> Variant:
+    """Coordinates T q in place of q."""
+    back = np.linalg.inv(T)
+
+    def matrix(x: Any) -> Any:
+        return numbers(back.T @ np.array(x) @ back) if x else x
+
+    def covector(x: Any) -> Any:
+        return numbers(back.T @ np.array(x)) if x else x
+
+    def rows(x: Any) -> Any:
+        return numbers(np.array(x) @ back) if x else x
+
+    new = replace(
+        d, M=matrix(d.M), K=matrix(d.K), C=matrix(d.C),
+        q0=numbers(T @ np.array(d.q0)), v0=numbers(T @ np.array(d.v0)),
+        constant=covector(d.constant), cosine=covector(d.cosine), sine=covector(d.sine), b=covector(d.b),
+        G=rows(d.G), J=rows(d.J), frame=numbers(T @ np.array(d.frame)) if d.frame else (),
+    )  # fmt: skip
+    return Variant(name, new, unit=back)
+
+
+def heavier(d: Description, rng: Any) -> Variant:
+    """Masses and forces in another unit: nothing moves differently."""
+    unit = float(2.0 ** rng.integers(-6, 7))
+
+    def more(x: Any) -> Any:
+        return numbers(unit * np.array(x)) if np.size(x) else x
+
+    names = ("M", "K", "C", "constant", "cosine", "sine")
+    scene = replace(
+        d, **{k: more(getattr(d, k)) for k in names}, spread=unit * d.spread, pendulum=unit * d.pendulum
+    )
+    return Variant("masses rescaled", scene)
+
+
+def as_general(d: Description, rng: Any) -> Variant:
+    """A linear system whose forces the library sees as a function of the state."""
+    return Variant("as a general system", replace(d, general=True))
+
+
+def as_curved(d: Description, rng: Any) -> Variant:
+    """Flat contacts that the library sees as functions of the state."""
+    return Variant("as curved contacts", replace(d, gaps=True))
+
+
+def rest(d: Description, rng: Any, motion: Any) -> Variant:
+    """The second part of the span, from where a motion is after some whole steps."""
+    steps = int(d.length / d.h)
+    t = d.t_span[0] + d.h * int(rng.integers(1, max(2, steps)))
+    q, v = motion.at(t)
+    return Variant("span in two parts", replace(d, q0=numbers(q), v0=numbers(v), t_span=(t, d.t_span[1])))
+
+
+VARIANTS: dict[str, Callable[[Description, Any], Variant]] = {
+    "end": longer, "time": later, "contacts": renumbered, "order": reordered, "units": rescaled, "mass": heavier,
+    "general": as_general, "curved": as_curved,
+}  # fmt: skip
+
+
+def fits(name: str, d: Description, method: str) -> bool:
+    """Whether a variant is the same question to a method; steps treat general systems by other formulas."""
+    round_joints = any(d.joint_bend)
+    return {
+        "contacts": d.contacts > 1,
+        "order": d.n > 1,
+        "units": d.n > 1 and not d.curved and not round_joints,
+        "time": not any(d.frame) and not (d.form and d.moving),
+        "general": method.startswith("event")
+        and not (d.general or d.nonlinear or d.function or any(d.frame)),
+        "curved": method.startswith("event") and d.contacts > 0 and not d.curved,
+    }.get(name, True)

@@ -1,0 +1,158 @@
+"""Whether a method gives the same answer to the same question in other words.
+
+How much may differ is told by companions of the method itself: the scene disturbed by rounding, or by the tolerance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmarks.judge.agree import disturbed, looks, positions
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.scales import EPS
+from benchmarks.judge.variants import VARIANTS, Variant, fits, rest
+from lcpstep.trajectory import Kind
+
+ROUNDING = 1e-12  # of the size of the motion: the disturbance of companions
+NOISE, TOLD = 300.0, 1e-4
+STRONG = 1e-3  # of the fastest impact: what is looked for in the other log
+LATE = 1e-6  # of the shortest time: how far apart partners may be where nothing else says more
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """A run, where it is, and how far its companions are from it."""
+
+    d: Description
+    run: Run
+    looks: Any
+    q: Any
+    allowed: Any
+    told: float  # until then its events are those of its companions
+
+    @property
+    def size(self) -> float:
+        """Length that positions are compared with."""
+        return self.run.scales(self.d).length
+
+
+def base(d: Description, r: Run) -> Base:
+    """A run with its companions."""
+    times = looks(d, float(r.motion.t[-1]))
+    q, size = positions(r, times), r.scales(d).length
+    noise = np.zeros(len(times))
+    for k in range(2):
+        other = run(disturbed(d, max(ROUNDING, r.tolerance), size, 20 + k), r.method)
+        noise = np.maximum(noise, distance(other, times, q))
+    events = r.motion.counts.events + r.motion.counts.steps
+    floor = (1e-9 + 1e-14 * events + (10.0 + 0.1 * events) * r.tolerance) * size
+    floor += r.tolerance + 1e3 * EPS * float(np.max(np.abs(q), initial=0.0))
+    unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
+    told = float(times[unclear[0]]) if len(unclear) else np.inf
+    return Base(d, r, times, q, floor + NOISE * noise, told)
+
+
+def distance(r: Run, times: Any, q: Any, variant: Variant | None = None) -> Any:
+    """How far a motion has been from places q until each time; infinite where it is not known."""
+    found = np.full(len(times), np.inf)
+    if r.usable:
+        shift, unit = (variant.shift, variant.unit) if variant else (0.0, 1.0)
+        ends = r.motion.t[[0, -1]] - shift
+        there = (times >= ends[0]) & (times <= ends[1] + 1e-12 * abs(ends[1]))
+        moments = np.clip(times[there] + shift, *r.motion.t[[0, -1]])
+        moved = positions(r, moments)
+        moved = moved @ unit.T if np.ndim(unit) else moved
+        found[there] = np.max(np.abs(moved - q[there]), axis=1, initial=0.0)
+        found[times < ends[0]] = 0.0
+    return np.maximum.accumulate(found)
+
+
+def varied(d: Description, r: Run, rng: Any, how_many: int) -> Iterator[Finding]:
+    """Some variants of a run, drawn at random."""
+    if not r.done or not r.usable:
+        return
+    b = base(d, r)
+    names = [x for x in (*VARIANTS, "keep", "rest") if fits(x, d, r.method)]
+    for name in rng.choice(names, min(how_many, len(names)), replace=False):
+        if name == "keep":
+            yield from kept(b, rng)
+            continue
+        try:
+            v = rest(d, rng, r.motion) if name == "rest" else VARIANTS[str(name)](d, rng)
+            other = run(v.scene, r.method)
+        except ValueError:  # a state that rounding has put within an obstacle is no start
+            continue
+        yield from same(b, other, v)
+
+
+def kept(b: Base, rng: Any) -> Iterator[Finding]:
+    """The same run that keeps other states."""
+    keep = [3, "impacts", b.looks][int(rng.integers(3))]
+    try:
+        other = run(b.d, b.run.method, keep=keep)
+    except ValueError:
+        return
+    if isinstance(keep, np.ndarray) and other.done and len(other.motion.t) != len(keep):
+        text = f"{len(other.motion.t)} states of {len(keep)} times {keep.tolist()}"
+        yield Finding(b.run.method, "other: keep=times", text)
+    elif isinstance(keep, np.ndarray) and other.done and other.usable:
+        apart = np.max(np.abs(other.motion.q - b.q), axis=1)
+        yield from _first(b, np.maximum.accumulate(apart), "keep=times")
+    yield from same_events(b, other, Variant(f"keep={keep if np.ndim(keep) == 0 else 'times'!r}", b.d))
+
+
+def same(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
+    """The same ending, places and events."""
+    if other.status == "refused":
+        return
+    if not other.done:
+        if b.told == np.inf:
+            yield Finding(b.run.method, f"other: {v.name}", f"{other.status} in place of DONE; {v.scene!r}")
+        return
+    found = list(_first(b, distance(other, b.looks, b.q, v), v.name, v.scene))
+    yield from found or same_events(b, other, v)
+
+
+def _first(b: Base, apart: Any, name: str, scene: Any = None) -> Iterator[Finding]:
+    bad = np.flatnonzero((apart > b.allowed) & (b.looks < b.told))
+    if len(bad):
+        k = int(bad[0])
+        text = f"{apart[k]:.3g} off at t = {b.looks[k]:.9g} in a motion of size {b.size:.3g}"
+        yield Finding(b.run.method, f"other: {name}", text + (f"; {scene!r}" if scene else ""))
+
+
+def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
+    """Every strong impact of either log has a partner in the other."""
+    if not other.done or not b.run.done:
+        return
+    logs = [impacts(b.run), impacts(other)]
+    start = v.scene.t_span[0] - v.shift + 1e-9 * b.d.length
+    times = [logs[0].time, logs[1].time - v.shift]
+    contacts = [logs[0].contact, logs[1].contact if v.order is None else v.order[logs[1].contact]]
+    fast = max((float(np.max(np.abs(x.before), initial=0.0)) for x in logs), default=0.0)
+    end = min(b.told, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
+    for i, j in ((0, 1), (1, 0)):
+        strong = (np.abs(logs[i].before) > STRONG * fast) & (times[i] < end) & (times[i] > start)
+        for t, c, u in zip(times[i][strong], contacts[i][strong], logs[i].before[strong], strict=True):
+            late = LATE * b.run.scales(b.d).time + 10.0 * _allowed(b, t) / abs(u)
+            late = late + b.d.h if b.run.method.startswith("moreau") else late
+            near = times[j][contacts[j] == c]
+            if not len(near) or np.min(np.abs(near - t)) > late:
+                text = f"impact of contact {c} at t = {t:.9g} with {u:.3g} has no partner; {v.scene!r}"
+                yield Finding(b.run.method, f"other events: {v.name}", text)
+                return
+
+
+def _allowed(b: Base, t: float) -> float:
+    return float(b.allowed[min(int(np.searchsorted(b.looks, t)), len(b.looks) - 1)])
+
+
+def impacts(r: Run) -> Any:
+    """The impacts proper of a log."""
+    log = r.motion.impacts
+    return log[log.kind == Kind.IMPACT]
