@@ -22,6 +22,7 @@ from lcpstep.errors import LcpStepError
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
+TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
 
 
@@ -155,6 +156,24 @@ def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     except ValueError as error:
         return str(error) + ";"
     return "the motion left the finite numbers, or a matrix is singular or not positive definite,"
+
+
+def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:
+    """The callbacks that answer the same question twice with other numbers."""
+    n_q, n_c = scene.n_q, scene.n_c
+    shapes = {"force": (n_q,), "frame": (n_q, 3), "mass": (n_q, n_q), "motion": (n_c, 3)}
+    shapes |= {"gap": (n_c,), "jacobian": (n_c, n_q), "gap_t": (n_c,), "bias": (n_c,)}
+    fields, found = plain_model(scene)._asdict(), []
+    for name, shape in shapes.items():
+        if callable(f := fields[name]):
+            first, again = np.zeros((2, *shape))
+            f(t, q, v, fields["p"], first)
+            for _ in range(TRIALS):
+                f(t, q, v, fields["p"], again)
+                if not np.array_equal(first, again):
+                    found.append(name)
+                    break
+    return found
 
 
 def _system(scene: Scene) -> dict[str, Any]:

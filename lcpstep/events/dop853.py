@@ -19,6 +19,10 @@ STAGES = 12
 EXTRA_STAGES = 3  # of the dense output
 UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step
+# Steps refused within a stretch of the scan: the right-hand side has no derivatives that a step could resolve
+HOPELESS, STRETCH = 2000, 1e-3
+UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
+REFUSED, STRETCH_END = range(2)
 
 
 @by_address
@@ -42,6 +46,8 @@ class Work(NamedTuple):
     y_new: Any  # (m,)
     y_stage: Any  # (m,)
     F: Any  # (7, m) dense output
+    first: Any  # (m,) the first stage of the last attempt
+    control: Any  # (2,) steps refused; the time up to which they are counted
     tab: Any  # the coefficients
 
 
@@ -62,7 +68,11 @@ def tableau() -> Tableau:
 
 def work(m: int) -> Work:
     """Work space for m equations."""
-    return Work(np.zeros((16, m)), np.zeros(m), np.zeros(m), np.zeros(m), np.zeros((7, m)), tableau())
+    vectors = np.zeros((4, m))
+    return Work(
+        K=np.zeros((16, m)), y=vectors[0], y_new=vectors[1], y_stage=vectors[2], F=np.zeros((7, m)),
+        first=vectors[3], control=np.array([0.0, -math.inf]), tab=tableau(),
+    )  # fmt: skip
 
 
 def combine(w: Any, h: float, stage: int) -> None:
@@ -96,6 +106,24 @@ def factor(error: float) -> float:
     if error == 0.0:
         return MOST
     return min(MOST, max(LEAST, SAFETY * error ** (-0.125)))
+
+
+def refuse(w: Any, t: float, scan: float) -> bool:
+    """Take note of a step from t that is refused; False where so many are that shorter ones will not help."""
+    if not w.control[STRETCH_END] - STRETCH * scan <= t <= w.control[STRETCH_END]:
+        w.control[REFUSED], w.control[STRETCH_END] = 0.0, t + STRETCH * scan
+    w.control[REFUSED] += 1.0
+    for i in range(len(w.first)):
+        w.first[i] = w.K[0, i]
+    return bool(w.control[REFUSED] <= HOPELESS)
+
+
+def repeats(w: Any, h: float, rtol: float, atol: float) -> bool:
+    """Whether the first stage, evaluated again after a refused step, is the same as far as the tolerance can tell."""
+    same = True
+    for i in range(len(w.first)):
+        same = same and abs(h * (w.K[0, i] - w.first[i])) <= UNLIKE * (atol + rtol * abs(w.y[i]))
+    return same
 
 
 def interpolant(w: Any, h: float) -> None:

@@ -28,7 +28,7 @@ from lcpstep.events.bookkeeping import (
     STEP_TOO_SMALL,
     TOO_MANY_EVENTS,
 )
-from lcpstep.model import ABSENT, Model, culprit
+from lcpstep.model import ABSENT, Model, culprit, unrepeatable
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -140,14 +140,16 @@ class Run(ABC):
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""
+        q, v = self.state
         if code == FINISHED:
             return "reached the end of the span"
         if code == TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {self.where}"
         if code == STEP_TOO_SMALL:
             tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
-            return f"the tolerances {tolerances} cannot be met {self.where}"
-        q, v = self.state
+            words = f"the tolerances {tolerances} cannot be met {self.where}"
+            names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
+            return f"{words}: {names} must be functions of time and state, and are not" if names else words
         times = np.linspace(self.now, self.interval_end, TRIALS)
         return f"{culprit(self.scene, times, q.copy(), v.copy())} {self.where}"
 

@@ -18,7 +18,17 @@ from lcpstep.events.bookkeeping import (
 )
 from lcpstep.events.clock import HIGH, RESOLUTION, T0, after
 from lcpstep.events.contact import hop
-from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, combine, error_norm, factor, interpolant
+from lcpstep.events.dop853 import (
+    EXTRA_STAGES,
+    LEAST,
+    STAGES,
+    combine,
+    error_norm,
+    factor,
+    interpolant,
+    refuse,
+    repeats,
+)
 from lcpstep.events.several.earliest import MEETS, NONE, OPENS, first_event, observe, remember
 from lcpstep.events.several.equations import measure, measure_on
 from lcpstep.events.several.forces import DONE, contact_forces
@@ -118,17 +128,19 @@ def take_step(s: Any, count: Any, longest: float) -> float:
     """DOP853 step no longer than `longest` that meets the tolerance; its size, or minus the reason of failure."""
     w, t = s.w, s.x[T0]
     h = min(s.x[NEXT_STEP], longest)
-    truncated = h < s.x[NEXT_STEP]
+    truncated, again = h < s.x[NEXT_STEP], False
     while True:
         good = stages(s, h)
         count[FORCES] += STAGES + 1
+        if good and again and not repeats(w, h, s.plan.rtol, s.plan.atol):
+            return -float(STEP_TOO_SMALL)
         error = error_norm(w, h, s.plan.rtol, s.plan.atol) if good else math.inf
         if error <= 1.0:
             break
         # rows held may become dependent, or a force infinite, beyond what a shorter step reaches
         h *= max(LEAST, factor(error)) if math.isfinite(error) else LEAST
-        truncated = False
-        if h <= 4.0 * RESOLUTION * max(abs(t), s.plan.scan):
+        truncated, again = False, good
+        if not refuse(w, t, s.plan.scan) or h <= 4.0 * RESOLUTION * max(abs(t), s.plan.scan):
             return -float(STEP_TOO_SMALL if good and math.isfinite(error) else NOT_FINITE)
     s.x[NEXT_STEP] = max(h * factor(error), s.x[NEXT_STEP] if truncated else 0.0)
     if not dense_stages(s, h):

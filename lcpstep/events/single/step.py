@@ -8,7 +8,17 @@ from lcpstep.dense import assign
 from lcpstep.events.bookkeeping import FORCES, NOT_FINITE, STEP_TOO_SMALL
 from lcpstep.events.clock import RESOLUTION, T0
 from lcpstep.events.contact import NOW
-from lcpstep.events.dop853 import EXTRA_STAGES, LEAST, STAGES, combine, error_norm, factor, interpolant
+from lcpstep.events.dop853 import (
+    EXTRA_STAGES,
+    LEAST,
+    STAGES,
+    combine,
+    error_norm,
+    factor,
+    interpolant,
+    refuse,
+    repeats,
+)
 from lcpstep.events.single.equations import LENGTH, NEXT_STEP, right_hand_side
 from lcpstep.events.single.motion import contact_at
 
@@ -18,19 +28,22 @@ REFINEMENTS = 4  # of an event's time by repeated Runge-Kutta steps
 def take_step(s: Any, count: Any, longest: float) -> float:
     """DOP853 step no longer than `longest` that meets the tolerance; its size, or minus the reason of failure."""
     h = min(s.x[NEXT_STEP], longest)
-    truncated = h < s.x[NEXT_STEP]
+    truncated, first = h < s.x[NEXT_STEP], True
     while True:
         if not rk_step(s, s.x[NOW], h):
             return -float(NOT_FINITE)
         count[FORCES] += STAGES + 1
+        if not first and not repeats(s.w, h, s.plan.rtol, s.plan.atol):
+            return -float(STEP_TOO_SMALL)
         error = error_norm(s.w, h, s.plan.rtol, s.plan.atol)
         if error - error != 0.0:
             return -float(NOT_FINITE)
         if error <= 1.0:
             break
         h *= max(LEAST, factor(error))
-        truncated = False
-        if h <= 4.0 * RESOLUTION * abs(s.x[NOW]):
+        truncated = first = False
+        smallest = 4.0 * RESOLUTION * max(abs(s.x[NOW]), s.plan.scan)
+        if not refuse(s.w, s.x[NOW], s.plan.scan) or h <= smallest:
             return -float(STEP_TOO_SMALL)
     s.x[NEXT_STEP] = max(h * factor(error), s.x[NEXT_STEP] if truncated else 0.0)
     if not rk_dense(s, s.x[NOW], h):
