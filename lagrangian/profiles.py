@@ -101,17 +101,20 @@ class CamProfile:
 def rotating_cam(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
     """Lift of a turning cam with its time derivatives, out[0] = (c, c', c''); p from `CamProfile.pack`.
 
-    A callback for `LinearSystem.frame` (the follower relative to the cam) or `LinearContacts.motion`.
+    A callback for `LinearSystem.frame` (the follower relative to the cam) or `LinearContacts.motion`. On a corner it
+    tells of the arc that begins there.
     """
     omega, fold = p[0], p[3]
     beta = omega * t + p[1]
     beta -= TWO_PI * math.floor(beta / TWO_PI)  # faster than the remainder
+    if beta == 0.0 and omega < 0.0:
+        beta = TWO_PI
     direction = omega
     if beta > fold:
         beta, direction = TWO_PI - beta, -omega
     at = HEAD
     last = HEAD + 4 * (int(p[4]) - 1)
-    while at < last and beta > p[at]:
+    while at < last and (beta > p[at] or (beta == p[at] and direction > 0.0)):
         at += 4
     kappa, rho = p[at + 1], p[at + 3]
     if kappa == 0.0:

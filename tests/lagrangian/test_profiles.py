@@ -77,6 +77,33 @@ def test_lift_and_slope_are_continuous_at_corners_and_the_curvature_jumps(corner
     assert abs(jump) > 0.1
 
 
+@pytest.mark.parametrize("turning", [1.0, -1.0])
+@pytest.mark.parametrize("corner", CORNERS[:3])
+def test_on_a_corner_the_lift_is_that_of_the_arc_that_begins_there(corner, turning):
+    out, nothing = np.zeros((2, 1, 3)), np.zeros(1)
+    for t, at in ((0.0, out[0]), (ONE_SIDED, out[1])):
+        rotating_cam(t, nothing, nothing, PROFILE.pack(turning, corner), at)
+    np.testing.assert_allclose(out[0], out[1], rtol=0, atol=1e-10)
+
+
+def test_the_first_arc_of_a_cam_without_symmetry_begins_at_zero():
+    arcs = (Arc(math.pi, 0.1, math.pi / 2, 0.5), Arc(2 * math.pi, 0.05, math.pi / 2, math.sqrt(0.2425)))
+    cam, nothing = CamProfile(arcs=arcs, symmetric=False), np.zeros(1)
+    for turning, arc in ((1.0, arcs[0]), (-1.0, arcs[1])):
+        out = np.zeros((1, 3))
+        rotating_cam(0.0, nothing, nothing, cam.pack(turning, 0.0), out)
+        root = math.sqrt(arc.rho**2 - arc.kappa**2)
+        np.testing.assert_allclose(out[0], [root, turning * arc.kappa, arc.kappa**2 / root], rtol=1e-12)
+
+
+def test_the_cam_is_pushed_up_from_the_very_start_of_the_lift():
+    scene, out = scenes.cam_follower(rpm=358.0), np.zeros((1, 3))
+    scene.system.frame(0.0, scene.q0, scene.v0, scene.p, out)
+    c, dc, ddc = cam_lift(mpf(math.pi / 2), mpf(math.pi / 2 + ONE_SIDED))
+    assert out[0, 2] == pytest.approx(float(ddc) * (2 * math.pi * 358 / 60) ** 2, rel=1e-13)
+    assert out[0, 2] == pytest.approx(297.6, abs=0.05)
+
+
 @pytest.mark.parametrize("rpm", [60.0, 358.0])
 @pytest.mark.parametrize("turns", [-2, 0, 1000])
 def test_the_turning_cam_gives_time_derivatives(rpm, turns):
