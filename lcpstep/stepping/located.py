@@ -23,13 +23,13 @@ from lcpstep.stepping import (
     adaptive,
     adaptive_located,
     carried,
-    interpolation,
     polynomial_loop,
     refine,
     smooth,
 )
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
+from lcpstep.stepping.interpolation import parabolic as between
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_event import straighten
@@ -377,7 +377,7 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=interpolation.parabolic(t, q, v, self.kept.all) if self.method.order == 2 else self.again(*last[1:]),
+            dense=between(t, q, v, self.kept.all) if self.method.order == 2 else self.again(*last[1:]),
             joint_impulse=joint,
         )  # fmt: skip
 
