@@ -23,13 +23,13 @@ from lcpstep.stepping import (
     adaptive,
     adaptive_located,
     carried,
-    interpolation,
     polynomial_loop,
     refine,
     smooth,
 )
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
+from lcpstep.stepping.interpolation import parabolic as between
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_event import straighten
@@ -377,7 +377,7 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=interpolation.parabolic(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
+            dense=between(t, q, v, self.kept.all) if self.method.order == 2 else self.again(*last[1:]),
             joint_impulse=joint,
         )  # fmt: skip
 
@@ -387,14 +387,19 @@ class _Run:
         of_joints = np.zeros(0) if joints is None else joints.own.num[JOINT_IMPULSE]
         return np.concatenate([self.work.num[work.IMPULSE], of_joints])
 
-    def again(self) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, by another run that keeps them."""
+    def again(self, q: Array, v: Array) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, by another run that keeps them; one that ends early, ends in the state q, v."""
         method, scene = self.method, self.scene
 
         def at(times: Array) -> tuple[Array, Array]:
             unique, place = np.unique(times, return_inverse=True)
-            m = method.run(scene, Kept.parse(unique, scene.t_span), lambda _: None)
-            return m.q[place], m.v[place]
+            try:
+                m = method.run(scene, Kept.parse(unique, scene.t_span), lambda _: None)
+            except SimulationError as stopped:
+                m = stopped.trajectory
+            n = len(unique) - len(m.t)  # times as late as the end to rounding, which the run no longer passes
+            all_q, all_v = np.vstack([m.q, np.tile(q, (n, 1))]), np.vstack([m.v, np.tile(v, (n, 1))])
+            return all_q[place], all_v[place]
 
         return at
 
