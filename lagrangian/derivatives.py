@@ -27,8 +27,8 @@ AGREE = 0.05  # relative: less may be the user's own approximation
 RESOLVED = 0.02  # relative: Gauss's rule against the midpoint rule
 SAME = math.cos(0.3)  # of the angle between (difference, integral) over two intervals
 STEEPEST = 3.0  # times steeper may a function be over the next shorter interval
+CONVERGING = (4.0, 100.0)  # by how much slopes change less from length to length: 8, or 64 where f'' = 0
 ENOUGH = 3  # intervals that disagree
-LONGEST = (0, 1)  # lengths that are not small beside the scale
 NEGLIGIBLE = 1e-3  # of the largest change of a row: what a user may leave out
 ROUNDING = 16 * np.finfo(float).eps
 
@@ -108,7 +108,7 @@ class Look(NamedTuple):
         while last > 0 and self.wrong[tell[last - 1], row] and self._alike(tell[last - 1 :], row):
             last -= 1
         k = tell[last:]
-        whole = last == 0 and len(tell) > 0 and tell[0] in LONGEST
+        whole = last == 0 and len(tell) > 0 and tell[0] == 0
         return len(k) >= ENOUGH and (whole or self._smooth(k, row))
 
     def _alike(self, k: Any, row: int) -> bool:
@@ -123,7 +123,8 @@ class Look(NamedTuple):
         slope, noise = self.difference[k, row] / LENGTHS[k], self.rounding[k, row] / LENGTHS[k]
         change = np.abs(np.diff(slope))
         known = change[1:] > 10.0 * noise[2:]
-        return bool(np.any(known & (4.0 * change[1:] <= change[:-1]) & (change[:-1] <= 16.0 * change[1:])))
+        fewer, more = CONVERGING
+        return bool(np.any(known & (fewer * change[1:] <= change[:-1]) & (change[:-1] <= more * change[1:])))
 
 
 def _wrong(sides: list[Look], largest: Array) -> Truth:

@@ -153,7 +153,7 @@ def test_exceptions_of_callbacks_are_told_as_they_are(force, said, method):
 
 def test_an_exception_is_not_passed_over_where_the_method_could_have_gone_on():
     with pytest.raises(SimulationError, match="only here"):
-        simulate(falling(raises_once), EventDriven())
+        simulate(falling(raises_once, t_end=0.301), EventDriven())
     assert simulate(falling(raises_once), Moreau(1e-2)).status is Status.DONE  # it is never asked there
 
 
@@ -256,7 +256,8 @@ COMPILED = {
     "default": with_default, "keyword": by_keyword, "partial": functools.partial(with_g_first, 8.0),
     "partial by keyword": functools.partial(with_two_more, a=4.0, b=2.0), "lists": lists, "solve": solves,
     "stars": stars, "closure": around(8.0, lambda x: x), "static": Field.static, "njit": numba.njit(falls),
-    "lambda": lambda t, q, v, p, out: out.fill(-8.0), "partial of njit": functools.partial(numba.njit(with_g_first), 8.0),
+    "lambda": lambda t, q, v, p, out: out.fill(-8.0),
+    "partial of njit": functools.partial(numba.njit(with_g_first), 8.0),
 }  # fmt: skip
 PLAIN = {
     "dictionary": (reads_a_dictionary, "'CONSTANTS'"), "import": (imports, "IMPORT_NAME"),
