@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from types import CellType, FunctionType
 from typing import Any
 
 import numpy as np
@@ -116,19 +117,53 @@ def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shap
     """Value of a callback in plain Python; an error if it does not fill `out` of the given shape."""
     out = np.full(shape, np.nan)
     t, q, v, p = at
-    where = f"at t = {t:g}, q = {shown(q)}, v = {shown(v)}"
+    where = f"at t = {t:.9g}, q = {shown(q)}, v = {shown(v)}"
     try:
-        returned = f(t, q.copy(), v.copy(), p.copy(), out)
+        returned = python(f)(t, read_only(q), read_only(v), read_only(p), out)
     except Exception as error:  # the user's code may raise anything; the message says whose it is
         raise ValueError(
             f"{name}: f(t, q, v, p, out) with q, v of shape {q.shape}, p of shape {p.shape} and out of "
-            f"shape {shape} failed {where}: {error}"
+            f"shape {shape} failed {where}: {said(error)}"
         ) from error
     if returned is not None:
         raise ValueError(f"{name}: expected f(t, q, v, p, out) to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
         raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {shown(out)}")
     return out
+
+
+def read_only(x: Array) -> Array:
+    """A view of x through which it cannot be changed."""
+    view = x.view()
+    view.flags.writeable = False
+    return view
+
+
+def said(error: Exception) -> str:
+    """What an exception says, and what it is."""
+    if "read-only" in str(error):
+        return f"{error}; q, v and p are not the callback's to change"
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+
+
+def python(f: Any, callers: tuple[Any, ...] = ()) -> Any:
+    """A callback in plain Python, also where the user has compiled it or what it calls: numpy checks all indices."""
+    f = getattr(f, "py_func", f)
+    if not isinstance(f, FunctionType):
+        return f
+    callers = (*callers, f)
+    names = {name: f.__globals__.get(name) for name in f.__code__.co_names}
+    fast = {name: python(g, callers) for name, g in names.items() if getattr(g, "py_func", f) not in callers}
+    cells = [cell for cell in f.__closure__ or () if hasattr(cell.cell_contents, "py_func")]
+    if not fast and not cells:
+        return f
+    closure = tuple(
+        CellType(python(cell.cell_contents, callers)) if cell in cells else cell
+        for cell in f.__closure__ or ()
+    )
+    copy = FunctionType(f.__code__, f.__globals__ | fast, f.__name__, f.__defaults__, closure)
+    copy.__kwdefaults__ = f.__kwdefaults__
+    return copy
 
 
 def shown(x: NDArray[Any]) -> str:

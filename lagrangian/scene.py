@@ -14,6 +14,7 @@ from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
+from lagrangian.relations import check_derivatives
 from lagrangian.system import LinearSystem, System
 
 ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
@@ -76,6 +77,7 @@ class Scene:
             self._check_start(*self.contacts.state(*at))
         if self.joints is not None:
             self._check_joints(*joint_state(self.joints, *at))
+        check_derivatives(self, at[:3])
         if self.exact is not None and not self._starts_exact():
             object.__setattr__(self, "exact", None)
 

@@ -8,8 +8,8 @@ User functions ("callbacks") all have the signature
 
     f(t, q, v, p, out)      t: time; q, v: (n_q,); p: (n_p,) parameters; out: filled in by f
 
-and enter a kernel as the address of a C function, so that a kernel is compiled once, kept on disk, and
-serves every scene. Nothing here imports numba before something is compiled.
+and enter a kernel as the address of a C function (see `lcpstep.callbacks`), so that a kernel is compiled once, kept
+on disk, and serves every scene. Nothing here imports numba before something is compiled.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ import functools
 import hashlib
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
 
 import numpy as np
 
-Callback = Callable[..., None]
 F = TypeVar("F", bound=Callable[..., Any])
 C = TypeVar("C", bound=type[Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
@@ -104,21 +103,6 @@ def entry_point(f: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
         return f
     dispatcher: Any = compiled(f)
     return cast(Callable[..., Any], dispatcher.compile(_types(arguments)))
-
-
-def address(f: Callback, ndim: int) -> int:
-    """Address of callback f compiled to machine code, for an `out` of ndim dimensions.
-
-    Raises whatever numba raises when f cannot be compiled.
-    """
-    vector, matrix = np.zeros(1), np.zeros((1, 1))
-    return _address(f, None, 0.0, vector, vector, vector, vector if ndim == 1 else matrix)
-
-
-def first_order_address(f: Callback) -> int:
-    """Address of a function f(t, x, p, out) of a first-order system compiled to machine code."""
-    vector = np.zeros(1)
-    return _address(f, None, 0.0, vector, vector, vector)
 
 
 def solver_address(f: Callable[..., int], work: Any) -> int:
@@ -208,30 +192,46 @@ def _keep_on_disk(compilable: Any, f: FunctionType, copy: FunctionType, kind: st
 
 
 def _with_compiled_callees(f: FunctionType, without: frozenset[FunctionType]) -> FunctionType:
-    """A copy of f in which every plain function that it names is replaced by its compiled twin.
-
-    Its name carries a fingerprint of all that its machine code depends on, for machine code is linked and kept on
-    disk by name: two variants must never share one.
-    """
-    callees = {
-        name: _callee(absent, frozenset()) if g in without else _callee(g, without and without & _reached(g))
-        for name, g in _callees(f)
+    """A copy of kernel f in which every plain function that it names is replaced by its compiled twin."""
+    twins = {
+        g: _callee(absent, frozenset()) if g in without else _callee(g, without and without & _reached(g))
+        for _, g in _callees(f)
     }
-    copy = FunctionType(f.__code__, {**f.__globals__, **callees}, f.__name__, f.__defaults__, f.__closure__)
-    copy.__kwdefaults__ = f.__kwdefaults__
     left_out = (
         [_code_text(cast(FunctionType, absent)), *sorted(g.__qualname__ for g in without)] if without else []
     )
-    fingerprint = hashlib.sha256(f"{_dependencies(f)} {left_out}".encode()).hexdigest()[:FINGERPRINT]
+    return with_twins(f, twins, str(left_out))
+
+
+def with_twins(f: FunctionType, twins: Mapping[FunctionType, Any], variant: str) -> FunctionType:
+    """A copy of f that names compiled twins in the place of plain functions.
+
+    Its name carries a fingerprint of all that its machine code depends on, and of which variant this is, for machine
+    code is linked and kept on disk by name: two variants must never share one.
+    """
+    named = {name: twins[g] for name, g in _callees(f)}
+    around = zip(f.__code__.co_freevars, f.__closure__ or (), strict=True)
+    closure = tuple(CellType(named[name]) if name in named else cell for name, cell in around)
+    copy = FunctionType(f.__code__, {**f.__globals__, **named}, f.__name__, f.__defaults__, closure)
+    copy.__kwdefaults__ = f.__kwdefaults__
+    fingerprint = hashlib.sha256(f"{_dependencies(f)} {variant}".encode()).hexdigest()[:FINGERPRINT]
     copy.__module__, copy.__qualname__ = f.__module__, f"{f.__qualname__}_{fingerprint}"
     return copy
 
 
 def _callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
-    for name in _global_names(f):
-        g = f.__globals__.get(name)
+    """Functions that f names, whether as globals or in the function around it; those with twins already as well."""
+    named = [(name, f.__globals__.get(name)) for name in _global_names(f)]
+    for name, g in [*named, *_cells(f)]:
+        g = getattr(g, "py_func", g)
         if isinstance(g, FunctionType):
             yield name, g
+
+
+def _cells(f: FunctionType) -> Iterator[tuple[str, Any]]:
+    """Variables of the function around f that f reads."""
+    for name, cell in zip(f.__code__.co_freevars, f.__closure__ or (), strict=True):
+        yield name, cell.cell_contents
 
 
 @functools.cache
@@ -283,8 +283,7 @@ def _reached(f: FunctionType) -> frozenset[FunctionType]:
 
 
 def _code_text(f: FunctionType) -> str:
-    cells = zip(f.__code__.co_freevars, (cell.cell_contents for cell in f.__closure__ or ()), strict=True)
-    read = [f"{name}={_value_text(value)}" for name, value in [*_values_read(f), *cells]]
+    read = [f"{name}={_value_text(value)}" for name, value in [*_values_read(f), *_cells(f)]]
     defaults = [_value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
     marks = [name for name in ("inline", "brief") if hasattr(f, name)]
     codes = []

@@ -1,33 +1,32 @@
 """A scene as kernels see it: numbers, arrays and the addresses of the user's functions.
 
-`model(scene)` compiles the scene's callbacks. One that numba cannot compile is kept as it is, with a warning,
-and the whole run then takes the same kernels in plain Python.
+`model(scene)` compiles the scene's callbacks. Where numba cannot compile one, all are kept as they are, with a
+warning, and the whole run takes the same kernels in plain Python.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scene
 from lagrangian.checks import Callback
+from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
-from lcpstep import compiled
+from lcpstep import callbacks, compiled
+from lcpstep.callbacks import NotCompiled
 from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
+from lcpstep.faults import fault, plain
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
 TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
-
-
-class UncompiledCallback(UserWarning):
-    """A user's function that numba cannot compile; the run takes plain Python, some hundred times slower."""
+TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tangents stand for normals
 
 
 def require(scene: Scene, method: str, *, joints: bool, friction: bool) -> None:
@@ -85,7 +84,8 @@ class Model(NamedTuple):
 
 def model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model, and whether every callback of it could be compiled."""
-    return _model(scene, _system(scene) | _contacts(scene, scene.contacts))
+    (m,), fast = _models(scene, contacts=_contacts(scene, scene.contacts))
+    return m, fast
 
 
 def plain_model(scene: Scene) -> Model:
@@ -95,66 +95,80 @@ def plain_model(scene: Scene) -> Model:
 
 def joint_model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    contacts = None if scene.joints is None else scene.joints.as_contacts()
-    return _model(scene, _system(scene) | _contacts(scene, contacts))
+    (m,), fast = _models(scene, joints=_joints(scene))
+    return m, fast
 
 
 def tangent_model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    return _model(scene, _system(scene) | _tangents(scene))
+    (m,), fast = _models(scene, friction=_tangents(scene))
+    return m, fast
 
 
 def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
     """Models of the contacts, joints and tangents of a scene, any of them empty; whether all could be compiled."""
-    joints = None if scene.joints is None else scene.joints.as_contacts()
     friction = scene.contacts is not None and scene.contacts.friction is not None
-    tangents = _tangents(scene) if friction else _contacts(scene, None)
-    fields = [
-        _system(scene) | x for x in (_contacts(scene, scene.contacts), _contacts(scene, joints), tangents)
-    ]
-    made = [_model(scene, each) for each in fields]
-    fast = all(compiled_too for _, compiled_too in made)
-    normal, joint, tangent = (m if fast else Model(**f) for (m, _), f in zip(made, fields, strict=True))
+    (normal, joint, tangent), fast = _models(
+        scene,
+        contacts=_contacts(scene, scene.contacts),
+        joints=_joints(scene),
+        friction=_tangents(scene) if friction else _contacts(scene, None),
+    )
     return (normal, joint, tangent), fast
 
 
-def _model(scene: Scene, fields: dict[str, Any]) -> tuple[Model, bool]:
-    fields, fast = with_addresses(scene, fields)
-    return Model(**fields), fast
+def _models(scene: Scene, **constraints: dict[str, Any]) -> tuple[list[Model], bool]:
+    """A model for each kind of constraints; where one callback of any cannot be compiled, all are plain."""
+    (system, *rows), fast = with_addresses(scene, system=_system(scene), **constraints)
+    return [Model(**(system | row)) for row in rows], fast
 
 
-def with_addresses(scene: Scene, fields: dict[str, Any]) -> tuple[dict[str, Any], bool]:
-    """The fields with compiled callbacks in the place of plain ones; all are plain where one cannot be compiled."""
-    callbacks = {name: f for name, f in fields.items() if callable(f)}
-    addresses = {} if compiled.jit_disabled() else _compile(scene, callbacks)
-    fast = len(addresses) == len(callbacks)
-    return (fields | addresses if fast else fields), fast
+def with_addresses(scene: Scene, **parts: dict[str, Any]) -> tuple[list[dict[str, Any]], bool]:
+    """Fields with compiled callbacks in the place of plain ones; all are plain where one cannot be compiled."""
+    given = {part: {name: f for name, f in fields.items() if callable(f)} for part, fields in parts.items()}
+    made: dict[str, dict[str, Any]] = {part: {} for part in parts}
+    if not compiled.jit_disabled():
+        made = {part: _compile(scene, part, fs) for part, fs in given.items()}
+    fast = all(len(made[part]) == len(fs) for part, fs in given.items())
+    if not fast:
+        made = {part: {name: plain(f) for name, f in fs.items()} for part, fs in given.items()}
+    return [fields | made[part] for part, fields in parts.items()], fast
 
 
-def _compile(scene: Scene, callbacks: dict[str, Callback]) -> dict[str, int]:
+def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, int]:
     addresses = {}
-    for name, f in callbacks.items():
+    for name, f in given.items():
         ndim = 1 if name in ("force", "gap", "gap_t", "bias") else 2
         try:
-            addresses[name] = compiled.address(f, ndim)
-        except Exception as error:  # numba's errors share no base class
-            reason = str(error).strip().splitlines()[0] if str(error) else type(error).__name__
-            warnings.warn(
-                f"{name} of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
-                UncompiledCallback,
-                stacklevel=5,
-            )
+            addresses[name] = callbacks.address(f, ndim)
+        except NotCompiled as why:
+            said = TANGENT.get(name, name) if part == "friction" else name
+            prefix = "" if part in ("system", "contacts") else f"{part}."
+            callbacks.warn(f"{prefix}{said} of scene {scene.name!r}", f, why)
     return addresses
 
 
 def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
-    """Which callback is not finite at a state, at the first of the given times where one is, in words."""
+    """Which callback has raised an exception, or is not finite at one of the times.
+
+    It is asked for at the state that the motion has reached, and at those that this leads to in a straight line.
+    """
+    raised, times = fault(), list(times)
+    states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
+    if raised is not None:
+        states = [(raised.t, raised.q, raised.v)]
     try:
-        for t in times:
-            scene.system.trial(t, q, v, np.array(scene.p))
-            scene.gap(t, q, v)
+        for t, x, x_t in states:
+            at = t, x, x_t, np.array(scene.p)
+            scene.system.trial(*at)
+            if scene.contacts is not None:
+                scene.contacts.state(*at)
+            if scene.joints is not None:
+                joint_state(scene.joints, *at)
     except ValueError as error:
         return str(error) + ";"
+    if raised is not None:
+        return f"{raised};"
     return "the motion left the finite numbers, or a matrix is singular or not positive definite,"
 
 
@@ -174,6 +188,18 @@ def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:
                     found.append(name)
                     break
     return found
+
+
+def hybrid_culprit(scene: HybridScene, mode: str) -> str:
+    """The same of a system with modes that has stopped in this one."""
+    raised = fault()
+    if raised is None:
+        return f"the field of mode {mode!r}, a guard of it or the state is not finite"
+    try:
+        scene.system.trial(raised.t, raised.q, np.array(scene.p))
+    except ValueError as error:
+        return str(error)
+    return str(raised)
 
 
 def _system(scene: Scene) -> dict[str, Any]:
@@ -212,6 +238,10 @@ def _tangents(scene: Scene) -> dict[str, Any]:
         motion[:, 1] = -np.asarray(friction.slip)
         fields |= {"G": np.array(friction.tangent)}
     return fields | {"motion_now": motion}
+
+
+def _joints(scene: Scene) -> dict[str, Any]:
+    return _contacts(scene, None if scene.joints is None else scene.joints.as_contacts())
 
 
 def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[str, Any]:

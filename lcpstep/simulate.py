@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol, overload
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Protocol, overload
 
 from lagrangian import HybridScene, Scene
-from lcpstep.errors import LcpStepError
+from lcpstep.errors import LcpStepError, SimulationError
+from lcpstep.faults import fault, forget
+from lcpstep.model import culprit, hybrid_culprit
 from lcpstep.recording import Keep, Kept
+from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -73,9 +77,20 @@ def simulate(
     if isinstance(method, type) or not hasattr(method, "run"):
         raise TypeError(f"method: expected for example lcpstep.Moreau(h=1e-4), got {method!r}")
     kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
+    forget()
     if isinstance(scene, HybridScene):
         if not hasattr(method, "run_hybrid"):
             raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
+        if fault() is not None:
+            raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
-    return method.run(scene, kept, report)
+    run = method.run(scene, kept, report)
+    if fault() is not None:
+        raise _raised(run, culprit(scene, (), run.q, run.v))
+    return run
+
+
+def _raised(run: Any, message: str) -> SimulationError:
+    """The error of a run in which a callback has raised an exception that no step has come to feel."""
+    return SimulationError(message, replace(run, status=Status.NOT_FINITE, message=message))

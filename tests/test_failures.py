@@ -116,6 +116,7 @@ METHODS = [
     pytest.param(Moreau(1e-2, theta=0.0), id="moreau, explicit"),
     pytest.param(EventDriven(), id="event-driven"),
     pytest.param(Located(1e-2), id="located"),
+    pytest.param(Located(1e-2, order=4), id="order four"),
 ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from lcpstep.events.bookkeeping import (
     STEP_TOO_SMALL,
     TOO_MANY_EVENTS,
 )
+from lcpstep.faults import forget
 from lcpstep.model import ABSENT, Model, culprit, unrepeatable
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
@@ -93,7 +95,7 @@ class Run(ABC):
                 try:
                     code = self.advance(int(self.count[STEP]) + PORTION)
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
-                    message = f"a callback failed after t = {self.now:.9g} s: {error}"
+                    message = self.message(NOT_FINITE)
                     raise SimulationError(message, self.trajectory(Status.NOT_FINITE, message)) from error
                 self.empty()
                 progress(self.now)
@@ -218,13 +220,24 @@ def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]
     for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
         if f != ABSENT:
             rates = np.zeros((len(times), n, 3))
-            (sample if callable(f) else compiled(sample))(f, times, *state, rates)
+            sampled(f, times, *state, rates)
             yield rates[:, :, 1:]
     if m.gap_t != ABSENT:
         now, then = np.zeros((2, len(times), scene.n_c))
         for out, t in ((now, times), (then, times + step)):
-            (sample if callable(m.gap_t) else compiled(sample))(m.gap_t, t, *state, out)
+            sampled(m.gap_t, t, *state, out)
         yield np.stack([now, (then - now) / step], axis=2)
+
+
+def sampled(f: Any, times: Array, q: Array, v: Array, p: Array, out: Array) -> None:
+    """A callback at many times of one state. The motion may never come there: what it raises does not count."""
+    out.fill(math.nan)
+    if callable(f):
+        with suppress(Exception):
+            sample(f, times, q, v, p, out)
+    else:
+        compiled(sample)(f, times, q, v, p, out)
+    forget()
 
 
 def sample(f: Any, times: Array, q: Array, v: Array, p: Array, out: Array) -> None:

@@ -244,7 +244,7 @@ class _Run:
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
         self.count = np.zeros(work.N_COUNTERS, dtype=np.int64)
         self.totals = {"events": 0}
-        self.t0, self.first = scene.t_span[0], 0
+        self.t0, self.first, self.half_done = scene.t_span[0], 0, False
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
@@ -295,7 +295,7 @@ class _Run:
             arrive()
             return STATUS[adaptive.advance(steps, control, arrive, progress)]
         except Exception as error:  # a callback in plain Python; compiled code raises nothing
-            raise self.failed(error) from error
+            raise self.failed() from error
 
     def made(self, h: float) -> tuple[work.Plan, work.Work]:
         """Constants of steps of size h, and the work space with the responses of these."""
@@ -309,10 +309,11 @@ class _Run:
         first = int(self.count[work.STEP])
         return self.steps(p, w, t, first, first + 1)
 
-    def failed(self, error: Exception) -> SimulationError:
-        """What a callback in plain Python makes of a run."""
-        message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
-        return SimulationError(message, self.trajectory(Status.NOT_FINITE))
+    def failed(self) -> SimulationError:
+        """What an exception in plain Python makes of a run; it may have left a step half done."""
+        self.half_done = True
+        result = self.trajectory(Status.NOT_FINITE)
+        return SimulationError(result.message, result)
 
     def portions(self, t0: float, first: int, last: int, progress: Callable[[float], None]) -> Status:
         """Steps first .. last - 1 of the run, all of one size."""
@@ -325,7 +326,7 @@ class _Run:
                 count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
                 code = self.steps(self.plan, self.work, t0, first, goal)
             except Exception as error:  # a callback in plain Python; compiled code raises nothing
-                raise self.failed(error) from error
+                raise self.failed() from error
             self.empty()
             progress(self.now)
         return STATUS[code]
@@ -359,13 +360,14 @@ class _Run:
         c, c_t = carried.displaced(self.scene, self.model, self.now)
         q_now, v_now, impulse_now = w.vec[work.Q] - c, w.vec[work.V] - c_t, self.impulse()
         t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
-        if len(self.kept.times) == 0 and self.now > t[-1]:
+        if len(self.kept.times) == 0 and self.now > t[-1] and not self.half_done:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
             impulse = np.vstack([impulse, impulse_now])
         bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
         if len(bad):  # the step that failed has left its numbers behind
             t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
-        last = (float(t[-1]), q[-1], v[-1]) if len(bad) and len(t) else (self.now, q_now, v_now)
+        cut = len(bad) or self.half_done
+        last = (float(t[-1]), q[-1], v[-1]) if cut and len(t) else (self.now, q_now, v_now)
         if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
             t[-1] = self.scene.t_span[1]
         count = self.count

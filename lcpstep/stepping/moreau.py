@@ -225,7 +225,7 @@ class _Run:
                     else:
                         code = self.kernel(*arguments, external, solved)
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
-                    raise self.failed(error) from error
+                    raise self.failed() from error
                 solved = False
                 if code == loop.LOG_FULL:
                     self.empty()
@@ -266,12 +266,12 @@ class _Run:
         try:
             return STATUS[adaptive.advance(steps, control, arrive, progress)]
         except Exception as error:  # a callback in plain Python; compiled code raises nothing
-            raise self.failed(error) from error
+            raise self.failed() from error
 
-    def failed(self, error: Exception) -> SimulationError:
-        """What a callback in plain Python makes of a run."""
-        message = f"a callback failed in a step from t = {self.now:.9g} s: {error}"
-        return SimulationError(message, self.trajectory(Status.NOT_FINITE))
+    def failed(self) -> SimulationError:
+        """What an exception in plain Python makes of a run."""
+        result = self.trajectory(Status.NOT_FINITE)
+        return SimulationError(result.message, result)
 
     def solve_outside(self) -> bool:
         """Hand the active problem to the named solver; whether it was solved."""

@@ -226,6 +226,7 @@ def hermite(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, L: float, count
         z.T[3, i] = 10.0 * d - 4.0 * d_v + 0.5 * d_a
         z.T[4, i] = -15.0 * d + 7.0 * d_v - d_a
         z.T[5, i] = 6.0 * d - 3.0 * d_v + 0.5 * d_a
+        good = good and math.isfinite(z.T[5, i])  # what all stages are in
     return good
 
 

@@ -78,7 +78,7 @@ from lcpstep.stepping.polynomial import (
     on_surface,
     state_at,
 )
-from lcpstep.stepping.scan import NOBODY, SOON, first_landing, first_release
+from lcpstep.stepping.scan import NOBODY, NOWHERE, SOON, first_landing, first_release
 from lcpstep.stepping.settle import endless, settle
 from lcpstep.stepping.smooth import (
     free_acceleration,
@@ -160,6 +160,8 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             return NOT_FINITE
         opening, stop = first_release(m, plan, w, x, z, now, length, count)
         landing, tau = first_landing(m, plan, w, x, z, now, stop)
+        if landing == NOWHERE:
+            return NOT_FINITE
         if landing != NOBODY and at_corner(plan, x, now + tau):
             landing, tau = NOBODY, stop
         ends = landing == NOBODY and opening == NOBODY and x[SIGMA] + length >= x[END] * (1.0 - EPS)

@@ -8,6 +8,7 @@ Source: W. Press et al., Numerical Recipes, sections 9.2 and 9.4.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from lcpstep.compiled import inline
@@ -35,7 +36,7 @@ from lcpstep.stepping.located_work import (
 )
 from lcpstep.stepping.polynomial import NODES, contacts_at, force_at
 
-NOBODY = -1
+NOBODY, NOWHERE = -1, -2
 PARTS = 4  # intervals of a piece
 PROBES = 4  # of contact forces
 SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
@@ -107,7 +108,7 @@ def lowest(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, a: float, b: flo
 
 @inline
 def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: float) -> tuple[int, float]:
-    """Which gap closes first in (0, end], and when; NOBODY and the end if none does."""
+    """Which gap closes first in (0, end], and when; NOBODY and the end if none does, NOWHERE if one is not finite."""
     n_c, found, first = w.num.shape[1], NOBODY, end
     for c in range(n_c):
         if w.mark[STATUS, c] == OPEN and w.num[GAP, c] <= 0.0 and w.num[RATE, c] < 0.0:
@@ -119,6 +120,8 @@ def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: floa
         b = end * part / PARTS
         contacts_at(m, plan, w, x, z, t, b, z.num[GAP_TO], z.num[RATE_TO])
         for c in range(n_c):
+            if not math.isfinite(z.num[GAP_TO, c]):
+                return NOWHERE, b
             if w.mark[STATUS, c] != OPEN:
                 continue
             hop = part == 1 and z.num[GAP_FROM, c] <= 0.0

@@ -77,7 +77,7 @@ class Equations:
         self.terms = (self.harmonic or Harmonic()).terms(n_q)
         motion = None if contacts is None else contacts.motion
         named = {"force": system.force, "frame": system.frame, "motion": motion}
-        fields, fast = with_addresses(scene, {name: f for name, f in named.items() if callable(f)})
+        (fields,), fast = with_addresses(scene, system={name: f for name, f in named.items() if callable(f)})
         self.callbacks, self.evaluate = fields, compiled(evaluate) if fast and fields else evaluate
 
     def value(self, name: str, t: float, q: Array, v: Array, shape: tuple[int, ...]) -> Array:
@@ -171,8 +171,8 @@ class Run:
         except SimulationError:
             raise
         except Exception as error:  # a callback in plain Python
-            message = f"a callback failed in the step from t = {self.t:.9g} s: {error}"
-            raise SimulationError(message, self.trajectory(Status.NOT_FINITE)) from error
+            result = self.trajectory(Status.NOT_FINITE)
+            raise SimulationError(result.message, result) from error
         progress(self.t)
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:

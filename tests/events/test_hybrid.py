@@ -19,7 +19,7 @@ from lcpstep import (
     Status,
     simulate,
 )
-from lcpstep.model import UncompiledCallback
+from lcpstep.callbacks import UncompiledCallback
 
 METHOD = EventDriven()
 KNOWN = [

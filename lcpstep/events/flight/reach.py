@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.compiled import compiled
-from lcpstep.events.run import SAMPLES, sample, sample_times, sampled_length
+from lcpstep.events.run import SAMPLES, sample_times, sampled, sampled_length
 from lcpstep.model import ABSENT, Model
 
 Array = NDArray[np.float64]
@@ -33,8 +32,7 @@ def looked_at(scene: Scene, m: Model, f: Any, times: Array) -> Array:
     """Samples (k, 1, 3) of a callback; zero where there is none."""
     out = np.zeros((len(times), 1, 3))
     if f != ABSENT:
-        kernel = sample if callable(f) else compiled(sample)
-        kernel(f, times, np.array(scene.q0), np.array(scene.v0), m.p, out)
+        sampled(f, times, np.array(scene.q0), np.array(scene.v0), m.p, out)
     return out
 
 

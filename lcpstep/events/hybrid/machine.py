@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
 
 from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
-from lcpstep import compiled
+from lcpstep import callbacks, compiled
+from lcpstep.callbacks import NotCompiled
 from lcpstep.events.hybrid.field import (
     ARRIVE,
     EXIT_ABOVE,
@@ -18,7 +18,7 @@ from lcpstep.events.hybrid.field import (
     Machine,
     Space,
 )
-from lcpstep.model import UncompiledCallback
+from lcpstep.faults import name_of, plain_first_order
 
 TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
 
@@ -85,19 +85,22 @@ def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, flo
 def _addresses(
     scene: HybridScene, functions: dict[str, list[Any]], plain: bool
 ) -> tuple[dict[str, Any], bool]:
+    made: dict[str, list[int]] = {}
     if not (plain or compiled.jit_disabled()):
+        made = {name: _compiled(scene, fs) for name, fs in functions.items()}
+    if all(len(made.get(name, ())) == len(fs) for name, fs in functions.items()):
+        return {name: np.array(x, dtype=np.int64) for name, x in made.items()}, True
+    return {name: tuple(map(plain_first_order, fs)) for name, fs in functions.items()}, False
+
+
+def _compiled(scene: HybridScene, functions: list[Any]) -> list[int]:
+    addresses = []
+    for f in functions:
         try:
-            return {
-                name: np.array([compiled.first_order_address(f) for f in fs], dtype=np.int64)
-                for name, fs in functions.items()
-            }, True
-        except Exception as error:  # numba's errors share no base class
-            reason = str(error).strip().splitlines()[0] if str(error) else type(error).__name__
-            warnings.warn(
-                f"a function of scene {scene.name!r} cannot be compiled and runs in plain Python: {reason}",
-                UncompiledCallback, stacklevel=5,
-            )  # fmt: skip
-    return {name: tuple(fs) for name, fs in functions.items()}, False
+            addresses.append(callbacks.first_order_address(f))
+        except NotCompiled as why:
+            callbacks.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
+    return addresses
 
 
 def space(n: int) -> Space:

@@ -19,6 +19,7 @@ from lcpstep.events.hybrid.field import approaches, scalar
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.roots import CHECKS, DEGREE, scan
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
+from lcpstep.model import hybrid_culprit
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Counts, Status
 
@@ -85,8 +86,8 @@ class HybridRun:
                 try:
                     code = int(self.kernel(self.loop, goal))
                 except Exception as error:  # a function in plain Python; compiled code raises nothing
-                    message = f"a function of the scene failed after t = {self.now:.9g}: {error}"
-                    raise SimulationError(message, self.trajectory(Status.NOT_FINITE, kept)) from error
+                    result = self.trajectory(Status.NOT_FINITE, kept)
+                    raise SimulationError(result.message, result) from error
                 self._empty()
                 progress(self.now)
                 if code not in (at.FINISHED, at.BUFFER_FULL) or (code == at.FINISHED and self.now >= t_end):
@@ -169,7 +170,7 @@ class HybridRun:
         return {
             Status.DONE: "ran to the end of the span",
             Status.INTERRUPTED: f"interrupted at {t}",
-            Status.NOT_FINITE: f"after {t} the field of mode {mode!r}, a guard of it or the state is not finite",
+            Status.NOT_FINITE: f"after {t} {hybrid_culprit(self.scene, mode)}",
             Status.TOO_MANY_EVENTS: f"{self.count[at.EVENTS]} switches up to {t}: more than max_events allows",
             Status.STEP_TOO_SMALL: f"at {t} in mode {mode!r} the tolerance cannot be met by any step",
         }[status]

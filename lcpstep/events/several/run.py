@@ -25,7 +25,7 @@ from lcpstep.events.several.motion import lift
 from lcpstep.events.several.parabolas import fly, polish, synchronise
 from lcpstep.events.several.step import complete, step
 from lcpstep.lcp.kernel import solve_small, workspace
-from lcpstep.model import ABSENT, Model, joint_model, model
+from lcpstep.model import ABSENT, Model, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
 
@@ -83,8 +83,8 @@ class Several(run.Run):
     status_of = STATUS
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
-        (m, fast), (joints, fast_joints) = model(scene), joint_model(scene)
-        fast = fast and fast_joints and not jit_disabled()
+        (m, joints, _), fast = models(scene)
+        fast = fast and not jit_disabled()
         self.system = start(scene, m, joints, method, fast)
         never = NEVER_CONSTANT if self.system.constant else NEVER_RUNGE_KUTTA
         self.run = compiled(loop, never) if fast else loop

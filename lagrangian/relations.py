@@ -1,0 +1,185 @@
+"""Which functions of a scene are derivatives of which: what `derivatives` compares.
+
+Contacts, Joints              gap: jacobian and gap_t;   G v + g_t along the motion: bias
+LinearContacts, LinearJoints  motion: s, s', s''
+LinearSystem                  frame: c, c', c''
+System                        force: force_q and force_v
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lagrangian.checks import Array, Callback, python, read_only
+from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.derivatives import Direction, Known, Relation, State, compare
+from lagrangian.system import LinearSystem
+
+if TYPE_CHECKING:
+    from lagrangian.scene import Scene
+
+MOST = 8  # directions among the coordinates; where there are more of these, several at a time
+APART = 0.01  # of the scale: from the state given to the one looked at, where products of coordinates do not vanish
+FASTER = 0.3  # of the scale: the same of the velocities
+LATER = 0.0274  # of half the span: the same of the time
+GOLDEN = 0.6180339887498949
+KNOWN = Known()
+
+
+def check_derivatives(scene: Scene, at: State, run: bool = False) -> None:
+    """Compare every derivative that the scene's functions give; ValueError names the first that is wrong.
+
+    run : whether the state is one of a run, and so another than the one looked at when the scene was made
+    """
+    functions = [f for f in _functions(scene) if f is not None]
+    known, shape = KNOWN.of(functions), (scene.n_q, len(np.asarray(scene.p)), run)
+    if not functions or shape in known.shapes:
+        return
+    with np.errstate(all="ignore"):
+        for relation in _relations(scene, at):
+            compare(relation)
+    known.shapes.add(shape)
+
+
+def _functions(scene: Scene) -> list[Any]:
+    """The functions between which there are relations."""
+    found: list[Any] = []
+    system = scene.system
+    if isinstance(system, LinearSystem):
+        found += [system.frame]
+    elif system.force_q is not None or system.force_v is not None:
+        found += [system.force, system.force_q, system.force_v]
+    for _, c in _constraints(scene):
+        found += [c.motion] if isinstance(c, LinearContacts) else [c.gap, c.jacobian, c.gap_t, c.bias]
+    return found
+
+
+def _constraints(scene: Scene) -> Iterator[tuple[str, Any]]:
+    if scene.contacts is not None:
+        yield "contacts", scene.contacts
+    if scene.joints is not None:
+        yield "joints", scene.joints.as_contacts()
+
+
+def _relations(scene: Scene, at: State) -> Iterator[Relation]:
+    """Every relation of the scene's functions."""
+    system, duration = scene.system, 0.5 * min(scene.t_span[1] - scene.t_span[0], scene.period)
+    if isinstance(system, LinearSystem):
+        if system.frame is not None:
+            yield _chain("system.frame", system.frame, scene, scene.n_q, at, duration)
+    elif system.force_q is not None or system.force_v is not None:
+        yield _force(scene, system, _beside(scene, at, LATER * duration))
+    for name, c in _constraints(scene):
+        if not isinstance(c, LinearContacts):
+            yield _gap(name, c, scene, at, duration)
+            if c.bias is not None:
+                yield _bias(name, c, scene, _beside(scene, at, 0.0), duration)
+        elif c.motion is not None:
+            yield _chain(f"{name}.motion", c.motion, scene, c.n_c, at, duration)
+
+
+def _chain(name: str, f: Callback, scene: Scene, n: int, at: State, duration: float) -> Relation:
+    """Rows (x, x', x'') of a function of time."""
+    motion = _evaluated(f, scene, (n, 3))
+    names = lambda row: (f"{name}: out[{row // 2}, {row % 2 + 1}]", f"out[{row // 2}, {row % 2}]")  # noqa: E731
+    return Relation(
+        value=lambda x: motion(x)[:, :2].ravel(),
+        slope=lambda x, along: along[0] * motion(x)[:, 1:].ravel(),
+        directions=[Direction(at, _ahead(scene, duration), duration, False, names)],
+    )
+
+
+def _gap(name: str, c: Any, scene: Scene, at: State, duration: float) -> Relation:
+    """g with G and g_t."""
+    G, g_t = _evaluated(c.jacobian, scene, (c.n_c, scene.n_q)), _evaluated(c.gap_t, scene, (c.n_c,))
+    given = f"{name}.gap_t" + (" (not given)" if c.gap_t is None else "")
+    names = lambda row: (f"{given}[{row}]", f"{name}.gap[{row}]")  # noqa: E731
+    in_time = Direction(_beside(scene, at, 0.0), _ahead(scene, duration), duration, False, names)
+    base = _beside(scene, at, LATER * duration)
+    return Relation(
+        value=_evaluated(c.gap, scene, (c.n_c,)),
+        slope=lambda x, along: along[0] * g_t(x) if along[0] else G(x) @ along[1],
+        directions=[*_coordinates(base, 1, f"{name}.jacobian", f"{name}.gap"), in_time],
+    )
+
+
+def _bias(name: str, c: Any, scene: Scene, base: State, duration: float) -> Relation:
+    """G v + g_t with its derivative along the motion."""
+    G, g_t = _evaluated(c.jacobian, scene, (c.n_c, scene.n_q)), _evaluated(c.gap_t, scene, (c.n_c,))
+    bias, v = _evaluated(c.bias, scene, (c.n_c,)), base[2]
+    duration = min(duration, _size(base[1]) / _size(v))
+    names = lambda row: (f"{name}.bias[{row}]", f"{name}.jacobian v + {name}.gap_t along the motion")  # noqa: E731
+    return Relation(
+        value=lambda x: G(x) @ v + g_t(x),
+        slope=lambda x, along: along[0] * bias(x),
+        directions=[Direction(base, (duration, duration * v, 0.0 * v), duration, False, names)],
+    )
+
+
+def _force(scene: Scene, system: Any, base: State) -> Relation:
+    """f with df/dq and df/dv, those of them that are given."""
+    n = scene.n_q
+    f_q, f_v = _evaluated(system.force_q, scene, (n, n)), _evaluated(system.force_v, scene, (n, n))
+    by_q = _coordinates(base, 1, "system.force_q", "system.force") if system.force_q is not None else []
+    by_v = _coordinates(base, 2, "system.force_v", "system.force") if system.force_v is not None else []
+    return Relation(
+        value=_evaluated(system.force, scene, (n,)),
+        slope=lambda x, along: f_q(x) @ along[1] if np.any(along[1]) else f_v(x) @ along[2],
+        directions=[*by_q, *by_v],
+    )
+
+
+def _coordinates(base: State, kind: int, derivative: str, function: str) -> list[Direction]:
+    """Directions along coordinates (kind 1) or velocities (2), at most MOST of them."""
+    n, size = len(base[1]), _size(base[1] if kind == 1 else base[2])
+
+    def direction(members: range) -> Direction:
+        along = [np.zeros(n), np.zeros(n)]
+        along[kind - 1][members] = size * np.where(np.arange(len(members)) % 2, -1.0, 1.0)
+        names = lambda row: (f"{derivative}[{row}, {members[0]}]", f"{function}[{row}]")  # noqa: E731
+        singly = tuple(direction(range(j, j + 1)) for j in members) if len(members) > 1 else ()
+        return Direction(base, (0.0, along[0], along[1]), size, True, names, singly)
+
+    return [direction(range(j, n, MOST)) for j in range(min(n, MOST))]
+
+
+def _ahead(scene: Scene, duration: float) -> State:
+    """The direction of time."""
+    return duration, np.zeros(scene.n_q), np.zeros(scene.n_q)
+
+
+def _evaluated(f: Callback | None, scene: Scene, shape: tuple[int, ...]) -> Callable[[State], Array]:
+    """A callback as a function of the state: zero where there is none, not-a-number where it fails."""
+    if f is None:
+        return lambda x: np.zeros(shape)
+    g, p = python(f), read_only(np.array(scene.p))
+
+    def value(x: State) -> Array:
+        out = np.full(shape, np.nan)
+        try:
+            g(x[0], read_only(x[1]), read_only(x[2]), p, out)
+        except Exception:  # a state that the motion may never reach
+            out.fill(np.nan)
+        return out
+
+    return value
+
+
+def _beside(scene: Scene, at: State, later: float) -> State:
+    """A state near another, no deeper inside obstacles than needed, at which nothing vanishes by chance."""
+    k = np.arange(scene.n_q)
+    off = np.where(k % 2, -0.5, 0.5) * (1.0 + GOLDEN * (k + 1) % 1.0)
+    t, q, v = at[0] + later, at[1], at[2] + FASTER * _size(at[2]) * off
+    sides = [q + APART * _size(q) * sign * off for sign in (1.0, -1.0)]
+    if isinstance(scene.contacts, Contacts):
+        gap = _evaluated(scene.contacts.gap, scene, (scene.n_c,))
+        sides.sort(key=lambda x: -float(np.min(gap((t, x, v)))))
+    return t, sides[0], v
+
+
+def _size(x: Array) -> float:
+    """The largest of numbers, and not less than one."""
+    return max(1.0, float(np.max(np.abs(x))))

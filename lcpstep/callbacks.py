@@ -1,0 +1,214 @@
+"""The user's functions in machine code, so that nothing written into them can harm the process.
+
+Indices are checked, the arrays that q, v and p come in are read-only, and an exception leaves `out` not-a-number and
+is noted (`lcpstep.faults`). What cannot be compiled runs in plain Python, where numpy checks the same.
+
+Nothing here imports numba before something is compiled.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import os
+import re
+import warnings
+from collections.abc import Hashable
+from types import CodeType, FunctionType, MethodType
+from typing import Any, cast
+from weakref import WeakSet
+
+import numpy as np
+
+from lcpstep import compiled
+from lcpstep.faults import Callback, name_of
+
+SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
+OPTIONS = {"error_model": "numpy", "boundscheck": True}
+# Numba reads and writes through these without looking at the length of the array
+UNCHECKED = {"flat", "take_along_axis", "carray", "farray"}
+TOLD: WeakSet[Any] = WeakSet()  # functions that a warning was given for
+REGISTRY: dict[Any, Any] = {}  # the warnings themselves, as Python remembers them
+MADE: dict[Any, Any] = {}  # C functions by what they were made from
+STARRED = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
+PLACE = re.compile(r'File "(.+)", line (\d+)|(?:at|from) (\S+) \((\d+)\)')  # as numba names it
+COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+
+
+class UncompiledCallback(UserWarning):
+    """A user's function that numba cannot compile; the run takes plain Python, some hundred times slower."""
+
+
+class NotCompiled(Exception):
+    """Why, and where: file and line."""
+
+    def __init__(self, reason: str, file: str, line: int) -> None:
+        super().__init__(reason)
+        self.reason, self.file, self.line = reason, file, line
+
+    def __str__(self) -> str:
+        return f"{self.reason} ({os.path.basename(self.file)}, line {self.line})"
+
+
+FAILED: dict[Any, NotCompiled] = {}  # what cannot be made
+
+
+def address(f: Callback, ndim: int) -> int:
+    """Address of callback f(t, q, v, p, out) in machine code, for an `out` of ndim dimensions.
+
+    Raises NotCompiled where it cannot be compiled.
+    """
+    return _address(f, SECOND_ORDER, ndim)
+
+
+def first_order_address(f: Callback) -> int:
+    """Address of a function f(t, x, p, out) of a first-order system in machine code; raises NotCompiled."""
+    return _address(f, FIRST_ORDER, 1)
+
+
+def warn(what: str, f: Callback, why: NotCompiled) -> None:
+    """Say, once for each function, that it cannot be compiled, where in it, and why."""
+    if isinstance(f, Hashable):
+        if f in TOLD:
+            return
+        TOLD.add(f)
+    message = f"{what} cannot be compiled and runs in plain Python: {why}"
+    warnings.warn_explicit(message, UncompiledCallback, why.file, why.line, registry=REGISTRY)
+
+
+def _address(f: Callback, takes: int, ndim: int) -> int:
+    function = _function(f, takes)
+    kind = takes, ndim, function.__code__, *map(_kind, _read(function))
+    if kind in FAILED:
+        raise FAILED[kind]
+    depends = compiled._dependencies(function)
+    # Where nobody can tell whether a value has changed, the function itself must be the same
+    key = takes, ndim, depends, function if compiled.UNKNOWN in depends else None
+    if key not in MADE:
+        try:
+            MADE[key] = _machine_code(function, takes, ndim)
+        except NotCompiled as why:
+            FAILED[kind] = why
+            raise
+    return int(MADE[key].address)
+
+
+def _function(f: Any, takes: int) -> FunctionType:
+    """A plain function that does what f does, and takes so many arguments and no others."""
+    given: tuple[Any, ...] = ()
+    keywords: dict[str, Any] = {}
+    if isinstance(f, functools.partial):
+        f, given, keywords = f.func, f.args, f.keywords
+    f = getattr(f, "py_func", f)
+    if not isinstance(f, FunctionType):
+        kind = "a method" if isinstance(f, MethodType) else f"an object of class {type(f).__name__}"
+        home = getattr(f, "__func__", None) or type(f).__call__
+        raise _unfit(home, f"{name_of(f)} is {kind}, and only functions are compiled")
+    code = f.__code__
+    exactly = (code.co_argcount, code.co_kwonlyargcount) == (takes, 0) and not code.co_flags & STARRED
+    if exactly and not given and not keywords:
+        return f
+    user = _with_defaults(f, keywords) if keywords or code.co_kwonlyargcount else f
+    enter = _enter if takes == SECOND_ORDER else _enter_first_order
+    return FunctionType(enter.__code__, {"user": user, "given": given}, f.__name__)
+
+
+def _enter(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Call a function with more arguments: given ones before these, or ones with a default after them."""
+    user(*given, t, q, v, p, out)  # type: ignore[name-defined]  # noqa: F821
+
+
+def _enter_first_order(t: float, x: Any, p: Any, out: Any) -> None:
+    user(*given, t, x, p, out)  # type: ignore[name-defined]  # noqa: F821
+
+
+def _with_defaults(f: FunctionType, keywords: dict[str, Any]) -> FunctionType:
+    """Function f with other defaults, and none of its arguments by keyword only, which numba cannot call."""
+    code, takes = f.__code__, f.__code__.co_argcount + f.__code__.co_kwonlyargcount
+    names = code.co_varnames[:takes]
+    if code.co_flags & STARRED or not keywords.keys() <= set(names):
+        raise _unfit(f, f"{f.__name__} takes any arguments by keyword")
+    positional = dict(zip(names[: code.co_argcount][::-1], (f.__defaults__ or ())[::-1], strict=False))
+    defaults = positional | (f.__kwdefaults__ or {}) | keywords
+    values = tuple(defaults[name] for name in names if name in defaults)
+    code = code.replace(co_argcount=takes, co_kwonlyargcount=0)
+    return FunctionType(code, f.__globals__, f.__name__, values, f.__closure__)
+
+
+def _unfit(f: Any, reason: str) -> NotCompiled:
+    code = getattr(f, "__code__", None)
+    return NotCompiled(reason, *((code.co_filename, code.co_firstlineno) if code else ("<unknown>", 0)))
+
+
+def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
+    """C function of f."""
+    from lcpstep.guarded import signature
+
+    for g in compiled._reached(f):
+        unchecked = UNCHECKED & {name for code in compiled._codes(g.__code__) for name in code.co_names}
+        if unchecked:
+            raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
+        if any(g in compiled._reached(callee) for _, callee in compiled._callees(g)):
+            raise _unfit(g, f"{g.__name__} calls itself")
+    try:
+        return _compiled(f, signature(takes - 2, ndim), nrt=False)
+    except Exception:  # numba's errors share no base class
+        try:
+            return _compiled(f, signature(takes - 2, ndim), nrt=True)
+        except Exception as error:
+            raise _explained(error, f.__code__) from error
+
+
+def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
+    """C function of f, with numba's counting of references where f makes arrays or lists; that takes longer."""
+    from lcpstep.guarded import Guarded, Wrapped
+
+    options = OPTIONS | {"_nrt": nrt}
+    wrapper = compiled._code_text(cast(FunctionType, Wrapped.create_cfunc_wrapper))
+    copy = _twin(f, nrt, f"callback {options} {wrapper}")
+    c_function = Guarded(copy, arguments, options)
+    if not any(isinstance(x, FunctionType) or hasattr(x, "py_func") for _, x in compiled._cells(f)):
+        compiled._keep_on_disk(c_function, f, copy, "callback")
+    c_function.compile()
+    return c_function
+
+
+def _twin(f: FunctionType, nrt: bool, variant: str) -> FunctionType:
+    """A copy of f whose callees are compiled, with a name of its own."""
+    twins = {g: _callee(g, nrt, compiled._dependencies(g)) for _, g in compiled._callees(f)}
+    return compiled.with_twins(f, twins, f"{variant} {compiled._dependencies(f)}")
+
+
+@functools.cache
+def _callee(f: FunctionType, nrt: bool, dependencies: str) -> Any:
+    """A function that callbacks call, its indices checked as theirs; made anew where what it reads has changed."""
+    import numba
+
+    return numba.njit(nogil=True, _nrt=nrt, **OPTIONS)(_twin(f, nrt, f"callee {OPTIONS} {nrt}"))
+
+
+def _read(f: FunctionType) -> list[Any]:
+    """What f reads from around it."""
+    names = compiled._global_names(f)
+    return [f.__globals__.get(name) for name in names] + [x for _, x in compiled._cells(f)]
+
+
+def _kind(x: Any) -> Any:
+    """What compiling depends on mostly, so that functions made over and over are not tried over and over."""
+    return (x.dtype.str, x.ndim) if isinstance(x, np.ndarray) else getattr(x, "__code__", type(x))
+
+
+def _explained(error: Exception, code: CodeType) -> NotCompiled:
+    """From numba's pages of explanation: the reason, and the line that it names last."""
+    text = COLOURS.sub("", str(error)) or type(error).__name__
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    said = [line for line in lines if not line.startswith("Failed in nopython mode")] or lines
+    reason = said[0]
+    shown_call = next((line[3:].strip() for line in said if line.startswith(">>>")), "")
+    if reason.endswith("signature:") and shown_call:
+        reason = f"no compiled form of {shown_call}"
+        if "setitem(readonly" in shown_call:
+            reason = "it writes into an array that it may only read (q, v, p and global arrays)"
+    places = [(a or c, int(b or d)) for a, b, c, d in PLACE.findall(text)]
+    own = [line for file, line in places if os.path.basename(file) == os.path.basename(code.co_filename)]
+    return NotCompiled(reason, code.co_filename, own[-1] if own else code.co_firstlineno)

@@ -1,0 +1,83 @@
+"""Exceptions of the user's functions, in machine code and in plain Python: of which, and what it was called with.
+
+Machine code does not pass an exception on: it leaves `out` not-a-number and notes it here (`lcpstep.guarded`), and
+so a kernel that overlooks the number is found out. In plain Python it is noted and goes on its way.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian.checks import python, read_only, said, shown
+
+Array = NDArray[np.float64]
+Callback = Callable[..., Any]  # f(t, q, v, p, out) or f(t, x, p, out)
+LOCAL = threading.local()  # .fault: the first exception of this thread since `forget`
+
+
+class Fault(NamedTuple):
+    """An exception of a callback: of which, what it was called with, and what it said; in machine code it is mute."""
+
+    name: str
+    t: float
+    q: Array
+    v: Array
+    said: str = "an exception that it raises in machine code only"
+
+    def __str__(self) -> str:
+        at = f"t = {self.t:.9g}, q = {shown(self.q)}, v = {shown(self.v)}"
+        return f"{self.name} at {at}: {self.said}"
+
+
+def name_of(f: Callback) -> str:
+    """The name that the user has given."""
+    return str(getattr(f, "__qualname__", None) or type(f).__qualname__)
+
+
+def note(noted: Fault) -> None:
+    """Keep the first exception of this thread; those that follow may follow from it."""
+    if fault() is None:
+        LOCAL.fault = noted
+
+
+def fault() -> Fault | None:
+    """The first exception of a callback in this thread since `forget`."""
+    return getattr(LOCAL, "fault", None)
+
+
+def forget() -> None:
+    """Leave out of account what callbacks have raised up to here."""
+    LOCAL.fault = None
+
+
+def plain(f: Callback) -> Callback:
+    """F as kernels in plain Python call it: with read-only arrays, and its exceptions noted."""
+    f, name = python(f), name_of(f)
+
+    def watched(t: float, q: Array, v: Array, p: Array, out: Array) -> None:
+        try:
+            f(t, read_only(q), read_only(v), read_only(p), out)
+        except Exception as error:
+            note(Fault(name, t, q.copy(), v.copy(), said(error)))
+            raise
+
+    return watched
+
+
+def plain_first_order(f: Callback) -> Callback:
+    """The same for a function of a first-order system."""
+    f, name = python(f), name_of(f)
+
+    def watched(t: float, x: Array, p: Array, out: Array) -> None:
+        try:
+            f(t, read_only(x), read_only(p), out)
+        except Exception as error:
+            note(Fault(name, t, x.copy(), np.zeros(0), said(error)))
+            raise
+
+    return watched

@@ -1,0 +1,174 @@
+"""Derivatives that are given wrong are named with both values; right, noisy, cornered, tabulated ones are not."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System
+from lagrangian.profiles import rotating_cam
+from lagrangian.scenes.cam_follower import HALF_TURN, PROFILE
+
+TWO = LinearSystem(M=np.eye(2))
+
+
+def made(contacts=None, system=TWO, q0=(0.3, 1.0), v0=(0.5, -0.2), t_span=(0.0, 2.0), **others):
+    return Scene(system, q0, v0, t_span, contacts, **others)
+
+
+def bowl(sign=1.0, factor=1.0, bias_factor=1.0, rate=3.0, given=3.0):
+    """A moving curved gap, x^2 - y^2/2 + 2 - sin(rate t), right with the defaults."""
+
+    def gap(t, q, v, p, out):
+        out[0] = q[0] ** 2 - 0.5 * q[1] ** 2 + 2.0 - math.sin(rate * t)
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0], out[0, 1] = factor * 2.0 * q[0], -sign * q[1]
+
+    def gap_t(t, q, v, p, out):
+        out[0] = -given * math.cos(rate * t)
+
+    def bias(t, q, v, p, out):
+        out[0] = bias_factor * (2.0 * v[0] ** 2 - v[1] ** 2) + rate**2 * math.sin(rate * t)
+
+    return Contacts(1, gap, jacobian, gap_t, bias)
+
+
+@pytest.mark.parametrize("q0", [(0.3, 1.0), (0.0, 0.0), (0.0, 1.0), (-1.0, 0.0)])
+@pytest.mark.parametrize("v0", [(0.5, -0.2), (0.0, 0.0)])
+def test_right_derivatives_are_taken(q0, v0):
+    made(bowl(), q0=q0, v0=v0)
+
+
+@pytest.mark.parametrize("q0", [(0.3, 1.0), (0.0, 0.0)])
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"sign": -1.0}, "contacts.jacobian[0, 1]"),
+        ({"factor": 0.5}, "contacts.jacobian[0, 0]"),
+        ({"factor": 180.0 / math.pi}, "contacts.jacobian[0, 0]"),
+        ({"given": -3.0}, "contacts.gap_t[0]"),
+        ({"given": 1.0}, "contacts.gap_t[0]"),
+        ({"bias_factor": 2.0, "rate": 0.0, "given": 0.0}, "contacts.bias[0]"),
+    ],
+)
+def test_a_wrong_sign_or_factor_is_named_with_both_values(wrong, named, q0):
+    with pytest.raises(
+        ValueError, match=rf"^{re.escape(named)} is .* near t = .* differences of .* give "
+    ) as said:
+        made(bowl(**wrong), q0=q0)
+    given, found = (float(x) for x in re.findall(r"(?:is|give) (\S+?)(?= near|$)", str(said.value)))
+    factor = next(iter(wrong.values())) / (3.0 if "given" in wrong and "rate" not in wrong else 1.0)
+    assert given / found == pytest.approx(factor, rel=1e-2)
+
+
+def test_a_gap_that_moves_without_its_rate_is_named():
+    right = bowl()
+    with pytest.raises(ValueError, match=r"^contacts\.gap_t \(not given\)\[0\] is 0 near .* give -"):
+        made(Contacts(1, right.gap, right.jacobian))
+
+
+def test_joints_are_compared_too():
+    right, wrong = bowl(rate=0.0, given=0.0), bowl(sign=-1.0, rate=0.0, given=0.0)
+    q0 = (0.0, 2.0)
+    made(joints=Joints(1, right.gap, right.jacobian), q0=q0, v0=(1.0, 0.0))
+    with pytest.raises(ValueError, match=r"^joints\.jacobian\[0, 1\] is "):
+        made(joints=Joints(1, wrong.gap, wrong.jacobian), q0=q0, v0=(1.0, 0.0))
+
+
+@pytest.mark.parametrize("column", [1, 2])
+def test_wrong_derivatives_of_what_moves_are_named(column):
+    def shaken(t, q, v, p, out):
+        for i in range(len(out)):
+            out[i, 0], out[i, 1], out[i, 2] = math.sin(5 * t), 5 * math.cos(5 * t), -25 * math.sin(5 * t)
+            out[i, column] *= -1.0
+
+    # either of the two that a wrong rate belongs to: it is no derivative, and has none
+    with pytest.raises(ValueError, match=r"^contacts\.motion: out\[0, [12]\] is "):
+        made(LinearContacts([[0.0, 1.0]], motion=shaken))
+    with pytest.raises(ValueError, match=r"^system\.frame: out\[0, [12]\] is "):
+        made(system=LinearSystem(M=np.eye(2), frame=shaken))
+
+
+@pytest.mark.parametrize("wrong", ["force_q", "force_v"])
+def test_wrong_derivatives_of_a_force_are_named(wrong):
+    def force(t, q, v, p, out):
+        out[0], out[1] = -4.0 * q[0] * q[1] - v[0] ** 3, -9.81 - 0.3 * v[1]
+
+    def force_q(t, q, v, p, out):
+        out[:] = 0.0
+        out[0, 0], out[0, 1] = -4.0 * q[1], (4.0 if wrong == "force_q" else -4.0) * q[0]
+
+    def force_v(t, q, v, p, out):
+        out[:] = 0.0
+        out[0, 0], out[1, 1] = (-1.0 if wrong == "force_v" else -3.0) * v[0] ** 2, -0.3
+
+    with pytest.raises(ValueError, match=rf"^system\.{wrong}\[0, [01]\] is .* of system\.force\[0\] give "):
+        made(system=System(2, np.eye(2), force, force_q, force_v))
+
+
+def test_the_cam_is_right_at_its_corner_and_everywhere():
+    p = PROFILE.pack(70.0, HALF_TURN)
+    for t in (0.0, *np.linspace(0.0, 0.1, 23)):
+        start = np.zeros((1, 3))
+        rotating_cam(t, start[0], start[0], p, start)
+
+        def cam(t, q, v, p, out):
+            rotating_cam(t, q, v, p, out)
+
+        Scene(LinearSystem(M=1.0), start[0, 0] + 0.1, 0.0, (t, t + 2.0), LinearContacts(1.0, motion=cam), p=p)
+
+
+@pytest.mark.parametrize("entries", [50, 1000])
+@pytest.mark.parametrize("noise", [0.0, 1e-6])
+@pytest.mark.parametrize("nearest", [False, True])
+def test_tables_are_taken(entries, noise, nearest):
+    x = np.linspace(-4.0, 4.0, entries)
+    f = 2.0 + np.cos(x) + noise * np.random.default_rng(1).normal(size=entries)
+    slope = -np.sin(x)
+
+    def look(table, at):
+        return table[np.argmin(np.abs(x - at))] if nearest else np.interp(at, x, table)
+
+    def gap(t, q, v, p, out):
+        out[0] = look(f, q[0]) + q[1]
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0], out[0, 1] = look(slope, q[0]), 1.0
+
+    for start in np.linspace(-1.0, 1.0, 9):
+        made(Contacts(1, lambda *a: gap(*a), lambda *a: jacobian(*a)), q0=(start, 1.0))
+
+
+@pytest.mark.parametrize("q0", [0.0, 0.01, 1.0])
+def test_corners_of_a_gap_and_what_lies_inside_of_it_are_taken(q0):
+    def wedge(t, q, v, p, out):
+        out[0], out[1] = abs(q[0]) + q[1], max(q[1], 0.0)
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0], out[0, 1], out[1, 0], out[1, 1] = math.copysign(1.0, q[0]), 1.0, 0.0, 1.0
+
+    made(Contacts(2, wedge, jacobian), q0=(q0, 0.0))
+
+
+def test_what_has_been_looked_at_is_not_looked_at_again():
+    calls = []
+    right = bowl()
+
+    def gap(t, q, v, p, out):
+        calls.append(t)
+        right.gap(t, q, v, p, out)
+
+    contacts = Contacts(1, gap, right.jacobian, right.gap_t)
+    made(contacts)
+    first = len(calls)
+    made(contacts, q0=(0.1, 0.2))
+    assert len(calls) == first + 1
+
+
+def test_what_is_wrong_is_so_every_time():
+    wrong = bowl(sign=-1.0)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="differences of"):
+            made(wrong)

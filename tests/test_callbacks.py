@@ -1,0 +1,326 @@
+"""What a user writes into a callback: taken as it is, or refused by name, and never a danger to the process."""
+
+import functools
+import warnings
+
+import numba
+import numpy as np
+import pytest
+
+from lagrangian import Guard, HybridScene, HybridSystem, Mode, Scene, System
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
+from lcpstep.callbacks import UncompiledCallback
+from lcpstep.compiled import jit_disabled
+from lcpstep.trajectory import Status
+from tests.processes import python
+
+compiled_only = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+METHODS = [Moreau(1e-2), Located(1e-2), EventDriven()]
+IDS = ["moreau", "located", "event-driven"]
+TABLE = np.arange(4.0)
+CONSTANTS = {"g": 8.0}
+
+
+def falling(force, p=(8.0,), t_end=0.5):
+    return Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, t_end), p=p)
+
+
+# --- indices
+
+
+def reads_beyond(t, q, v, p, out):
+    out[0] = -p[1] if t > 0.3 else -8.0
+
+
+def writes_far_before(t, q, v, p, out):
+    out[0] = -8.0
+    if t > 0.3:
+        out[-5] = 7.0
+
+
+def writes_far_beyond(t, q, v, p, out):
+    out[0] = -8.0
+    if t > 0.3:
+        out[10**7] = 7.0
+
+
+def table_of_positions(t, q, v, p, out):
+    out[0] = -8.0 + 0.0 * TABLE[int(10.0 * (1.0 - q[0]))]
+
+
+def helper(x, k):
+    return x[k]
+
+
+def helper_reads_beyond(t, q, v, p, out):
+    out[0] = -helper(p, 1 if t > 0.3 else 0)
+
+
+@numba.njit
+def users_own(x, k):
+    return x[k]
+
+
+def compiled_helper_reads_beyond(t, q, v, p, out):
+    out[0] = -users_own(p, 1 if t > 0.3 else 0)
+
+
+BEYOND = {
+    "read": (reads_beyond, 1), "before": (writes_far_before, -5), "beyond": (writes_far_beyond, 10**7),
+    "table": (table_of_positions, 4), "helper": (helper_reads_beyond, 1),
+    "compiled helper": (compiled_helper_reads_beyond, 1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", METHODS, ids=IDS)
+@pytest.mark.parametrize("name", BEYOND)
+def test_an_index_out_of_bounds_is_named_with_callback_and_state(name, method):
+    force, index = BEYOND[name]
+    said = rf"^system\.force: .*t = 0\.3\d*, q = \[0\.\d+\], v = \[-\d.*: IndexError: index {index} is out of bounds"
+    with pytest.raises(SimulationError, match=said) as caught:
+        simulate(falling(force), method)
+    assert caught.value.trajectory.status is Status.NOT_FINITE
+    assert 0.25 <= caught.value.trajectory.t[-1] <= 0.35
+
+
+def test_an_index_out_of_bounds_at_the_start_is_named_when_the_scene_is_made():
+    with pytest.raises(ValueError, match=r"^system\.force: .*IndexError: index 4 is out of bounds"):
+        falling(lambda t, q, v, p, out: out.fill(p[4]))
+
+
+def test_indices_from_the_end_are_those_of_python():
+    def last(t, q, v, p, out):
+        out[-1] = -p[-1]
+
+    assert simulate(falling(last), Moreau(1e-2)).q[-1, 0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_what_numba_does_not_check_runs_in_plain_python():
+    def flat(t, q, v, p, out):
+        out.flat[0 if t < 0.3 else 10**7] = -8.0
+
+    with (
+        pytest.warns(
+            UncompiledCallback, match=r"does not check the indices of 'flat' \(test_callbacks.py, line"
+        ),
+        pytest.raises(SimulationError, match=r"^system\.force: .*IndexError"),
+    ):
+        simulate(falling(flat), Moreau(1e-2))
+
+
+def writes_into_the_state(t, q, v, p, out):
+    out[0] = -8.0
+    if t > 0.3:
+        q[0] = 3.0
+
+
+def test_writing_into_the_state_is_refused_where_it_happens():
+    with (
+        pytest.warns(UncompiledCallback, match="may only read"),
+        pytest.raises(SimulationError, match=r"^system\.force: .*read-only"),
+    ):
+        simulate(falling(writes_into_the_state), Moreau(1e-2))
+
+
+# --- exceptions
+
+
+def raises_once(t, q, v, p, out):
+    out[0] = -8.0
+    if 0.3 < t < 0.302:
+        raise KeyError("only here")
+
+
+def asserts(t, q, v, p, out):
+    assert t < 0.3, "too late"
+    out[0] = -8.0
+
+
+def tells_the_time(t, q, v, p, out):
+    out[0] = -8.0
+    if t > 0.3:
+        raise ValueError("late", t)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=IDS)
+@pytest.mark.parametrize(
+    ("force", "said"), [(asserts, "AssertionError"), (tells_the_time, r"ValueError: \('late', 0\.3")]
+)
+def test_exceptions_of_callbacks_are_told_as_they_are(force, said, method):
+    with pytest.raises(SimulationError, match=rf"^system\.force: .*{said}"):
+        simulate(falling(force), method)
+
+
+def test_an_exception_is_not_passed_over_where_the_method_could_have_gone_on():
+    with pytest.raises(SimulationError, match="only here"):
+        simulate(falling(raises_once, t_end=0.301), EventDriven())
+    assert simulate(falling(raises_once), Moreau(1e-2)).status is Status.DONE  # it is never asked there
+
+
+def test_an_exception_of_one_run_is_not_that_of_the_next():
+    with pytest.raises(SimulationError):
+        simulate(falling(reads_beyond), Moreau(1e-2))
+    assert simulate(falling(falls), Moreau(1e-2)).status is Status.DONE
+
+
+def test_a_function_of_a_system_with_modes_that_raises_is_named():
+    def decays(t, x, p, out):
+        out[0] = -x[0] * p[0 if t < 0.3 else 7]
+
+    def far(t, x, p, out):
+        out[0] = x[0] - 10.0
+
+    system = HybridSystem(1, {"on": Mode(decays, [Guard(far, "on")])})
+    with pytest.raises(SimulationError, match=r"field of mode 'on': .*IndexError: index 7"):
+        simulate(HybridScene(system, 1.0, "on", (0.0, 1.0), p=[1.0]), EventDriven())
+
+
+# --- what is written, and how it is taken
+
+
+def falls(t, q, v, p, out):
+    out[0] = -8.0
+
+
+def with_default(t, q, v, p, out, g=8.0):
+    out[0] = -g
+
+
+def by_keyword(t, q, v, p, out, *, g=8.0):
+    out[0] = -g
+
+
+def with_g_first(g, t, q, v, p, out):
+    out[0] = -g
+
+
+def with_two_more(t, q, v, p, out, a, b=1.0):
+    out[0] = -a * b
+
+
+def lists(t, q, v, p, out):
+    x = [-8.0, t]
+    out[0] = x[0]
+
+
+def solves(t, q, v, p, out):
+    out[0] = -8.0 * np.linalg.solve(np.eye(2), np.ones(2))[0]
+
+
+def stars(*arguments):
+    arguments[4][0] = -8.0
+
+
+def around(g, f):
+    values = np.array([0.0, g])
+
+    def inner(t, q, v, p, out):
+        out[0] = -f(values[1])
+
+    return inner
+
+
+class Field:
+    g = 8.0
+
+    def method(self, t, q, v, p, out):
+        out[0] = -self.g
+
+    def __call__(self, t, q, v, p, out):
+        out[0] = -self.g
+
+    @staticmethod
+    def static(t, q, v, p, out):
+        out[0] = -8.0
+
+
+def reads_a_dictionary(t, q, v, p, out):
+    out[0] = -CONSTANTS["g"]
+
+
+def imports(t, q, v, p, out):
+    import math as m
+
+    out[0] = -m.sqrt(64.0)
+
+
+def factorial(n):
+    return 1 if n < 2 else n * factorial(n - 1)
+
+
+def recurses(t, q, v, p, out):
+    out[0] = -8.0 * factorial(1)
+
+
+COMPILED = {
+    "default": with_default, "keyword": by_keyword, "partial": functools.partial(with_g_first, 8.0),
+    "partial by keyword": functools.partial(with_two_more, a=4.0, b=2.0), "lists": lists, "solve": solves,
+    "stars": stars, "closure": around(8.0, lambda x: x), "static": Field.static, "njit": numba.njit(falls),
+    "lambda": lambda t, q, v, p, out: out.fill(-8.0),
+    "partial of njit": functools.partial(numba.njit(with_g_first), 8.0),
+}  # fmt: skip
+PLAIN = {
+    "dictionary": (reads_a_dictionary, "'CONSTANTS'"), "import": (imports, "IMPORT_NAME"),
+    "method": (Field().method, "is a method"), "object": (Field(), "an object of class Field"),
+    "recursion": (recurses, "factorial calls itself"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", COMPILED)
+def test_a_callback_of_any_make_is_compiled(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UncompiledCallback)
+        m = simulate(falling(COMPILED[name]), Moreau(1e-2))
+    assert m.q[-1, 0] == pytest.approx(0.0, abs=1e-12)  # 1 - 4 t^2
+
+
+@compiled_only
+@pytest.mark.parametrize("name", PLAIN)
+def test_what_cannot_be_compiled_says_once_which_line_and_why(name):
+    force, why = PLAIN[name]
+    scene = falling(force, t_end=0.1)
+    with pytest.warns(
+        UncompiledCallback, match=rf"^force of scene .*{why}.* \(test_callbacks\.py, line \d+\)$"
+    ):
+        m = simulate(scene, Moreau(1e-2))
+    assert m.q[-1, 0] == pytest.approx(1.0 - 4.0 * 0.01, abs=1e-12)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulate(scene, Moreau(1e-2))
+
+
+def test_a_default_that_changes_is_another_function():
+    for g in (8.0, 2.0):
+
+        def force(t, q, v, p, out, g=g):
+            out[0] = -g
+
+        assert simulate(falling(force), Moreau(1e-2)).v[-1, 0] == pytest.approx(-0.5 * g)
+
+
+PRINTING = """
+from lagrangian import Scene, System
+from lcpstep import EventDriven, Moreau, simulate
+
+def told(t):
+    if t == 0.0:
+        print("nested", t)
+    return 8.0
+
+def force(t, q, v, p, out):
+    out[0] = -told(t)
+    if t == 0.0:
+        print("at", t, q[0], p)
+
+for method in Moreau(0.1), EventDriven():
+    print(simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.5), p=[3.0]), method).status.name)
+"""
+
+
+def test_a_callback_may_print(tmp_path):
+    (tmp_path / "printing.py").write_text(PRINTING)
+    for _ in range(2):  # the second process finds the machine code on disk
+        lines = python(f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import printing").split("\n")
+        assert lines.count("DONE") == 2
+        assert lines.count("at 0.0 1.0 [3.]") >= 3
+        assert lines.count("nested 0.0") >= 3
