@@ -61,6 +61,7 @@ class Task(NamedTuple):
     scale: Any  # (2,)
     states: Any  # (m, kept, 2) after each kept period
     impacts: Any  # (m, kept, most, 3) time and gap velocities before and after; the first ones of each period
+    landings: Any  # (m, kept, most) time of each landing in it; the first ones
     counts: Any  # (m, kept, 2) see IMPACTS, ENDS
     reached: Any  # (m,) the target that was reached, or UNREACHED
     taken: Any  # (m,) periods taken
@@ -137,7 +138,7 @@ def one_period(s: Any, x0: Any, record: Any, count: Any, task: Any, i: int, k: i
 
 
 def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
-    """Kernel: impacts of the k-th kept period of run i, the first ones in full and all by their number."""
+    """Kernel: impacts and landings of the k-th kept period of run i, the first ones in full, all by their number."""
     for e in range(count[EVENT]):
         kind = int(record.events[e, 5])
         if kind == IMPACT:
@@ -148,6 +149,9 @@ def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
                 task.impacts[i, k, place, 2] = record.events[e, 3]
             task.counts[i, k, IMPACTS] += 1
         elif kind == STICK and record.events[e, 0] > task.t_start:
+            place = task.counts[i, k, ENDS]
+            if place < task.landings.shape[2]:
+                task.landings[i, k, place] = record.events[e, 0]
             task.counts[i, k, ENDS] += 1
 
 

@@ -1,63 +1,13 @@
-"""Pictures of studies: bifurcation diagrams, basins, attractors, branches of periodic orbits."""
+"""Pictures of studies: basins, attractors, branches of periodic orbits."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-DPI = 150
 COLOURS = "tab20"
-
-
-def bifurcation(data: Any, title: str = "") -> Any:
-    """Figure of a bifurcation dataset: stroboscopic section above, phases of the impacts below."""
-    from matplotlib.figure import Figure
-
-    parameter = str(data.attrs["parameter"])
-    figure = Figure(figsize=(11, 8), layout="constrained")
-    figure.suptitle(title or f"{data.attrs['scene']}: {data.attrs['start']} starts")
-    above, below = figure.subplots(2, 1, sharex=True)
-    _points(above, below, data, "k", 1.0)
-    above.set(ylabel="velocity on the section [m/s]")
-    below.set(ylabel="phase of impacts [periods]", xlabel=parameter)
-    return figure
-
-
-def overlaid(reference: Any, others: Mapping[str, Any], apart: Mapping[str, Any], title: str = "") -> Any:
-    """Figure of one bifurcation diagram in black and others, by name, over it; below, how far each is from it.
-
-    apart : of each other one, by the same names, from `lcpstep.analysis.agreement.agreement`
-    """
-    from matplotlib.figure import Figure
-
-    parameter = str(reference.attrs["parameter"])
-    figure = Figure(figsize=(11, 12), layout="constrained")
-    figure.suptitle(title or f"{reference.attrs['scene']}: {reference.attrs['start']} starts")
-    above, below, distance = figure.subplots(3, 1, sharex=True)
-    for k, (name, data) in enumerate(others.items()):
-        _points(above, below, data, f"C{k}", 2.5)
-        distance.semilogy(
-            reference[parameter].values, apart[name]["phase_distance"].values, f"C{k}.-", label=name
-        )
-    _points(above, below, reference, "k", 0.8)
-    distance.semilogy([], [], "k.", label="reference")
-    above.set(ylabel="velocity on the section [m/s]")
-    below.set(ylabel="phase of impacts [periods]")
-    distance.set(ylabel="distance of the phases [periods]", xlabel=parameter)
-    distance.legend()
-    return figure
-
-
-def _points(above: Any, below: Any, data: Any, colour: str, size: float) -> None:
-    """Points of a bifurcation dataset: velocities on the section above, phases of impacts below."""
-    values = data[str(data.attrs["parameter"])].values
-    v = data["v"].isel(coordinate=0).values  # (run, value, period)
-    phase = data["impact_phase"].values
-    style = {"color": colour, "marker": ".", "ls": "", "ms": size, "alpha": 0.6}
-    above.plot(np.broadcast_to(values[None, :, None], v.shape).ravel(), v.ravel(), **style)
-    below.plot(np.broadcast_to(values[None, :, None, None], phase.shape).ravel(), phase.ravel(), **style)
 
 
 def basins(data: Any, title: str = "") -> Any:
