@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis.derivative import derivative
-from lcpstep.analysis.fixed_points import multipliers
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
 from lcpstep.analysis.lyapunov import Lyapunov, lyapunov
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
@@ -203,11 +202,9 @@ def _growth(P: PeriodMap, states: Array, n: int) -> Lyapunov:
         return lyapunov(P, states[-1], LYAPUNOV_PERIODS)
     if n == 0:  # differences across the impacts of time-stepping say nothing
         return Lyapunov(math.nan, math.nan)
-    J = np.eye(states.shape[1])
     if not isinstance(P.method, EventDriven):
         return Lyapunov(math.nan, math.nan)
-    for x in states[-n:]:
-        J = derivative(P, x) @ J
+    J = image_and_derivative(P, states[-1], n)[1]
     largest = float(abs(multipliers(J)[0]))
     return Lyapunov(math.log(largest) / n if largest > 0.0 else -math.inf, 0.0)
 

@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.analysis.derivative import STENCIL
-from lcpstep.analysis.fixed_points import multipliers, orbit_derivative, periodic_point
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, periodic_point
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.iteration import Map, iterate
 
@@ -221,8 +221,8 @@ class _Follower:
     def equations(self, z: Array) -> tuple[Array, Array]:
         """F and DP^n at z."""
         P = self.family(float(z[-1]))
-        points = iterate(P, z[:-1], self.n)
-        return points[-1] - z[:-1], orbit_derivative(P, points[:-1])
+        image, J = image_and_derivative(P, z[:-1], self.n)
+        return image - z[:-1], J
 
     def extended(self, z: Array, J: Array) -> Array:
         """(F_x, F_p), (d, d + 1)."""

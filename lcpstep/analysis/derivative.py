@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lcpstep.maps.iteration import Map
+from lcpstep.maps.iteration import Map, iterate
 
 Array = NDArray[np.float64]
 # f' = sum w (f(x + s d) - f(x - s d)) / d; the step balances the rounding of f with the fifth derivative
@@ -21,6 +21,19 @@ def derivative(P: Map, x: ArrayLike) -> Array:
     if own is not None:
         return np.atleast_2d(np.asarray(own(np.asarray(x, dtype=float)), dtype=float))
     return differences(P, x)
+
+
+def along(P: Map, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
+    """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d).
+
+    By the map itself where it knows them all at once.
+    """
+    own = getattr(P, "along", None)
+    if own is not None:
+        images, derivatives = own(x, n, drop)
+        return images, derivatives
+    points = iterate(P, x, drop + n)[drop:]
+    return points[1:], np.array([derivative(P, y) for y in points[:-1]])
 
 
 def differences(f: Any, x: ArrayLike, step: float = RELATIVE_STEP) -> Array:

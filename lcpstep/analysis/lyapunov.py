@@ -1,6 +1,6 @@
-"""Lyapunov exponents of a map: growth of small deviations, by QR factorisation at every iteration.
+"""Largest Lyapunov exponent of a map: growth of a small deviation, brought back to length one at every iteration.
 
-    lambda_i = lim 1/n sum log |R_ii|,    DP(x_k) Q_{k-1} = Q_k R_k
+    lambda = lim 1/n sum log |DP(x_k) e_{k-1}|,    e_k = DP(x_k) e_{k-1} / |DP(x_k) e_{k-1}|
 
 The standard error is that of means over blocks. For a scene's `PeriodMap` the derivative is made of saltation
 matrices; divide by the period for exponents per second. Source: G. Benettin et al., Meccanica 15 (1980).
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.analysis.derivative import derivative
+from lcpstep.analysis.derivative import along
 from lcpstep.maps.iteration import Map
 
 Array = NDArray[np.float64]
@@ -57,16 +57,15 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
     """
     x = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
-    Q = np.eye(len(x))
     growth = np.zeros(n)
-    for k in range(-drop, n):
-        if k >= 0:
-            Q, R = np.linalg.qr(derivative(P, x) @ Q)
-            if R[0, 0] == 0.0:
-                Q, growth[k] = np.eye(len(x)), math.nan
-            else:
-                growth[k] = math.log(abs(R[0, 0]))
-        x = np.atleast_1d(np.asarray(P(x), dtype=float))
+    direction = np.eye(len(x))[0]
+    for k, J in enumerate(along(P, x, n, drop)[1]):
+        direction = J @ direction
+        length = math.sqrt(direction @ direction)
+        if length == 0.0:
+            direction, growth[k] = np.eye(len(x))[0], math.nan
+        else:
+            direction, growth[k] = direction / length, math.log(length)
     landings = int(np.sum(np.isnan(growth)))
     if landings > RARE * n:
         return Lyapunov(-math.inf, 0.0, landings)

@@ -15,8 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
-from lcpstep.analysis.derivative import derivative
-from lcpstep.analysis.fixed_points import multipliers, periodic_point
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, periodic_point
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.simulate import Method, simulate
@@ -127,9 +126,7 @@ def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
     """The orbit through points that are known to be periodic."""
     n = len(points)
     run = P.follow(points[0], n)
-    J = np.eye(points.shape[1])
-    for x in points:
-        J = derivative(P, x) @ J
+    J = image_and_derivative(P, points[0], n)[1]
     shown = np.isfinite(run.time[0])
     start = np.repeat(np.arange(n), run.time.shape[-1]).reshape(n, -1) * P.scene.period
     return PeriodicOrbit(

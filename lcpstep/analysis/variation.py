@@ -210,6 +210,19 @@ class PeriodMap(StroboscopicMap):
 
     def jacobian(self, x: ArrayLike) -> Array:
         """DP(x), (2 n_q, 2 n_q)."""
+        return np.asarray(self.along(x, 1)[1][0])
+
+    def along(self, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
+        """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d)."""
+        run = self.follow(x, drop + n, drop, tangents=True)
+        if run.tangents.shape[1]:
+            return run.states[0], run.tangents[0]
+        before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (2 * self.scene.n_q,))
+        points = [before, *run.states[0, :-1]]
+        return run.states[0], np.array([self.differentiated(y) for y in points])
+
+    def differentiated(self, x: Array) -> Array:
+        """DP(x) by walking along the motion's events, or by differences where it has none to walk along."""
         if not isinstance(self.method, EventDriven):
             return differences(self, x)
         return monodromy(self.scene, self.method, x, (self.time, self.time + self.scene.period))

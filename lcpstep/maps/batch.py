@@ -40,6 +40,8 @@ class Periods:
     landed : (m, kept, most)   times at which the contact closed for good in each period [s], the first ones: ends of
         chattering sequences (their accumulation points), and impacts without rebound
     impacts, ends : (m, kept)   number of impacts, and of these landings, in each period
+    tangents : (m, kept, 2, 2)   derivative of the state at the end of each kept period by that at its start;
+        (m, 0, 2, 2) where it was not asked for, or is not known in closed form
     reached : (m,)   number of the target a run came near to, -1 for none
     taken : (m,)   periods taken
     final : (m, 2 n_q)   last state
@@ -53,6 +55,7 @@ class Periods:
     landed: Array
     impacts: Ints
     ends: Ints
+    tangents: Array
     reached: Ints
     taken: Ints
     final: Array
@@ -79,6 +82,7 @@ def periods(
     most: int = IMPACTS_KEPT,
     targets: Targets | None = None,
     strict: bool = True,
+    tangents: bool = False,
 ) -> Periods:
     """Follow runs over n periods of the scene's forcing, and keep what happens after the first `drop` of them.
 
@@ -93,6 +97,7 @@ def periods(
     targets : a run ends early, after a whole period, where it comes near one of these
     strict : a start inside of the obstacle ends its run at once; states that time-stepping has computed may lie
         there a little, and go on where this is False
+    tangents : also derivatives, for event-driven runs in closed form
 
     Raises
     ------
@@ -113,6 +118,8 @@ def periods(
         fast = lockstep.Lockstep(scene, method)
         codes = lockstep.CODES
     if fast is not None and fast.usable:
+        if tangents and isinstance(fast, follow.Follower):
+            task = task._replace(tangents=np.full((len(task.starts), n - drop, 2, 2), np.nan))
         fast.run(task, strict)
         status = np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64)
     else:
@@ -120,8 +127,8 @@ def periods(
         status = task.codes
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
-        landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1], reached=task.reached,
-        taken=task.taken, final=task.final, status=status,
+        landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
+        tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=status,
     )  # fmt: skip
 
 
@@ -151,7 +158,8 @@ def _task(
         states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
         landings=np.full((m, kept, most), np.nan),
         counts=np.zeros((m, kept, 2), dtype=np.int64), reached=np.full(m, follow.UNREACHED, dtype=np.int64),
-        taken=np.zeros(m, dtype=np.int64), final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
+        tangents=np.zeros((m, 0, 2, 2)), last=np.zeros(1), taken=np.zeros(m, dtype=np.int64),
+        final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
     )  # fmt: skip
 
 

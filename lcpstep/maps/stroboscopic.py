@@ -64,7 +64,7 @@ class StroboscopicMap:
         """The image of the state x = (q, v), (2 n_q,); LcpStepError where the motion ends early."""
         return np.asarray(self.follow(x, 1).states[0, -1])
 
-    def follow(self, x: ArrayLike, n: int, drop: int = 0) -> Periods:
+    def follow(self, x: ArrayLike, n: int, drop: int = 0, *, tangents: bool = False) -> Periods:
         """One run of n periods, in full; its states are those of n iterations of the map.
 
         Raises
@@ -74,7 +74,9 @@ class StroboscopicMap:
         """
         x = checks.array("x", x, (2 * self.scene.n_q,))
         stepped = isinstance(self.method, Moreau)
-        run = periods(self.scene, self.method, x, n, drop=drop, phase=self.phase, strict=not stepped)
+        run = periods(
+            self.scene, self.method, x, n, drop=drop, phase=self.phase, strict=not stepped, tangents=tangents
+        )
         if run.status[0] == INSIDE:
             raise ValueError(f"x: {x.tolist()} lies inside of the obstacle at t = {self.time:g} s")
         if run.status[0] != Status.DONE:
