@@ -1,4 +1,4 @@
-"""Pictures of studies: basins, attractors, branches of periodic orbits."""
+"""Pictures of studies: basins and attractors."""
 
 from __future__ import annotations
 
@@ -48,26 +48,4 @@ def attractors(found: Sequence[Any], title: str = "") -> Any:
     left.set(title="impacts", xlabel="phase [periods]", ylabel="gap velocity after [m/s]")
     right.set(title="once per period", xlabel="position [m]", ylabel="velocity [m/s]")
     right.legend()
-    return figure
-
-
-def branch(data: Any, title: str = "") -> Any:
-    """Figure of a branch of periodic orbits: states on the section, stable ones solid, and the multipliers."""
-    from matplotlib.figure import Figure
-
-    parameter = str(data.attrs["parameter"])
-    p, stable = data[parameter].values, data["stable"].values.astype(bool)
-    figure = Figure(figsize=(10, 8), layout="constrained")
-    figure.suptitle(title)
-    above, below = figure.subplots(2, 1, sharex=True)
-    above.plot(p, data["x"].values[:, -1], "k:", lw=1)
-    above.plot(np.where(stable, p, np.nan), data["x"].values[:, -1], "k-", lw=1.5, label="stable")
-    for kind in dict.fromkeys(data["special_kind"].values):
-        which = data["special_kind"].values == kind
-        above.plot(data["special_p"].values[which], data["special_x"].values[which, -1], "o", label=str(kind))
-    above.set(ylabel="velocity on the section [m/s]")
-    above.legend()
-    below.plot(p, data["multiplier_modulus"].values, ".", ms=3)
-    below.axhline(1.0, color="0.5")
-    below.set(ylabel="modulus of the multipliers", xlabel=parameter)
     return figure
