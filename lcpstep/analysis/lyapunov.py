@@ -41,6 +41,31 @@ class Lyapunov:
         return self.largest > 3.0 * self.error and self.largest > 0.0
 
 
+def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
+    """Largest exponent from the derivatives along m runs on one attractor, (m, n, d, d); the first `drop` align."""
+    m, n, d, _ = derivatives.shape
+    directions = np.tile(np.eye(d)[0], (m, 1))
+    growth = np.zeros((m, n))
+    for k in range(n):
+        directions = np.einsum("mij,mj->mi", derivatives[:, k], directions)
+        length = np.sqrt(np.sum(directions**2, axis=1))
+        lost = length == 0.0
+        growth[:, k] = np.where(lost, math.nan, np.log(np.where(lost, 1.0, length)))
+        directions = np.where(lost[:, None], np.eye(d)[0], directions / np.where(lost, 1.0, length)[:, None])
+    return mean_growth(growth[:, min(drop, n - 1) :].ravel(), m if m > 1 else BLOCKS)
+
+
+def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:
+    """Largest exponent from the growth in each iteration, nan where a landing wiped out all deviations."""
+    landings = int(np.sum(np.isnan(growth)))
+    if landings > RARE * len(growth):
+        return Lyapunov(-math.inf, 0.0, landings)
+    growth = growth[np.isfinite(growth)]
+    means = [np.mean(block) for block in np.array_split(growth, min(blocks, len(growth)))]
+    error = float(np.std(means, ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.inf
+    return Lyapunov(float(np.mean(growth)), error, landings)
+
+
 def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
     """Largest Lyapunov exponent of a map along the orbit of x.
 
@@ -66,10 +91,4 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
             direction, growth[k] = np.eye(len(x))[0], math.nan
         else:
             direction, growth[k] = direction / length, math.log(length)
-    landings = int(np.sum(np.isnan(growth)))
-    if landings > RARE * n:
-        return Lyapunov(-math.inf, 0.0, landings)
-    growth = growth[np.isfinite(growth)]
-    blocks = [np.mean(block) for block in np.array_split(growth, min(BLOCKS, len(growth)))]
-    error = float(np.std(blocks, ddof=1) / math.sqrt(len(blocks))) if len(blocks) > 1 else math.inf
-    return Lyapunov(float(np.mean(growth)), error, landings)
+    return mean_growth(growth)

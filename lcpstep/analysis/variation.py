@@ -19,12 +19,15 @@ from lagrangian import Scene, checks
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.maps.batch import Periods, periods
+from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulate import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
+IMPACTS = 512  # of a period that a derivative is made of
 TOLERANCE = 1e-11  # of the variational flow where it is integrated
 
 
@@ -214,12 +217,30 @@ class PeriodMap(StroboscopicMap):
 
     def along(self, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
         """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d)."""
-        run = self.follow(x, drop + n, drop, tangents=True)
+        run = self.follow(x, drop + n, drop, most=IMPACTS, tangents=True)
         if run.tangents.shape[1]:
             return run.states[0], run.tangents[0]
         before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (2 * self.scene.n_q,))
         points = [before, *run.states[0, :-1]]
         return run.states[0], np.array([self.differentiated(y) for y in points])
+
+    def many(self, starts: ArrayLike, n: int, drop: int = 0, *, most: int) -> Periods:
+        """Runs from many states, that need not lie outside of the obstacle to the last digit, with derivatives."""
+        return periods(
+            self.scene,
+            self.method,
+            starts,
+            n,
+            drop=drop,
+            phase=self.phase,
+            most=most,
+            strict=False,
+            tangents=True,
+        )
+
+    def from_impacts(self, log: Array, counts: NDArray[np.int64]) -> Array:
+        """Derivatives of periods with these impacts, (m, n, 2, 2); see `lcpstep.maps.tangent.along_logs`."""
+        return np.asarray(Follower(self.scene, EventDriven()).tangents_of(log, counts, self.time))
 
     def differentiated(self, x: Array) -> Array:
         """DP(x) by walking along the motion's events, or by differences where it has none to walk along."""

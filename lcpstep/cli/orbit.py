@@ -24,7 +24,7 @@ from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_
 from lcpstep.dataset import labelled, provenance
 from lcpstep.errors import UnknownName
 from lcpstep.plot import orbits as pictures
-from lcpstep.plot.words import DPI, method_words
+from lcpstep.plot.words import DPI, method_words, title_of
 
 
 def add(commands: Any) -> None:
@@ -74,17 +74,11 @@ def run_orbit(options: argparse.Namespace) -> int:
     _print(orbit)
     if options.draw:
         drawn.parent.mkdir(parents=True, exist_ok=True)
-        pictures.orbit(orbit, title_of(orbit)).savefig(drawn, dpi=DPI)
+        kind = "stable" if orbit.stable else "unstable"
+        title = title_of(scene, f"{orbit.name}, {kind}", method)
+        pictures.orbit(orbit, title).savefig(drawn, dpi=DPI)
         print(f"wrote {drawn}")
     return DONE if names is None else _run_branch(options, orbit, names)
-
-
-def title_of(orbit: PeriodicOrbit) -> str:
-    """Scene, orbit and method in words."""
-    rpm = orbit.scene.parameters.get("rpm")
-    at = "" if rpm is None else f" at {rpm:.9g} rpm"
-    kind = "stable" if orbit.stable else "unstable"
-    return f"{orbit.scene.name}{at}: {orbit.name}, {kind}; {method_words(orbit.method)}"
 
 
 def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:

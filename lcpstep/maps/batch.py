@@ -97,7 +97,8 @@ def periods(
     targets : a run ends early, after a whole period, where it comes near one of these
     strict : a start inside of the obstacle ends its run at once; states that time-stepping has computed may lie
         there a little, and go on where this is False
-    tangents : also derivatives, for event-driven runs in closed form
+    tangents : also derivatives, where the motion between impacts is known in closed form: along the events of
+        `EventDriven`, and from the recorded impacts of other methods, to their accuracy
 
     Raises
     ------
@@ -125,11 +126,22 @@ def periods(
     else:
         one_by_one(scene, method, task, strict)
         status = task.codes
+    if tangents and not task.tangents.shape[1]:
+        task = task._replace(tangents=_from_logs(scene, task))
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
         landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
         tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=status,
     )  # fmt: skip
+
+
+def _from_logs(scene: Scene, task: follow.Task) -> Array:
+    """Derivatives of the kept periods from their impacts, where the motion between these is known in closed form."""
+    exact = follow.Follower(scene, EventDriven()) if scene.n_c <= 1 else None
+    if exact is None or not exact.usable:
+        return task.tangents
+    log = np.ascontiguousarray(task.impacts[..., :2])
+    return np.asarray(exact.tangents_of(log, task.counts, task.t_start))
 
 
 def section(phase: float) -> float:

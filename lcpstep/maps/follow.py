@@ -35,7 +35,7 @@ from lcpstep.events.flight.loop import run
 from lcpstep.events.flight.motion import CONTACT, OFFSET, T_END, G
 from lcpstep.events.flight.run import flight_of, numbers, oscillator_of
 from lcpstep.events.run import STATUS
-from lcpstep.maps.tangent import along_events, begin_tangent, carry
+from lcpstep.maps.tangent import along_events, along_logs, begin_tangent, carry
 from lcpstep.model import ABSENT, model
 from lcpstep.recording import Kept, Recorder
 
@@ -189,15 +189,27 @@ class Follower:
 
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
-        scene = self.scene
-        spanned = copy(scene)  # a checked scene needs no further check
-        object.__setattr__(
-            spanned, "t_span", (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
-        )
-        x0 = numbers(spanned, self.model, self.oscillator, self.method)  # type: ignore[arg-type]
+        scene, x0 = self.scene, self.constants()
         record = Recorder(1, scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).buffers
         count = np.zeros(N_COUNTERS, dtype=np.int64)
         count[MAX_EVENTS] = self.method.max_events
         kernel = compiled(follow) if self.fast else follow
         under_way, aside = (flight_of(scene, self.model, x0.copy()) for _ in range(2))
         kernel(under_way, aside, x0, record, count, task._replace(strict=strict))
+
+    def constants(self) -> Any:
+        """Constants and first numbers of a flight."""
+        scene = self.scene
+        spanned = copy(scene)  # a checked scene needs no further check
+        object.__setattr__(
+            spanned, "t_span", (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
+        )
+        return numbers(spanned, self.model, self.oscillator, self.method)  # type: ignore[arg-type]
+
+    def tangents_of(self, log: Any, counts: Any, t_start: float) -> Any:
+        """Derivatives of periods from their impacts, as recorded by any method; see `tangent.along_logs`."""
+        out = np.zeros((*counts.shape[:2], 2, 2))
+        kernel = compiled(along_logs) if self.fast else along_logs
+        flight = flight_of(self.scene, self.model, self.constants())
+        kernel(flight, log, counts, t_start, t_start + self.scene.period, out, np.zeros(1))
+        return out

@@ -10,6 +10,7 @@ D is the saltation matrix R_x + (F+ - R_x F- - R_t) H_x / u- of G. Osorio, Compl
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from lcpstep.events.bookkeeping import IMPACT, STICK
@@ -58,3 +59,23 @@ def along_events(s: Any, record: Any, events: int, J: Any, last: Any) -> None:
         elif kind == STICK:
             J[0, 0] = J[0, 1] = J[1, 0] = J[1, 1] = 0.0
             last[0] = t
+
+
+def along_logs(s: Any, log: Any, counts: Any, t_start: float, t_end: float, out: Any, last: Any) -> None:
+    """Kernel: derivatives of periods whose impacts were recorded by any method, (m, kept, 2, 2) into out.
+
+    log : (m, kept, most, 2) time and gap velocity before each impact;  counts : (m, kept, 2) impacts and landings
+    """
+    for i in range(log.shape[0]):
+        for k in range(log.shape[1]):
+            J = out[i, k]
+            begin_tangent(J, last, t_start)
+            if counts[i, k, 1] > 0:
+                J[0, 0] = J[1, 1] = 0.0
+            elif counts[i, k, 0] <= log.shape[2]:
+                for e in range(counts[i, k, 0]):
+                    carry(s, J, last, log[i, k, e, 0])
+                    strike(s, J, log[i, k, e, 0], log[i, k, e, 1])
+                carry(s, J, last, t_end)
+            else:  # not all impacts are known
+                J[0, 0] = J[0, 1] = J[1, 0] = J[1, 1] = math.nan

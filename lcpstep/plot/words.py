@@ -24,3 +24,14 @@ def parameter_label(name: str) -> str:
     """The parameter's name with its unit, where it has one."""
     unit = {"rpm": "rpm"}.get(name, UNITS.get(name))
     return "cam speed [rpm]" if name == "rpm" else f"{name} [{unit}]" if unit else name
+
+
+def scene_words(scene: Any) -> str:
+    """The scene, and how fast its cam turns."""
+    rpm = scene.parameters.get("rpm")
+    return str(scene.name) if rpm is None else f"{scene.name} at {rpm:.9g} rpm"
+
+
+def title_of(scene: Any, what: str, method: Any) -> str:
+    """Scene, what is shown, and by which method."""
+    return f"{scene_words(scene)}: {what}; {method_words(method)}"

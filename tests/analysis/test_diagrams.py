@@ -93,3 +93,14 @@ def test_corners_of_the_forcing_come_with_the_diagram():
     scene = cam_follower(rpm=100.0)
     for row in data["corner_phase"].values:
         assert row == pytest.approx(np.asarray(scene.corners) / scene.period, abs=1e-15)
+
+
+def test_maps_show_the_phase_of_the_forcing_that_all_commands_show():
+    from lcpstep.maps import sections
+    from lcpstep.plot.sections import maps
+
+    scene = cam_follower(rpm=700.0)  # its one impact lies at the phase 0.181399 of `lcpstep orbit`
+    figure = maps({"event-driven": sections(scene, EventDriven(), 300, 250)}, "", lowest=0.5)
+    x = figure.axes[0].get_lines()[0].get_xdata()
+    assert x % 1.0 == pytest.approx(0.181399126674, abs=1e-9)
+    assert figure.axes[0].get_xlim() == (0.5, 1.5)

@@ -1,8 +1,7 @@
-"""Pictures of studies: basins and attractors."""
+"""Pictures of basins of attraction."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -29,23 +28,4 @@ def basins(data: Any, title: str = "") -> Any:
         )
     ax.legend(loc="upper right")
     ax.set(title=title, xlabel="position [m]", ylabel="velocity [m/s]")
-    return figure
-
-
-def attractors(found: Sequence[Any], title: str = "") -> Any:
-    """Figure of attractors (`lcpstep.analysis.attractors.Attractor`): impact map and stroboscopic map."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(12, 5), layout="constrained")
-    figure.suptitle(title)
-    left, right = figure.subplots(1, 2)
-    for a in found:
-        mark = "o" if a.periods else ","
-        left.plot(a.impact_phase, a.impact_after, mark, ms=4, label=a.name)
-        right.plot(
-            a.points[:, 0], a.points[:, a.points.shape[1] // 2], mark, ms=4, label=f"{a.name}: {a.share:.0%}"
-        )
-    left.set(title="impacts", xlabel="phase [periods]", ylabel="gap velocity after [m/s]")
-    right.set(title="once per period", xlabel="position [m]", ylabel="velocity [m/s]")
-    right.legend()
     return figure
