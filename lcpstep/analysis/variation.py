@@ -146,7 +146,7 @@ class _Variation:
     def matrices(self) -> tuple[Array, Array]:
         """State matrices of a linear system, free and with its contact closed."""
         m, n = self.local.model, self.run.scene.n_q
-        free = np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
+        free = state_matrix(self.local)
         if self.run.scene.n_c == 0:
             return free, free
         MG, W = m.M_inverse @ m.G[0], float(m.G[0] @ m.M_inverse @ m.G[0])
@@ -183,6 +183,19 @@ class _Variation:
             G, _ = self.local.rates(t, q, v)
             a = a - MG * (float(G @ a) + self.local.bias(t, q, v)) / W
         return np.concatenate([v, a])
+
+
+def flow(scene: Scene, duration: float) -> Array:
+    """Derivative of the free motion of a linear system over a time [s] by its start, (2 n_q, 2 n_q)."""
+    from scipy.linalg import expm
+
+    return np.asarray(expm(duration * state_matrix(Local(scene))))
+
+
+def state_matrix(local: Local) -> Array:
+    """A of x' = A x + .. for a linear system in free motion, x = (q, v)."""
+    m, n = local.model, local.scene.n_q
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
 
 
 def monodromy(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, float]) -> Array:
