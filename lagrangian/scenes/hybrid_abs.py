@@ -47,6 +47,13 @@ def holding_torque(slip: float, p: Any) -> float:
     return arm * p[MASS] * p[GRAVITY] * friction(slip, p)
 
 
+def holding_torque_slope(slip: float, p: Any) -> float:
+    """dPsi/dlambda, for a slip that is not negative [N m]."""
+    arm = p[RADIUS] + p[INERTIA] * (1.0 - slip) / (p[RADIUS] * p[MASS])
+    steeper = p[TH1] * p[TH2] * math.exp(-slip * p[TH2]) - p[TH3]
+    return p[MASS] * p[GRAVITY] * (arm * steeper - p[INERTIA] / (p[RADIUS] * p[MASS]) * friction(slip, p))
+
+
 def _reduced(x: Any, p: Any, u: float, turning: float, out: Any) -> None:
     out[0] = -p[RADIUS] / (p[INERTIA] * p[SPEED]) * (holding_torque(x[0], p) - turning * x[1])
     out[1] = u

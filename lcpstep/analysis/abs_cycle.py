@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lagrangian.hybrid import HybridScene
-from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque
+from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque, holding_torque_slope
 from lcpstep.analysis.hybrid_variation import monodromy
 from lcpstep.errors import LcpStepError, StudyInterrupted
 from lcpstep.events import EventDriven
@@ -171,12 +171,21 @@ def classify(scene: HybridScene, end: End) -> int:
 
 
 def peak(scene: HybridScene) -> tuple[float, float]:
-    """Slip at the largest holding torque, and max Psi [N m]."""
-    from scipy.optimize import minimize_scalar
+    """Slip at the largest holding torque, where dPsi/dlambda = 0, and max Psi [N m].
+
+    Raises
+    ------
+    LcpStepError   Psi rises all the way to a locked wheel
+    """
+    from scipy.optimize import brentq
 
     p = np.asarray(scene.p)
-    best = minimize_scalar(lambda s: -holding_torque(s, p), bounds=(0.0, 1.0), options={"xatol": 1e-12})
-    return float(best.x), -float(best.fun)
+    if not holding_torque_slope(1.0, p) < 0.0 < holding_torque_slope(0.0, p):
+        raise LcpStepError("Psi has no maximum between rolling and a locked wheel")
+    slip = float(
+        brentq(holding_torque_slope, 0.0, 1.0, args=(p,), xtol=1e-17, rtol=4.0 * np.finfo(float).eps)
+    )
+    return slip, holding_torque(slip, p)
 
 
 def with_thresholds(scene: HybridScene, **values: float) -> HybridScene:

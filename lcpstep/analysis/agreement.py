@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.analysis.attractors import TOLERANCE, return_time
+from lcpstep.analysis.listed import column
 from lcpstep.dataset import labelled
 from lcpstep.trajectory import Status
 
@@ -133,21 +134,17 @@ def _states(data: Any) -> Array:
 def _compared(data: Any, reference: Any, k: int, tolerance: float, size: Array) -> dict[str, Any]:
     """The k-th column of two diagrams."""
     own, other = (_states(d)[:, k] for d in (data, reference))
-    phases, others = (d["impact_phase"].values[:, k] for d in (data, reference))
+    (phases, _), (others, when) = (column(d, "impact_phase", k) for d in (data, reference))
     half = other.shape[1] // 2
     names = _names(data, k, tolerance), _names(reference, k, TOLERANCE)
     ended = any(np.any(d["status"].values[:, k] != Status.DONE) for d in (data, reference))
     return {
-        "phase_distance": np.nan if ended else _phases(phases, others),
+        "phase_distance": np.nan if ended else circle_distance(phases, others),
         "state_distance": np.nan if ended else _apart(own, other, size),
-        "phase_floor": np.nan if ended else _phases(others[:, :half], others[:, half:]),
+        "phase_floor": np.nan if ended else circle_distance(others[when < half], others[when >= half]),
         "state_floor": np.nan if ended else _apart(other[:, :half], other[:, half:], size),
         "name": names[0], "name_reference": names[1], "same": not ended and names[0] == names[1],
     }  # fmt: skip
-
-
-def _phases(a: Array, b: Array) -> float:
-    return circle_distance(a[np.isfinite(a)], b[np.isfinite(b)])
 
 
 def _apart(a: Array, b: Array, size: Array) -> float:

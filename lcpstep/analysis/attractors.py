@@ -16,22 +16,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis.derivative import derivative
-from lcpstep.analysis.fixed_points import multipliers
-from lcpstep.analysis.lyapunov import Lyapunov, lyapunov
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
+from lcpstep.analysis.grid_error import APART, on_other_grids, spread
+from lcpstep.analysis.grouping import Settled, grouped, near, overlap
+from lcpstep.analysis.listed import listed
+from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.simulate import Method
-from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6  # of a return, relative to the size of the motion
-STEPS_APART = 30  # of time-stepping, by which a return may be missed: impacts are rounded to its grid
 LYAPUNOV_PERIODS = 400
-OVERLAP = 0.5  # of two clouds of points that are one attractor
-NEIGHBOURS = 5.0  # typical distances between points of a cloud, within which another is taken as part of it
+POINTS, CLOUD = 8000, 2000  # periods that an aperiodic attractor, and one of time-stepping, are sampled over
+STARTS, FORGET, KICK = 32, 60, 1e-9  # of these samples: runs, periods until they have parted, by what kick
+MOST, MOST_OF_MANY = 512, 64  # impacts of a period that are kept, of a periodic motion and of others
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,11 @@ class Attractor:
     landings : how often in n periods the contact closes for good, after complete chattering or an impact without
         rebound; in one period, on the average, where the motion is aperiodic
     points : (k, 2 n_q)   states (q, v) on the section: n of them, or many where the motion is aperiodic
+    cloud : (j, 2 n_q)   the same, but many for every motion by time-stepping, whose grid scatters them; for an
+        aperiodic one each period is taken with a step of its own, between 0.9 h and h, for on one grid all runs come
+        to a cycle that only the grid has
     impact_phase, impact_before, impact_after : (m,)   impacts: phase in [0, 1), gap velocities [m/s]
+    impact_number : (m,)   the number of each in its period, from 1
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
     """
@@ -57,6 +62,8 @@ class Attractor:
     impact_phase: Array
     impact_before: Array
     impact_after: Array
+    impact_number: NDArray[np.int64]
+    cloud: Array
     lyapunov: Lyapunov
     share: float = 1.0
 
@@ -96,6 +103,7 @@ def attractors(
     longest: int = 60,
     phase: float = 0.0,
     tolerance: float | None = None,
+    points: int = POINTS,
 ) -> Attractors:
     """Attractors that runs from the given states go to.
 
@@ -107,8 +115,9 @@ def attractors(
     transient, window : periods dropped, and looked at
     longest : longest period n, in periods of the forcing, that is recognised; at most a half of the window
     phase : of the section, as a share of the period in [0, 1)
-    tolerance : of a return, relative to the size of the motion; 1e-6 where not given, and for time-stepping not
-        less than 30 h / period, or 30 times its own tolerance
+    tolerance : of a return, relative to the size of the motion; where not given 1e-6 for `EventDriven`, and for other
+        methods what their grid does to the motion (see `grid_error`)
+    points : periods that an aperiodic attractor is sampled over
 
     Raises
     ------
@@ -118,39 +127,54 @@ def attractors(
     if 2 * longest > window:
         raise ValueError(f"longest: expected at most half of window = {window}, got {longest}")
     transient = int(checks.number("transient", transient, least=0))
-    if tolerance is None:
-        tolerance = TOLERANCE
-        if isinstance(method, Moreau):
-            own = method.h / scene.period if method.tolerance is None else method.tolerance
-            tolerance = max(tolerance, STEPS_APART * own)
-    tolerance = checks.positive("tolerance", tolerance)
-    runs = periods(scene, method, starts, transient + window, drop=transient, phase=phase, strict=True)
-    P = PeriodMap(scene, method, phase)
+    if tolerance is not None:
+        checks.positive("tolerance", tolerance)
+    runs = periods(
+        scene, method, starts, transient + window, drop=transient, phase=phase, most=0, strict=True
+    )
+    done = np.flatnonzero(runs.status == Status.DONE)
+    settled = _settled(scene, method, runs, done, longest, phase, tolerance)
+    groups = sorted(grouped(settled), key=len, reverse=True)
     label = np.full(len(runs.status), -1)
-    found: list[Attractor] = []
-    for i in np.flatnonzero(runs.status == Status.DONE):
-        states = runs.states[i]
-        size = max(float(np.max(np.abs(states))), 1e-300)
-        n = return_time(states, longest, tolerance * size)
-        same = (k for k, known in enumerate(found) if _same(known, states, n, tolerance * size))
-        label[i] = next(same, -1)
-        if label[i] < 0:
-            label[i] = len(found)
-            found.append(_described(P, runs, int(i), n))
-    counts = np.bincount(label[label >= 0], minlength=len(found))
-    order = np.argsort(-counts, kind="stable")
-    rank = np.argsort(order, kind="stable")
-    shared = tuple(_with_share(found[k], float(counts[k]) / len(label)) for k in order)
-    label = np.where(label >= 0, rank[label] if len(found) else -1, -1)
+    found = []
+    P = PeriodMap(scene, method, phase)
+    for k, members in enumerate(groups):
+        numbers = [settled[i].number for i in members]
+        label[numbers] = k
+        returning = [settled[i].periods for i in members if settled[i].periods]
+        n = int(np.bincount(returning).argmax()) if returning else 0
+        typical = [settled[i].number for i in members if settled[i].periods == n]
+        found.append(described(P, runs, typical, n, points, len(members) / len(label)))
     settings = {
-        "transient": transient,
-        "window": window,
-        "longest": longest,
-        "phase": phase,
-        "tolerance": tolerance,
-    }
+        "transient": transient, "window": window, "longest": longest, "phase": phase,
+        "tolerance": TOLERANCE if tolerance is None else tolerance,
+    }  # fmt: skip
     first = np.array(starts, dtype=float, ndmin=2)
-    return Attractors(shared, first, label, settings)
+    return Attractors(tuple(found), first, label, settings)
+
+
+def _settled(
+    scene: Scene, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
+    tolerance: float | None,
+) -> list[Settled]:  # fmt: skip
+    """What each run that got to its end has settled to; what counts as a return the method's grid decides."""
+    if isinstance(method, EventDriven) or tolerance is not None or len(done) == 0:
+        allowed = TOLERANCE if tolerance is None else tolerance
+        result = []
+        for i in done:
+            size = max(float(np.max(np.abs(runs.states[i]))), 1e-300)
+            n = return_time(runs.states[i], longest, allowed * size)
+            result.append(Settled(int(i), runs.states[i], np.full(runs.final.shape[1], size), allowed, n))
+        return result
+    moved = spread(scene, method, runs.final[done], phase)
+    result = []
+    for k, i in enumerate(done):
+        allowed = max(float(APART * moved.radius[k]), TOLERANCE)
+        n = return_time(runs.states[i] / moved.scale[k], longest, allowed) if moved.forgets[k] else 0
+        # On its own grid an aperiodic motion may be caught by a cycle that only the grid has
+        states = runs.states[i] if n else moved.paths[k]
+        result.append(Settled(int(i), states, moved.scale[k], allowed, n))
+    return result
 
 
 def with_new(known: Attractors, more: Attractors) -> Attractors:
@@ -158,8 +182,11 @@ def with_new(known: Attractors, more: Attractors) -> Attractors:
     tolerance = known.settings["tolerance"]
 
     def is_known(a: Attractor) -> bool:
-        size = max(float(np.max(np.abs(a.points))), 1e-300)
-        return any(_same(b, a.points, a.periods, tolerance * size) for b in known.found)
+        scale = np.full(a.points.shape[1], max(float(np.max(np.abs(a.points))), 1e-300))
+        alike = [b for b in known.found if b.periods == a.periods]
+        if not a.periods:
+            return any(overlap(a.points, b.points) for b in alike)
+        return any(near(a.points, b.points, scale, tolerance) for b in alike)
 
     new = [a for a in more.found if not is_known(a)]
     return replace(known, found=(*known.found, *new))
@@ -181,51 +208,111 @@ def return_time(states: Array, longest: int, tolerance: float) -> int:
     return 0
 
 
-def _described(P: PeriodMap, runs: Periods, i: int, n: int) -> Attractor:
-    """What the i-th run has settled to; it returns after n periods if n > 0."""
-    states, kept = runs.states[i], n or len(runs.states[i])
-    shown = np.isfinite(runs.time[i, -kept:])
+def described(
+    P: PeriodMap, runs: Periods, members: list[int], n: int, points: int, share: float
+) -> Attractor:
+    """What these runs have settled to; it returns after n periods if n > 0."""
+    x = runs.states[members[0], -1]
+    if n and isinstance(P.method, EventDriven):
+        sample = P.many(x, n, most=MOST)
+    else:
+        sample = _sampled(P, runs, members, n, points)
+    kept = sample.impacts.size
+    per = n if n else 1
+    found = listed(sample, P.scene.period, 0)
     return Attractor(
         periods=n,
-        impacts=float(np.sum(runs.impacts[i, -kept:])) / (1 if n else kept),
-        landings=float(np.sum(runs.ends[i, -kept:])) / (1 if n else kept),
-        points=states[-kept:],
-        impact_phase=runs.time[i, -kept:][shown] / P.scene.period % 1.0,
-        impact_before=runs.before[i, -kept:][shown],
-        impact_after=runs.after[i, -kept:][shown],
-        lyapunov=_growth(P, states, n),
+        impacts=_whole(float(np.sum(sample.impacts)) / kept * per, n),
+        landings=_whole(float(np.sum(sample.ends)) / kept * per, n),
+        points=sample.states[0][-n:] if n else sample.states.reshape(-1, sample.states.shape[-1]),
+        impact_phase=found["impact_phase"],
+        impact_before=found["impact_before"],
+        impact_after=found["impact_after"],
+        impact_number=found["impact_number"],
+        cloud=sample.states.reshape(-1, sample.states.shape[-1]),
+        lyapunov=_growth(P, sample, x, n),
+        share=share,
     )
 
 
-def _growth(P: PeriodMap, states: Array, n: int) -> Lyapunov:
+def _whole(number: float, n: int) -> float:
+    return float(round(number)) if n else number
+
+
+def _sampled(P: PeriodMap, runs: Periods, members: list[int], n: int, points: int) -> Periods:
+    """Many short runs on one attractor.
+
+    A single long one will not do: where an aperiodic motion sticks now and then, rounding alone closes a cycle.
+    """
+    many = STARTS if not n else min(STARTS, len(members))
+    starts = runs.final[np.resize(np.array(members), many)]
+    if not n:
+        kicks = np.random.default_rng(0).uniform(-KICK, KICK, starts.shape)
+        starts = starts + kicks * np.max(np.abs(runs.states[members]), axis=(0, 1))
+    each = max(1, -(-points // many)) if not n else max(n, -(-CLOUD // (many * n)) * n)
+    drop = FORGET if not n else 0
+    if not n and not isinstance(P.method, EventDriven):
+        return on_other_grids(P, starts, each + drop, drop, MOST_OF_MANY)
+    return P.many(starts, each + drop, drop, most=MOST if n else MOST_OF_MANY)
+
+
+def _growth(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
     """Largest Lyapunov exponent per period: from the multipliers of a periodic motion, or along an aperiodic one."""
-    if n == 0 and isinstance(P.method, EventDriven):
-        return lyapunov(P, states[-1], LYAPUNOV_PERIODS)
-    if n == 0:  # differences across the impacts of time-stepping say nothing
-        return Lyapunov(math.nan, math.nan)
-    J = np.eye(states.shape[1])
-    if not isinstance(P.method, EventDriven):
-        return Lyapunov(math.nan, math.nan)
-    for x in states[-n:]:
-        J = derivative(P, x) @ J
+    if not sample.tangents.shape[
+        1
+    ]:  # no closed form, and differences across the impacts of time-stepping say nothing
+        if not isinstance(P.method, EventDriven):
+            return Lyapunov(math.nan, math.nan)
+        if not n:
+            return lyapunov(P, x, LYAPUNOV_PERIODS)
+        return _of_multipliers(image_and_derivative(P, x, n)[1], n)
+    if n and isinstance(P.method, EventDriven):
+        J = np.eye(len(x))
+        for factor in sample.tangents[0]:
+            J = factor @ J
+        return _of_multipliers(J, n)
+    if n:
+        return _of_scattered(P, sample, n)
+    return growth_of_runs(sample.tangents)
+
+
+def _of_scattered(P: PeriodMap, sample: Periods, n: int) -> Lyapunov:
+    """From the impacts of runs that the grid of time-stepping scatters around a periodic motion.
+
+    The derivative is that along the mean impacts of each run, which have lost the scatter; how far the growth along
+    the scattered runs is from it is its error. Both are of the motion as the grid has it.
+    """
+    parts = []
+    for i in range(len(sample.status)):
+        log, counts = mean_impacts(sample, i, n)
+        J = np.eye(2)
+        for factor in P.from_impacts(log[None], counts[None])[0]:
+            J = factor @ J
+        parts.append(_of_multipliers(J, n).largest)
+    if -math.inf in parts:
+        return Lyapunov(-math.inf, 0.0)
+    largest = float(np.mean(parts))
+    return Lyapunov(largest, abs(largest - growth_of_runs(sample.tangents).largest))
+
+
+def mean_impacts(sample: Periods, i: int, n: int) -> tuple[Array, NDArray[np.int64]]:
+    """Time and velocity of the impacts of run i, (n, most, 2), averaged over its turns of n periods; their numbers.
+
+    Of turns with another number of impacts than most have nothing is taken.
+    """
+    most = sample.time.shape[2]
+    log, counts = np.full((n, most, 2), np.nan), np.zeros((n, 2), dtype=np.int64)
+    for j in range(n):
+        numbers, ends = sample.impacts[i, j::n], sample.ends[i, j::n]
+        usual = int(np.bincount(numbers).argmax())
+        alike = numbers == usual
+        counts[j] = usual, int(np.median(ends[alike]))
+        shown = min(usual, most)
+        log[j, :shown, 0] = np.mean(sample.time[i, j::n][alike][:, :shown], axis=0)
+        log[j, :shown, 1] = np.mean(sample.before[i, j::n][alike][:, :shown], axis=0)
+    return log, counts
+
+
+def _of_multipliers(J: Array, n: int) -> Lyapunov:
     largest = float(abs(multipliers(J)[0]))
     return Lyapunov(math.log(largest) / n if largest > 0.0 else -math.inf, 0.0)
-
-
-def _same(known: Attractor, states: Array, n: int, tolerance: float) -> bool:
-    """Whether a run has settled to a known attractor."""
-    from scipy.spatial import cKDTree
-
-    if known.periods != n:
-        return False
-    if n:
-        return bool(np.any(np.max(np.abs(known.points - states[-1]), axis=1) <= tolerance))
-    scale = np.ptp(known.points, axis=0) + 1e-300
-    tree = cKDTree(known.points / scale)
-    own = np.median(np.asarray(tree.query(known.points / scale, k=2)[0])[:, 1])
-    away = np.asarray(tree.query(states / scale)[0])
-    return bool(np.mean(away <= NEIGHBOURS * own) >= OVERLAP)
-
-
-def _with_share(attractor: Attractor, share: float) -> Attractor:
-    return replace(attractor, share=share)

@@ -2,8 +2,9 @@
 
 The motion at each value starts from a fixed state, from where the one before ended (forward or backward, which
 shows hysteresis), or from random states (Monte Carlo, which shows coexisting attractors). Both sections are
-recorded: the state once per period, and phase and velocities of the impacts. Source: G. Osorio, Complex Behavior in
-Impacting Systems, section 3.3.1 and chapter 4 (zero relative position and velocity, 60 periods).
+recorded: the state once per period, and phase and velocities of all impacts, of chattering sequences too, with the
+accumulation points where these end. Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.3.1 and
+chapter 4 (zero relative position and velocity, 60 periods).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
+from lcpstep.analysis.listed import joined, listed
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import periods
@@ -29,6 +31,7 @@ from lcpstep.trajectory import Status
 Array = NDArray[np.float64]
 Start = Literal["fixed", "forward", "backward", "random"]
 STARTS = ("fixed", "forward", "backward", "random")
+IMPACTS_RECORDED = 512  # of a period
 PART = 8  # parameter values of a part of the sweep
 WINDOWS = {  # rpm of the cam-follower, as in the thesis
     "114-850": (114.0, 850.0),
@@ -55,7 +58,7 @@ def bifurcation(
     drop: int = 500,
     keep: int = 60,
     phase: float = 0.0,
-    most: int = 16,
+    most: int = IMPACTS_RECORDED,
     executor: Executor | None = None,
     jobs: int | None = None,
     out: Path | str | None = None,
@@ -75,14 +78,17 @@ def bifurcation(
     runs, seed : number of random starts at each value, and the seed that they are drawn with
     drop, keep : periods of the transient and of the record
     phase : of the stroboscopic section, as a share of the period in [0, 1)
-    most : impacts recorded of each period; their number is recorded in any case
+    most : impacts recorded of each period, more than any chattering sequence of the catalogue has at a restitution
+        of 0.8; their number is recorded in any case, so where it is larger the rest is known to be missing
     executor, jobs, out, progress : see `lcpstep.sweep.sweep`
 
     Returns
     -------
     xarray.Dataset   on (run, <parameter>, period): q, v (with dimension `coordinate`), impacts (their number), ends
-        (chattering sequences and other landings), and on (.., impact) impact_phase, impact_before, impact_after;
-        status on (run, <parameter>). Everything that it was made from is in the attributes.
+        (chattering sequences and other landings); status on (run, <parameter>); corner_phase on (<parameter>,
+        corner). All impacts as one long list: impact_phase in [0, 1), impact_before, impact_after, and where each
+        belongs, impact_value (index of the parameter's value), impact_run, impact_period, impact_number; likewise
+        landing_phase, .., the ends of chattering sequences. Everything that it was made from is in the attributes.
 
     Raises
     ------
@@ -150,6 +156,7 @@ class _Study:
     def __call__(self, part: list[int], handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
         x = self.x0 if handed is None else handed["x"]
         rows: list[Arrays] = []
+        lists: list[Arrays] = []
         for i in part:
             scene = self.make(**{self.parameter: float(self.values[i])})
             found = periods(
@@ -159,12 +166,12 @@ class _Study:
             continued = self.start in ("forward", "backward") and found.status[0] == Status.DONE
             x = found.final[0] if continued else self.x0
             rows.append({
-                "states": found.states, "phase": found.time / scene.period % 1.0, "before": found.before,
-                "after": found.after, "impacts": found.impacts.astype(np.int32),
+                "states": found.states, "impacts": found.impacts.astype(np.int32),
                 "ends": found.ends.astype(np.int32), "status": found.status.astype(np.int8),
             })  # fmt: skip
+            lists.append(listed(found, scene.period, i))
         arrays: Arrays = {name: np.stack([row[name] for row in rows], axis=1) for name in rows[0]}
-        return arrays | {"index": np.array(part)}, {"x": x}
+        return arrays | joined(lists) | {"index": np.array(part)}, {"x": x}
 
     def starts(self, i: int, x: Array) -> Array:
         """States to start from at the i-th value; random ones depend on the seed and on i alone."""
@@ -172,6 +179,15 @@ class _Study:
             return x[None, :]
         random = np.random.default_rng([self.seed, i])
         return random.uniform(self.box[0], self.box[1], (self.runs, len(x)))
+
+    def corners(self) -> Array:
+        """(values, corners) phases of the corners of the forcing; nan where a scene has fewer than others."""
+        scenes = [self.make(**{self.parameter: float(value)}) for value in self.values]
+        phases = [np.atleast_1d(np.asarray(s.corners, dtype=float)) / s.period % 1.0 for s in scenes]
+        table = np.full((len(phases), max(map(len, phases))), np.nan)
+        for row, found in zip(table, phases, strict=True):
+            row[: len(found)] = found
+        return table
 
     def inputs(self, first: Scene) -> dict[str, Any]:
         """What the result depends on."""
@@ -184,21 +200,22 @@ class _Study:
     def dataset(self, first: Scene, parts: list[Arrays]) -> Any:
         """All parts in the order of the values."""
         order = np.argsort(np.concatenate([part["index"] for part in parts]))
-        joined = {
+        table = {
             name: np.concatenate([part[name] for part in parts], axis=1)[:, order]
-            for name in parts[0]
-            if name != "index"
+            for name in ("states", "impacts", "ends", "status")
         }
+        lists = joined(
+            [{k: x for k, x in part.items() if k.startswith(("impact_", "landing_"))} for part in parts]
+        )
         n, at = first.n_q, ("run", self.parameter, "period")
         variables = {
-            "q": ((*at, "coordinate"), joined["states"][..., :n]),
-            "v": ((*at, "coordinate"), joined["states"][..., n:]),
-            "impacts": (at, joined["impacts"]),
-            "ends": (at, joined["ends"]),
-            "impact_phase": ((*at, "impact"), joined["phase"]),
-            "impact_before": ((*at, "impact"), joined["before"]),
-            "impact_after": ((*at, "impact"), joined["after"]),
-            "status": (at[:2], joined["status"]),
+            "q": ((*at, "coordinate"), table["states"][..., :n]),
+            "v": ((*at, "coordinate"), table["states"][..., n:]),
+            "impacts": (at, table["impacts"]),
+            "ends": (at, table["ends"]),
+            "status": (at[:2], table["status"]),
+            "corner_phase": ((self.parameter, "corner"), self.corners()),
+            **{name: ((name.split("_")[0],), x) for name, x in lists.items()},
         }
         attributes = {k: v for k, v in self.inputs(first).items() if k not in ("values", "box")}
         attributes |= {"box": self.box.ravel()} if self.start == "random" else {}

@@ -30,8 +30,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.analysis.border_collision import PiecewiseLinearMap
-from lcpstep.analysis.derivative import differences
-from lcpstep.analysis.variation import impact_law
+from lcpstep.analysis.derivative import EIGHTH, differences, one_sided
+from lcpstep.analysis.variation import flow, impact_law
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.maps.local import Local
@@ -41,11 +41,12 @@ from lcpstep.trajectory import IMPACT_DTYPE, Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
 Family = Callable[[float], Scene]
-SIDE = 1e-9  # of the period: how far from a corner its two sides are looked at
+SIDE = 1e-9  # of the period: how far from a corner a jump of velocities is looked for
+LIMIT = 1e-6  # of the period: steps of the extrapolation to a corner from either side
+WIDE, NARROW = 4e-3, 2e-4  # steps of differences, relative: of free motion, and where there are other impacts
 JUMP = 1e-6  # of the gap velocity, relative: a jump this large makes a corner one of degree one
 SOFT = 1e-6  # of the largest gap velocity: an impact softer than this grazes
 MAX_ITERATIONS = 30
-CONVERGED = 1e-12
 STAGNATED = 1e-8
 
 
@@ -123,15 +124,15 @@ def corner_impact(
     pieces = _Pieces(make, method or EventDriven(), phase, checks.count("n", n))
     pieces.aim(p, x, corner)
     size = np.append(np.maximum(1.0, np.abs(x)), 1.0)
-    z, before = np.append(x, p), math.inf
+    z, before, best = np.append(x, p), math.inf, np.append(x, p)
     for _ in range(MAX_ITERATIONS):
         F = pieces.closing(z)
         error = float(np.max(np.abs(F) / size))
-        if error <= CONVERGED or (error <= STAGNATED and error > 0.5 * before):
-            return pieces.described(z, error)
+        if error >= 0.5 * before and before <= STAGNATED:  # down to its rounding
+            return pieces.described(best, before)
         if not error < 10.0 * before:
             break
-        before = error
+        before, best = error, z
         z = z - np.linalg.solve(differences(pieces.closing, z), F)
     raise LcpStepError(
         f"no periodic orbit with an impact at corner {pieces.corner} near p = {p:.9g}: residual {error:.3g}"
@@ -176,23 +177,34 @@ def discontinuity_map(orbit: CornerImpact, method: EventDriven | None = None) ->
     image = np.concatenate([q, local.after_impact(t, q, v)])
     G, u = local.rates(t, q, v)
     H_y = np.concatenate([G, np.zeros(n)])
-    H_p = float(differences(lambda s: pieces.gap(y, float(s[0])), np.array([p]))[0, 0])
-    R_p = differences(lambda s: pieces.rebound(y, float(s[0])), np.array([p]))[:, 0]
-    found = []
-    for side in (-1.0, 1.0):
-        at = t + side * SIDE * scene.period
-        R_y, _ = impact_law(local, t, q, v)
+    H_p = float(differences(lambda s: pieces.gap(y, float(s[0])), np.array([p]), WIDE, EIGHTH)[0, 0])
+    R_p = differences(lambda s: pieces.rebound(y, float(s[0])), np.array([p]), WIDE, EIGHTH)[:, 0]
+    R_y, _ = impact_law(local, t, q, v)
+
+    def surplus(at: float) -> Array:
+        """(F+ - R_y F- - R_t) / u- with the accelerations of the time `at`."""
         _, R_t = impact_law(local, at, q, v)
         F_before = np.concatenate([v, local.acceleration(at, q, v)])
         F_after = np.concatenate([image[n:], local.acceleration(at, q, image[n:])])
-        surplus = (F_after - R_y @ F_before - R_t) / u
-        found.append((R_y + np.outer(surplus, H_y), R_p + surplus * H_p))
+        return np.asarray((F_after - R_y @ F_before - R_t) / u)
+
+    found = []
+    for side in (-1.0, 1.0):
+        limit = one_sided(surplus, t, side * min(LIMIT * scene.period, 0.1 * pieces.clear(scene)))
+        found.append((R_y + np.outer(limit, H_y), R_p + limit * H_p))
     (minus_y, minus_p), (plus_y, plus_p) = found
     return DiscontinuityMap(y, image, minus_y, plus_y, minus_p, plus_p, H_y, H_p)
 
 
-def local_map(orbit: CornerImpact, method: EventDriven | None = None) -> PiecewiseLinearMap:
-    """The piecewise-linear map around a corner impact by the chain rule, in x - orbit.x and p - orbit.p."""
+def local_map(
+    orbit: CornerImpact, method: EventDriven | None = None, *, step: float | None = None
+) -> PiecewiseLinearMap:
+    """The piecewise-linear map around a corner impact by the chain rule, in x - orbit.x and p - orbit.p.
+
+    step : of the differences that the flows to the corner and on are derived with, relative to state and parameter;
+        4e-3 where not given, or 2e-4 where the orbit has other impacts. Another step tells what is rounding.
+    """
+    step = step or (NARROW if len(orbit.others) else WIDE)
     pieces = _Pieces.of(orbit, method or EventDriven())
     Z = discontinuity_map(orbit, method)
     d = len(orbit.x)
@@ -203,9 +215,15 @@ def local_map(orbit: CornerImpact, method: EventDriven | None = None) -> Piecewi
     def second(z: Array) -> Array:
         return pieces.from_corner(z[:d], float(z[d]))
 
-    F1 = differences(first, np.append(orbit.x, orbit.p))
-    F2 = differences(second, np.append(Z.image, orbit.p))
+    F1 = differences(first, np.append(orbit.x, orbit.p), step, EIGHTH)
+    F2 = differences(second, np.append(Z.image, orbit.p), step, EIGHTH)
     F1_x, F1_p, F2_y, F2_p = F1[:, :d], F1[:, d], F2[:, :d], F2[:, d]
+    if (
+        not len(orbit.others) and Local(orbit.scene).model.linear
+    ):  # the flow of a linear system is known exactly
+        at = pieces.corner_time(orbit.p)
+        start, end = (share * orbit.scene.period for share in (pieces.phase, pieces.phase + pieces.n))
+        F1_x, F2_y = flow(orbit.scene, at - start), flow(orbit.scene, end - at)
     return PiecewiseLinearMap(
         A_minus=F2_y @ Z.minus_y @ F1_x,
         A_plus=F2_y @ Z.plus_y @ F1_x,
@@ -285,6 +303,12 @@ class _Pieces:
         """When the corner comes at the parameter p [s]."""
         scene = self.make(p)
         return float(np.asarray(scene.corners)[self.corner]) + self.turn * scene.period
+
+    def clear(self, scene: Scene) -> float:
+        """How far it is from the corner to the nearest other one [s]."""
+        corners = np.asarray(scene.corners) / scene.period
+        away = np.abs((np.delete(corners, self.corner) - corners[self.corner] + 0.5) % 1.0 - 0.5)
+        return float(np.min(away, initial=1.0)) * scene.period
 
     def to_corner(self, x: Array, p: float) -> Array:
         """F1: the state at the corner, as it would be there without the impact."""

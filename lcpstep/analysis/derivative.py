@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lcpstep.maps.iteration import Map
+from lcpstep.maps.iteration import Map, iterate
 
 Array = NDArray[np.float64]
 # f' = sum w (f(x + s d) - f(x - s d)) / d; the step balances the rounding of f with the fifth derivative
 STENCIL = ((1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+EIGHTH = (
+    (1.0, 4.0 / 5.0),
+    (2.0, -1.0 / 5.0),
+    (3.0, 4.0 / 105.0),
+    (4.0, -1.0 / 280.0),
+)  # the same of order eight
+EXTRAPOLATION = (4.0, -6.0, 4.0, -1.0)  # of values at 1, 2, 3, 4 steps to the value at 0
 RELATIVE_STEP = np.finfo(float).eps ** 0.2 * 0.1
 
 
@@ -23,15 +31,35 @@ def derivative(P: Map, x: ArrayLike) -> Array:
     return differences(P, x)
 
 
-def differences(f: Any, x: ArrayLike, step: float = RELATIVE_STEP) -> Array:
-    """Derivative of f: (d,) -> (e,) by central differences of fourth order, (e, d)."""
+def along(P: Map, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
+    """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d).
+
+    By the map itself where it knows them all at once.
+    """
+    own = getattr(P, "along", None)
+    if own is not None:
+        images, derivatives = own(x, n, drop)
+        return images, derivatives
+    points = iterate(P, x, drop + n)[drop:]
+    return points[1:], np.array([derivative(P, y) for y in points[:-1]])
+
+
+def differences(
+    f: Any, x: ArrayLike, step: float = RELATIVE_STEP, stencil: tuple[tuple[float, float], ...] = STENCIL
+) -> Array:
+    """Derivative of f: (d,) -> (e,) by central differences, of fourth order unless the stencil is another, (e, d)."""
     x = np.atleast_1d(np.asarray(x, dtype=float))
     columns = []
     for i in range(len(x)):
         d = np.zeros(len(x))
         d[i] = step * max(1.0, abs(x[i]))
         total: Any = 0.0
-        for s, w in STENCIL:
+        for s, w in stencil:
             total = total + w * (np.atleast_1d(f(x + s * d)) - np.atleast_1d(f(x - s * d)))
         columns.append(total / d[i])
     return np.stack(columns, axis=1)
+
+
+def one_sided(f: Callable[[float], Array], t: float, step: float) -> Array:
+    """The limit of f at t from the side that the step points to, from four values there, by extrapolation."""
+    return np.asarray(sum(w * f(t + (k + 1) * step) for k, w in enumerate(EXTRAPOLATION)))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.analysis.derivative import derivative
+from lcpstep.analysis.derivative import along
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.iteration import Map, iterate
 
@@ -95,12 +95,13 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     return PeriodicPoint(iterate(P, x, n)[:n], multipliers(J), float(np.max(np.abs(F))))
 
 
-def orbit_derivative(P: Map, points: Array) -> Array:
-    """DP^n along the points x_0 .. x_{n-1} of an orbit."""
-    J = np.eye(points.shape[1])
-    for x in points:
-        J = derivative(P, x) @ J
-    return J
+def image_and_derivative(P: Map, x: Array, n: int) -> tuple[Array, Array]:
+    """P^n(x), and DP^n(x) by the chain rule along the orbit."""
+    images, derivatives = along(P, x, n)
+    J = np.eye(len(x))
+    for factor in derivatives:
+        J = factor @ J
+    return images[-1], J
 
 
 def multipliers(J: Array) -> NDArray[np.complex128]:
@@ -110,8 +111,8 @@ def multipliers(J: Array) -> NDArray[np.complex128]:
 
 
 def _residual(P: Map, x: Array, n: int) -> tuple[Array, Array]:
-    points = iterate(P, x, n)
-    return points[-1] - x, orbit_derivative(P, points[:-1])
+    image, J = image_and_derivative(P, x, n)
+    return image - x, J
 
 
 def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, Array, Array] | None:
@@ -123,5 +124,5 @@ def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, 
         except (ValueError, LcpStepError):  # outside of where the map is defined
             continue
         if np.max(np.abs(moved[-1] - trial)) < np.max(np.abs(F)):
-            return trial, moved[-1] - trial, orbit_derivative(P, moved[:-1])
+            return trial, moved[-1] - trial, image_and_derivative(P, trial, n)[1]
     return None

@@ -1,6 +1,6 @@
-"""Lyapunov exponents of a map: growth of small deviations, by QR factorisation at every iteration.
+"""Largest Lyapunov exponent of a map: growth of a small deviation, brought back to length one at every iteration.
 
-    lambda_i = lim 1/n sum log |R_ii|,    DP(x_k) Q_{k-1} = Q_k R_k
+    lambda = lim 1/n sum log |DP(x_k) e_{k-1}|,    e_k = DP(x_k) e_{k-1} / |DP(x_k) e_{k-1}|
 
 The standard error is that of means over blocks. For a scene's `PeriodMap` the derivative is made of saltation
 matrices; divide by the period for exponents per second. Source: G. Benettin et al., Meccanica 15 (1980).
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.analysis.derivative import derivative
+from lcpstep.analysis.derivative import along
 from lcpstep.maps.iteration import Map
 
 Array = NDArray[np.float64]
@@ -41,6 +41,31 @@ class Lyapunov:
         return self.largest > 3.0 * self.error and self.largest > 0.0
 
 
+def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
+    """Largest exponent from the derivatives along m runs on one attractor, (m, n, d, d); the first `drop` align."""
+    m, n, d, _ = derivatives.shape
+    directions = np.tile(np.eye(d)[0], (m, 1))
+    growth = np.zeros((m, n))
+    for k in range(n):
+        directions = np.einsum("mij,mj->mi", derivatives[:, k], directions)
+        length = np.sqrt(np.sum(directions**2, axis=1))
+        lost = length == 0.0
+        growth[:, k] = np.where(lost, math.nan, np.log(np.where(lost, 1.0, length)))
+        directions = np.where(lost[:, None], np.eye(d)[0], directions / np.where(lost, 1.0, length)[:, None])
+    return mean_growth(growth[:, min(drop, n - 1) :].ravel(), m if m > 1 else BLOCKS)
+
+
+def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:
+    """Largest exponent from the growth in each iteration, nan where a landing wiped out all deviations."""
+    landings = int(np.sum(np.isnan(growth)))
+    if landings > RARE * len(growth):
+        return Lyapunov(-math.inf, 0.0, landings)
+    growth = growth[np.isfinite(growth)]
+    means = [np.mean(block) for block in np.array_split(growth, min(blocks, len(growth)))]
+    error = float(np.std(means, ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.inf
+    return Lyapunov(float(np.mean(growth)), error, landings)
+
+
 def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
     """Largest Lyapunov exponent of a map along the orbit of x.
 
@@ -57,20 +82,13 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
     """
     x = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
-    Q = np.eye(len(x))
     growth = np.zeros(n)
-    for k in range(-drop, n):
-        if k >= 0:
-            Q, R = np.linalg.qr(derivative(P, x) @ Q)
-            if R[0, 0] == 0.0:
-                Q, growth[k] = np.eye(len(x)), math.nan
-            else:
-                growth[k] = math.log(abs(R[0, 0]))
-        x = np.atleast_1d(np.asarray(P(x), dtype=float))
-    landings = int(np.sum(np.isnan(growth)))
-    if landings > RARE * n:
-        return Lyapunov(-math.inf, 0.0, landings)
-    growth = growth[np.isfinite(growth)]
-    blocks = [np.mean(block) for block in np.array_split(growth, min(BLOCKS, len(growth)))]
-    error = float(np.std(blocks, ddof=1) / math.sqrt(len(blocks))) if len(blocks) > 1 else math.inf
-    return Lyapunov(float(np.mean(growth)), error, landings)
+    direction = np.eye(len(x))[0]
+    for k, J in enumerate(along(P, x, n, drop)[1]):
+        direction = J @ direction
+        length = math.sqrt(direction @ direction)
+        if length == 0.0:
+            direction, growth[k] = np.eye(len(x))[0], math.nan
+        else:
+            direction, growth[k] = direction / length, math.log(length)
+    return mean_growth(growth)

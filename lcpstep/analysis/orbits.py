@@ -9,20 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
-from lcpstep.analysis.derivative import derivative
-from lcpstep.analysis.fixed_points import multipliers, periodic_point
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, periodic_point
+from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
+from lcpstep.maps.batch import Periods
 from lcpstep.simulate import Method, simulate
+from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 SAMPLES = 64  # of the gap per period, between impacts
+REMEMBERED = 32  # maps and motions that are asked for again at once
 GRAZING = 1e-2  # a branch that ends with a contact this soft, relative to the others, ends by grazing
 
 
@@ -76,12 +80,16 @@ class PeriodicOrbit:
         corners = np.asarray(self.scene.corners) / self.scene.period
         return (self.phases[:, None] - corners[None, :] + 0.5) % 1.0 - 0.5
 
-    def clearance(self) -> float:
-        """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
+    def run(self) -> Trajectory:
+        """The motion over its n periods, from the section on."""
         t_start = self.phase * self.scene.period
         span = (t_start, t_start + self.periods * self.scene.period)
-        run = simulate(_started(self.scene, self.x[0], span), self.method)
-        times = np.linspace(*span, SAMPLES * self.periods + 1)
+        return simulate(_started(self.scene, self.x[0], span), self.method)
+
+    def clearance(self) -> float:
+        """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
+        run = self.run()
+        times = np.linspace(*run.scene.t_span, SAMPLES * self.periods + 1)
         gaps = np.array(
             [self.scene.gap(t, q, v)[0][0] for t, q, v in zip(times, *run.at(times), strict=True)]
         )
@@ -127,9 +135,7 @@ def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
     """The orbit through points that are known to be periodic."""
     n = len(points)
     run = P.follow(points[0], n)
-    J = np.eye(points.shape[1])
-    for x in points:
-        J = derivative(P, x) @ J
+    J = image_and_derivative(P, points[0], n)[1]
     shown = np.isfinite(run.time[0])
     start = np.repeat(np.arange(n), run.time.shape[-1]).reshape(n, -1) * P.scene.period
     return PeriodicOrbit(
@@ -192,6 +198,7 @@ def continue_orbit(
     *,
     steps: Steps | None = None,
     forward: bool = True,
+    progress: Progress | None = None,
 ) -> OrbitBranch:
     """Follow a periodic orbit as a parameter of its scene changes, through folds, stable or not.
 
@@ -200,7 +207,7 @@ def continue_orbit(
     make : p -> scene
     orbit : where to start, from `periodic_orbit` at the parameter p
     p, p_range : parameter of the orbit, and the range that the branch must not leave
-    steps, forward : see `continue_point`
+    steps, forward, progress : see `continue_point`
 
     Raises
     ------
@@ -215,13 +222,17 @@ def continue_orbit(
     start = moved(orbit, quiet_phase(orbit))
     n, method, phase = start.periods, start.method, start.phase
 
+    @lru_cache(maxsize=REMEMBERED)
     def family(value: float) -> PeriodMap:
         return PeriodMap(make(value), method, phase)
 
+    @lru_cache(maxsize=REMEMBERED)
+    def followed(value: float, x: tuple[float, ...]) -> Periods:
+        return family(value).follow(x, n)
+
     def monitor(value: float, x: Array) -> dict[str, float]:
-        run = family(value).follow(x, n)
+        run, scene = followed(value, tuple(x)), family(value).scene
         times = run.time[0][np.isfinite(run.time[0])]
-        scene = make(value)
         if np.any(run.ends) or np.size(scene.corners) == 0:
             return {}
         distance = (times[:, None] - np.asarray(scene.corners)[None, :]) / scene.period
@@ -233,7 +244,7 @@ def continue_orbit(
         }
 
     def character(value: float, x: Array) -> int:
-        run = family(value).follow(x, n)
+        run = followed(value, tuple(x))
         return -1 if np.any(run.ends) else int(np.sum(run.impacts))
 
     branch = continue_point(
@@ -246,9 +257,10 @@ def continue_orbit(
         monitor=monitor,
         character=character,
         forward=forward,
+        progress=progress,
     )
     orbits = tuple(
-        _described(family(float(value)), family(float(value)).follow(x, n).states[0][np.arange(n) - 1])
+        _described(family(float(value)), followed(float(value), tuple(x)).states[0][np.arange(n) - 1])
         for value, x in zip(branch.p, branch.x, strict=True)
     )
     special = [

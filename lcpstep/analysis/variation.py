@@ -19,12 +19,15 @@ from lagrangian import Scene, checks
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.maps.batch import Periods, periods
+from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulate import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
+IMPACTS = 512  # of a period that a derivative is made of
 TOLERANCE = 1e-11  # of the variational flow where it is integrated
 
 
@@ -143,7 +146,7 @@ class _Variation:
     def matrices(self) -> tuple[Array, Array]:
         """State matrices of a linear system, free and with its contact closed."""
         m, n = self.local.model, self.run.scene.n_q
-        free = np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
+        free = state_matrix(self.local)
         if self.run.scene.n_c == 0:
             return free, free
         MG, W = m.M_inverse @ m.G[0], float(m.G[0] @ m.M_inverse @ m.G[0])
@@ -182,6 +185,19 @@ class _Variation:
         return np.concatenate([v, a])
 
 
+def flow(scene: Scene, duration: float) -> Array:
+    """Derivative of the free motion of a linear system over a time [s] by its start, (2 n_q, 2 n_q)."""
+    from scipy.linalg import expm
+
+    return np.asarray(expm(duration * state_matrix(Local(scene))))
+
+
+def state_matrix(local: Local) -> Array:
+    """A of x' = A x + .. for a linear system in free motion, x = (q, v)."""
+    m, n = local.model, local.scene.n_q
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
+
+
 def monodromy(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, float]) -> Array:
     """Derivative of the state at t[1] by the state x = (q, v) at t[0], (2 n_q, 2 n_q).
 
@@ -210,6 +226,37 @@ class PeriodMap(StroboscopicMap):
 
     def jacobian(self, x: ArrayLike) -> Array:
         """DP(x), (2 n_q, 2 n_q)."""
+        return np.asarray(self.along(x, 1)[1][0])
+
+    def along(self, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
+        """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d)."""
+        run = self.follow(x, drop + n, drop, most=IMPACTS, tangents=True)
+        if run.tangents.shape[1]:
+            return run.states[0], run.tangents[0]
+        before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (2 * self.scene.n_q,))
+        points = [before, *run.states[0, :-1]]
+        return run.states[0], np.array([self.differentiated(y) for y in points])
+
+    def many(self, starts: ArrayLike, n: int, drop: int = 0, *, most: int) -> Periods:
+        """Runs from many states, that need not lie outside of the obstacle to the last digit, with derivatives."""
+        return periods(
+            self.scene,
+            self.method,
+            starts,
+            n,
+            drop=drop,
+            phase=self.phase,
+            most=most,
+            strict=False,
+            tangents=True,
+        )
+
+    def from_impacts(self, log: Array, counts: NDArray[np.int64]) -> Array:
+        """Derivatives of periods with these impacts, (m, n, 2, 2); see `lcpstep.maps.tangent.along_logs`."""
+        return np.asarray(Follower(self.scene, EventDriven()).tangents_of(log, counts, self.time))
+
+    def differentiated(self, x: Array) -> Array:
+        """DP(x) by walking along the motion's events, or by differences where it has none to walk along."""
         if not isinstance(self.method, EventDriven):
             return differences(self, x)
         return monodromy(self.scene, self.method, x, (self.time, self.time + self.scene.period))

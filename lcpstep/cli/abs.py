@@ -209,7 +209,7 @@ def _save(options: argparse.Namespace, result: dict[str, Any]) -> None:
 def _text(result: dict[str, Any]) -> str:
     p, top = result["parameters"], result["peak"]
     lines = [
-        f"{p['road']} road, model {p['model']!r}: max Psi = {top['torque']:.9f} N m at slip {top['slip']:.9f}"
+        f"{p['road']} road, model {p['model']!r}: max Psi = {top['torque']:.11f} N m at slip {top['slip']:.14f}"
     ]
     cycle = result["cycle"]
     if cycle is None:

@@ -9,13 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.analysis.attractors import Attractors, attractors, random_starts
+from lcpstep.analysis.attractors import POINTS, Attractors, attractors, random_starts
 from lcpstep.analysis.basins import outside
 from lcpstep.analysis.likeness import Likeness, likeness, sample
 from lcpstep.cli.common import DONE, event_driven, moreau
 from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.dataset import labelled, provenance
-from lcpstep.plot import diagrams
+from lcpstep.plot import attractors as pictures
+from lcpstep.plot.words import method_words, scene_words
+from lcpstep.simulate import Method
+from lcpstep.stepping.moreau import Moreau
 
 
 def add(commands: Any) -> None:
@@ -36,8 +39,14 @@ def add(commands: Any) -> None:
     p.add_argument("--window", type=int, default=240, help="periods looked at (240)")
     p.add_argument(
         "--compare", type=int, default=0, metavar="PERIODS",
-        help="compare time-stepping with event-driven on the first attractor, over so many periods each",
+        help="also by the other method: drawn below, and compared on the first attractor over so many periods each",
     )  # fmt: skip
+    p.add_argument(
+        "--points",
+        type=int,
+        default=POINTS,
+        help=f"periods that an aperiodic attractor is drawn over ({POINTS})",
+    )
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=stopped(run_attractor))
 
@@ -47,28 +56,36 @@ def run_attractor(options: argparse.Namespace) -> int:
     scene, method = study_scene(options), method_of(options)
     names = files(options, "attractors")
     starts = outside(scene, random_starts(box(options), options.starts, options.seed), options.phase)
-    found = attractors(
-        scene, method, starts, transient=options.transient, window=options.window,
-        longest=min(60, options.window // 2), phase=options.phase,
-    )  # fmt: skip
+
+    def search(by: Method) -> Attractors:
+        return attractors(
+            scene, by, starts, transient=options.transient, window=options.window,
+            longest=min(60, options.window // 2), phase=options.phase, points=options.points,
+        )  # fmt: skip
+
+    found = search(method)
+    rows = {method_words(method): found.found}
     compared: dict[str, Likeness] = {}
     if options.compare and found.found:
         x = found.found[0].points[-1]
         stepped = sample(scene, moreau(options), x, options.compare)
         exact = sample(scene, event_driven(options), x, options.compare)
         compared = likeness(stepped, exact, seed=options.seed)
-    figure = diagrams.attractors(found.found, f"{scene.name}, {method}")
+        other = event_driven(options) if isinstance(method, Moreau) else moreau(options)
+        rows[method_words(other)] = search(other).found
+    title = f"{scene_words(scene)}: attractors, {options.starts} random starts, section at phase {options.phase:g}"
+    corners = np.atleast_1d(np.asarray(scene.corners)) / scene.period
+    figure = pictures.attractors(rows, title, [float(c) for c in corners])
     finish(options, _dataset(scene, method, found, options.seed), figure, names)
-    rows = [_row(a) for a in found.found]
+    lines = [_row(name, a) for name, group in rows.items() for a in group]
     if options.json:
-        print(
-            json.dumps({"attractors": rows, "likeness": {k: vars(x) for k, x in compared.items()}}, indent=2)
-        )
+        text = {"attractors": lines, "likeness": {k: vars(x) for k, x in compared.items()}}
+        print(json.dumps(text, indent=2))
         return DONE
-    for r in rows:
+    for r in lines:
         print(
             f"{r['name']:20} share {r['share']:6.1%}   impacts per period {r['impacts_per_period']:8.4g}   "
-            f"Lyapunov exponent per period {r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
+            f"Lyapunov exponent per period {_exponent(r)}   {r['method'] if len(rows) > 1 else ''}".rstrip()
         )
     for name, x in compared.items():
         print(
@@ -76,6 +93,13 @@ def run_attractor(options: argparse.Namespace) -> int:
             f"[{x.low:.4g}, {x.high:.4g}], p = {x.p_value:.3g}"
         )
     return DONE
+
+
+def _exponent(r: dict[str, Any]) -> str:
+    """The exponent and its error; nothing where it is not known."""
+    if math.isnan(r["lyapunov"]):
+        return "not known"
+    return f"{r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
 
 
 def box(options: argparse.Namespace) -> list[list[float]]:
@@ -88,17 +112,17 @@ def box(options: argparse.Namespace) -> list[list[float]]:
     return [list(x) for x in CAM_BOX]
 
 
-def _row(a: Any) -> dict[str, Any]:
+def _row(method: str, a: Any) -> dict[str, Any]:
     per_period = a.impacts / a.periods if a.periods else a.impacts
     return {
-        "name": a.name, "share": a.share, "impacts_per_period": per_period,
+        "method": method, "name": a.name, "share": a.share, "impacts_per_period": per_period,
         "lyapunov": a.lyapunov.largest, "lyapunov_error": a.lyapunov.error,
     }  # fmt: skip
 
 
 def _dataset(scene: Any, method: Any, found: Attractors, seed: int) -> Any:
     """All attractors, padded to one length."""
-    points = max((len(a.points) for a in found.found), default=1)
+    points = max((len(a.cloud) for a in found.found), default=1)
     impacts = max((len(a.impact_phase) for a in found.found), default=1)
 
     def padded(rows: list[Any], length: int) -> Any:
@@ -112,10 +136,11 @@ def _dataset(scene: Any, method: Any, found: Attractors, seed: int) -> Any:
         "name": (("attractor",), np.array([a.name for a in found.found])),
         "share": (("attractor",), np.array([a.share for a in found.found])),
         "lyapunov": (("attractor",), np.array([a.lyapunov.largest for a in found.found])),
-        "states": (("attractor", "point", "state"), padded([a.points for a in found.found], points)),
+        "states": (("attractor", "point", "state"), padded([a.cloud for a in found.found], points)),
         "impact_phase": (at, padded([a.impact_phase for a in found.found], impacts)),
         "impact_before": (at, padded([a.impact_before for a in found.found], impacts)),
         "impact_after": (at, padded([a.impact_after for a in found.found], impacts)),
+        "impact_number": (at, padded([a.impact_number for a in found.found], impacts)),
         "start": (("run", "state"), found.starts),
         "label": (("run",), found.label),
     }

@@ -17,7 +17,8 @@ from lcpstep.cli.studies import (
     study_arguments,
     study_scene,
 )
-from lcpstep.plot import diagrams
+from lcpstep.plot import basins as pictures
+from lcpstep.plot.words import title_of
 
 CAM_POSITION, CAM_VELOCITY = (0.1, 1.6), (-60.0, 60.0)  # absolute, as in the thesis
 
@@ -66,7 +67,9 @@ def run_basin(options: argparse.Namespace) -> int:
     finish(
         options,
         data,
-        diagrams.basins(data, f"{scene.name}, {options.grid[0]} x {options.grid[1]} cells"),
+        pictures.basins(
+            data, title_of(scene, f"{options.grid[0]} x {options.grid[1]} cells", method_of(options))
+        ),
         names,
     )
     for name, share, error in zip(*(data[k].values for k in ("name", "share", "share_error")), strict=True):

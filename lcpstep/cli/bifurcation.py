@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import Scene
 from lagrangian.scenes import CATALOGUE
 from lcpstep import Moreau, dataset
 from lcpstep.analysis.agreement import Summary, agreement, summary, tolerance_of_stepping
-from lcpstep.analysis.bifurcation import STARTS, WINDOWS, bifurcation
+from lcpstep.analysis.bifurcation import IMPACTS_RECORDED, STARTS, WINDOWS, bifurcation
 from lcpstep.cli.attractor import box
 from lcpstep.cli.common import DONE
 from lcpstep.cli.studies import (
@@ -26,7 +27,8 @@ from lcpstep.cli.studies import (
     study_scene,
 )
 from lcpstep.errors import UnknownName
-from lcpstep.plot import diagrams
+from lcpstep.plot import bifurcation as pictures
+from lcpstep.plot.words import method_words
 from lcpstep.simulate import Method
 
 AGREEMENT = "agreement.nc"
@@ -59,6 +61,15 @@ def add(commands: Any) -> None:
         "--compare", type=float, nargs="+", metavar="H",
         help="also by time-stepping with these steps [s]: overlaid, and how far each diagram is from the first",
     )  # fmt: skip
+    p.add_argument(
+        "--show", nargs="+", choices=tuple(pictures.PANELS), metavar="PANEL",
+        help=f"panels of the picture: {', '.join(pictures.PANELS)} (phase position, and where the motion chatters "
+        "accumulation impacts)",
+    )  # fmt: skip
+    p.add_argument(
+        "--most", type=int, default=IMPACTS_RECORDED,
+        help=f"impacts recorded of each period ({IMPACTS_RECORDED}); told and drawn where there are more",
+    )  # fmt: skip
     p.set_defaults(run=stopped(run_bifurcation))
 
 
@@ -81,11 +92,43 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     make = partial(CATALOGUE[options.scene].make, **fixed)
     values = np.linspace(low, high, options.points)
     data = _diagram(options, make, values, method_of(options), options.out / PARTS)
-    figure = diagrams.bifurcation(data) if not steps else _compared(options, make, data, steps)
+    title = _title(options, scene, low, high)
+    if steps:
+        figure = _compared(options, make, data, steps, title)
+    else:
+        figure = pictures.bifurcation(data, title, options.show)
     finish(options, data, figure, names)
-    failed = int((data["status"] != 0).sum())
-    print(f"{data.sizes[options.parameter]} values, {failed} runs ended early")
+    _print_counts(data)
     return DONE
+
+
+def _title(options: argparse.Namespace, scene: Scene, low: float, high: float) -> str:
+    """Scene, window and method in words."""
+    window = (
+        f"{low:g} to {high:g} rpm"
+        if options.parameter == "rpm"
+        else f"{options.parameter} = {low:g} to {high:g}"
+    )
+    return (
+        f"{scene.name}, {window}: {options.start} start, {options.drop} periods dropped, {options.keep} shown\n"
+        f"{method_words(method_of(options))}, section at phase {options.phase:g}"
+    )
+
+
+def _print_counts(data: Any) -> None:
+    """How much was recorded, and what is missing."""
+    parameter, most = str(data.attrs["parameter"]), int(data.attrs["most"])
+    failed = int((data["status"] != 0).sum())
+    print(f"{data.sizes[parameter]} values, {failed} runs ended early")
+    counts = data["impacts"].values
+    print(f"{data.sizes['impact']} impacts recorded, at most {int(counts.max(initial=0))} in a period")
+    cut = np.any(counts > most, axis=(0, 2))
+    if np.any(cut):
+        shown = ", ".join(f"{x:g}" for x in data[parameter].values[cut][:8])
+        print(
+            f"only the first {most} impacts of a period are recorded at {int(cut.sum())} values of {parameter}: "
+            f"{shown}{', ..' if cut.sum() > 8 else ''}; --most raises that"
+        )
 
 
 def _diagram(options: argparse.Namespace, make: Any, values: Any, method: Method, out: Path) -> Any:
@@ -94,11 +137,11 @@ def _diagram(options: argparse.Namespace, make: Any, values: Any, method: Method
         return bifurcation(
             make, options.parameter, values, method=method, start=options.start, runs=options.runs,
             seed=options.seed, box=box(options) if options.start == "random" else None, drop=options.drop,
-            keep=options.keep, phase=options.phase, jobs=options.jobs, out=out, progress=progress,
+            keep=options.keep, phase=options.phase, most=options.most, jobs=options.jobs, out=out, progress=progress,
         )  # fmt: skip
 
 
-def _compared(options: argparse.Namespace, make: Any, data: Any, steps: list[Moreau]) -> Any:
+def _compared(options: argparse.Namespace, make: Any, data: Any, steps: list[Moreau], title: str) -> Any:
     """Figure of the diagram with those of time-stepping; their distances in a file and in a table."""
     import xarray
 
@@ -109,12 +152,23 @@ def _compared(options: argparse.Namespace, make: Any, data: Any, steps: list[Mor
         name = f"h = {method.h:g} s"
         others[name] = _diagram(options, make, values, method, options.out / PARTS / name.replace(" ", ""))
         apart[name] = agreement(others[name], data, tolerance_of_stepping(method.h, periods))
-    joined = xarray.concat(
-        [apart[name].merge(others[name]) for name in others], "h", combine_attrs="drop_conflicts"
-    ).assign_coords(h=("h", [method.h for method in steps], {"units": "s"}))
+    lists = ["impact", "landing"]
+    tables = [apart[name].merge(others[name].drop_dims(lists)) for name in others]
+    together = [xarray.concat(tables, "h", combine_attrs="drop_conflicts")]
+    for kind in lists:  # of different lengths: one after another, each entry with the index of its step
+        parts = [
+            data[[name for name in data.data_vars if data[name].dims == (kind,)]].assign(
+                {f"{kind}_h": (kind, np.full(data.sizes[kind], k, dtype=np.int32))}
+            )
+            for k, data in enumerate(others.values())
+        ]
+        together.append(xarray.concat(parts, kind, combine_attrs="drop"))
+    joined = xarray.merge(together, combine_attrs="override").assign_coords(
+        h=("h", [method.h for method in steps], {"units": "s"})
+    )
     print(f"wrote {dataset.save(joined, options.out / AGREEMENT, overwrite=options.overwrite)}")
     _print_table(steps, [summary(x) for x in apart.values()])
-    return diagrams.overlaid(data, others, apart)
+    return pictures.overlaid(data, others, apart, title, options.show)
 
 
 def _print_table(steps: list[Moreau], found: list[Summary]) -> None:

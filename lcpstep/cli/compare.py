@@ -8,7 +8,8 @@ import math
 from pathlib import Path
 from typing import Any
 
-from lagrangian.scenes.cam_follower import HALF_TURN, PROFILE
+import numpy as np
+
 from lcpstep.cli.common import (
     DONE,
     FAILED,
@@ -26,6 +27,7 @@ from lcpstep.simulate import Method
 from lcpstep.trajectory import Status
 
 CENTIMETRE = 0.01  # the distance at which two motions no longer count as the same [m]
+FLANK_NOSE = 1  # the corner of the cam at which the thesis cuts the circle of phases (Fig 3.6)
 DROPPED = 0.1  # share of the periods of a map that is transient
 
 
@@ -145,9 +147,10 @@ def _draw(
         "state-space.png": portraits(comparisons, titles),
     }
     if found:
-        corner = PROFILE.arcs[1].end  # where the flank meets the nose
+        scene = scene_of(options, rpm=options.map_rpm)
+        corners = [float(c) / scene.period for c in np.asarray(scene.corners)]
         title = f"cam-follower at {options.map_rpm:g} rpm, {options.map_periods} periods"
-        figures[f"maps-{options.map_rpm:g}-rpm.png"] = maps(found, title, HALF_TURN, corner)
+        figures[f"maps-{options.map_rpm:g}-rpm.png"] = maps(found, title, corners[FLANK_NOSE], corners)
     options.out.mkdir(parents=True, exist_ok=True)
     for name, figure in figures.items():
         save_figure(figure, options.out / name)

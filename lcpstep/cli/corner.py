@@ -15,6 +15,7 @@ from lagrangian import Scene
 from lcpstep import EventDriven, simulate
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify, diagram
 from lcpstep.analysis.chattering import Crossing, corner_crossings
+from lcpstep.analysis.corner_branches import FixedBranch, orbit_branches, uncertainty
 from lcpstep.analysis.corners import CornerImpact, agreement, corner_impact, estimate, local_map
 from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_of
 from lcpstep.errors import LcpStepError
@@ -22,6 +23,7 @@ from lcpstep.maps import StroboscopicMap
 
 Array = NDArray[np.float64]
 TRANSIENT = 300  # periods until the orbit to start from has settled
+SETTLED = 3000  # periods dropped in the diagrams: beside the fold motions pass slowly where the orbits were
 SHOWN = 40  # points per parameter in the diagrams
 
 
@@ -79,12 +81,17 @@ def run_corner(options: argparse.Namespace) -> int:
     fitted = estimate(orbit, chain)
     found = classify(chain)
     result = _result(options, orbit, chain, agreement(fitted.map, chain), found)
+    result["map_error"] = uncertainty(orbit, chain)
     if options.out is not None:
         values, local, full = _diagrams(options, orbit, chain)
-        data = {"values": values.tolist(), "local": _lists(local), "full": _lists(full)}
+        branches = orbit_branches(orbit, chain, values)
+        data = {
+            "values": values.tolist(), "local": _lists(local), "full": _lists(full),
+            "branches": [branch.as_dict() for branch in branches],
+        }  # fmt: skip
         save_text(json.dumps(result | {"diagrams": data}, indent=1), options.out / "corner.json")
         if not options.no_picture:
-            _draw(options, orbit, values, local, full, found.words)
+            _draw(options, orbit, values, local, full, branches, found.words)
     print(json.dumps(result, indent=2) if options.json else _text(result))
     return DONE
 
@@ -139,15 +146,20 @@ def _result(
 
 def _text(r: dict[str, Any]) -> str:
     def rows(name: str) -> str:
-        return np.array2string(np.array(r["map"][name]), precision=9, prefix=" " * 14)
+        value, off = np.array(r["map"][name]), max(r["map_error"][name], float(np.finfo(float).tiny))
+        places = max(0, min(14, int(-np.log10(2.0 * off))))
+        text = {"float_kind": lambda x: f"{x:.{places}f}"}
+        return (
+            np.array2string(value, formatter=text, prefix=" " * 14) if value.ndim else f"{value:.{places}f}"
+        )
 
     lines = [
         f"{r['scene']}: an impact meets corner {r['corner']} at {r['parameter']} = {r['value']:.9f}",
         f"  phase {r['phase']:.9f} of the period, gap velocity {r['before']:.9g} -> {r['after']:.9g} m/s",
-        f"  state on the section {r['state']}, residual {r['residual']:.1e}",
+        f"  state on the section [{', '.join(f'{x:.12g}' for x in r['state'])}], residual {r['residual']:.1e}",
         "local map in deviations (dx, dp), impact before (-) and after (+) the corner:",
         *(f"  {name:10}  {rows(name)}" for name in ("A_minus", "A_plus", "B_minus", "B_plus", "C")),
-        f"  {'D':10}  {r['map']['D']:.9g}",
+        f"  {'D':10}  {rows('D')}",
         f"  continuous to {r['continuity_gap']:.1e}; least squares on perturbations agree to "
         f"{r['agreement_with_least_squares']:.1e}",
         f"verdict: {r['verdict']}  (real multipliers above 1: {r['real_multipliers_above_1']}, "
@@ -161,12 +173,12 @@ def _diagrams(
 ) -> tuple[Array, list[Array], list[Array]]:
     """Points of the local map and of the full system around the corner impact, in absolute coordinates."""
     m = np.linspace(-1.0, 1.0, options.points) * options.width * abs(orbit.p)
-    local = [orbit.x + y for y in diagram(chain, m, keep=SHOWN)]
+    local = [orbit.x + y for y in diagram(chain, m, drop=SETTLED, keep=SHOWN)]
     full = []
     for value in m:
         P = StroboscopicMap(orbit.make(orbit.p + float(value)), EventDriven(), orbit.phase)
         try:
-            full.append(P.follow(orbit.x, TRANSIENT + SHOWN, drop=TRANSIENT).states[0])
+            full.append(P.follow(orbit.x, SETTLED + SHOWN, drop=SETTLED, most=0).states[0])
         except (ValueError, LcpStepError):  # a start inside of the obstacle
             full.append(np.zeros((0, len(orbit.x))))
     return orbit.p + m, local, full
@@ -182,13 +194,15 @@ def _draw(
     values: Array,
     local: list[Array],
     full: list[Array],
+    branches: list[FixedBranch],
     words: str,
 ) -> None:
     from lcpstep.plot.corners import diagrams
 
     title = f"{orbit.scene.name}: corner impact at {options.parameter} = {orbit.p:.6f}, {words}"
     names = (options.parameter, "position on the section [m]")
-    save_figure(diagrams(values, local, full, orbit.p, names, title), options.out / "corner.png")
+    figure = diagrams(values, local, full, orbit.p, names, title, branches)
+    save_figure(figure, options.out / "corner.png")
     print(f"wrote {options.out / 'corner.png'}")
 
 

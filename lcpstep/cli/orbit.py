@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lagrangian.scenes import CATALOGUE
+from lcpstep import dataset
 from lcpstep.analysis.continuation import Steps
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
+from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
+from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.cli.common import DONE
-from lcpstep.cli.studies import files, finish, method_of, stopped, study_arguments, study_scene
+from lcpstep.cli.common import DONE, INTERRUPTED
+from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.dataset import labelled, provenance
 from lcpstep.errors import UnknownName
-from lcpstep.plot import diagrams
+from lcpstep.plot import orbits as pictures
+from lcpstep.plot.words import DPI, method_words, title_of
 
 
 def add(commands: Any) -> None:
@@ -35,7 +43,10 @@ def add(commands: Any) -> None:
     p.add_argument("--transient", type=int, default=500, help="periods to settle without a guess (500)")
     p.add_argument("--parameter", default="rpm", help="parameter of the branch (rpm)")
     p.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the parameter")
-    p.add_argument("--points", type=int, default=200, help="most points of the branch, each way (200)")
+    p.add_argument("--points", type=int, default=400, help="most points of the branch, each way (400)")
+    p.add_argument(
+        "--draw", action="store_true", help="draw the orbit over its period and in the state plane: orbit.png"
+    )
     p.set_defaults(run=stopped(run_orbit))
 
 
@@ -48,6 +59,9 @@ def run_orbit(options: argparse.Namespace) -> int:
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
     names = files(options, "branch") if options.range is not None else None
+    drawn = options.out / "orbit.png"
+    if options.draw:
+        dataset.check_new(drawn, options.overwrite)
     guess = options.guess
     if guess is None:
         x = np.concatenate([scene.q0, scene.v0])
@@ -58,25 +72,61 @@ def run_orbit(options: argparse.Namespace) -> int:
         )
     orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
     _print(orbit)
-    if names is None:
-        return DONE
-    fixed = {k: v for k, v in scene.parameters.items() if k in known and k != options.parameter}
+    if options.draw:
+        drawn.parent.mkdir(parents=True, exist_ok=True)
+        kind = "stable" if orbit.stable else "unstable"
+        title = title_of(scene, f"{orbit.name}, {kind}", method)
+        pictures.orbit(orbit, title).savefig(drawn, dpi=DPI)
+        print(f"wrote {drawn}")
+    return DONE if names is None else _run_branch(options, orbit, names)
+
+
+def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:
+    """The branch through the orbit, both ways; what there is of it is saved where it is interrupted."""
+    scene, parameter = orbit.scene, options.parameter
+    known = CATALOGUE[options.scene].parameters
+    fixed = {k: v for k, v in scene.parameters.items() if k in known and k != parameter}
     make = partial(CATALOGUE[options.scene].make, **fixed)
-    here = float(scene.parameters[options.parameter])
-    steps = Steps(points=options.points)
-    ways = [
-        continue_orbit(lambda p: make(**{options.parameter: p}), orbit, here, tuple(options.range), steps=steps,
-                       forward=forward)
-        for forward in (False, True)
-    ]  # fmt: skip
-    data = _dataset(ways, options.parameter, scene, method)
-    finish(options, data, diagrams.branch(data, f"{orbit.name} of {scene.name}"), names)
+    ways: list[OrbitBranch] = []
+    with _points_bar(options, parameter) as progress:
+        for forward in (False, True):
+            way = continue_orbit(
+                lambda p: make(**{parameter: p}), orbit, float(scene.parameters[parameter]), tuple(options.range),
+                steps=Steps(points=options.points), forward=forward, progress=progress,
+            )  # fmt: skip
+            ways.append(way)
+            if way.points.ended == INTERRUPTED_WORD:
+                break
+    low, high = (float(x) for x in options.range)
+    data = branch_dataset(ways, parameter, (low, high), scene, orbit.method)
+    title = (
+        f"{scene.name}: branch of {orbit.name}, {parameter} {low:g} to {high:g}; {method_words(orbit.method)}"
+    )
+    finish(options, data, pictures.branch(data, title), names)
     for way in ways:
         for s in way.special:
             shown = ", ".join(f"{m:.6g}" for m in s.multipliers)
-            print(f"{s.kind:13} at {options.parameter} = {s.p:.10g}   multipliers {shown}")
+            print(f"{s.kind:13} at {parameter} = {s.p:.10g}   multipliers {shown}")
         print(f"ended: {way.points.ended}")
-    return DONE
+    return INTERRUPTED if ways[-1].points.ended == INTERRUPTED_WORD else DONE
+
+
+@contextmanager
+def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progress]:
+    """A bar over the points of a branch; each is appended to a file of its own as it is found."""
+    from tqdm import tqdm
+
+    file = options.out / PARTS / "branch.csv"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("w") as lines, tqdm(desc="branch", unit="point", disable=None, leave=False) as bar:
+
+        def progress(p: float, x: NDArray[np.float64], multipliers: NDArray[np.complex128]) -> None:
+            lines.write(",".join(repr(float(y)) for y in (p, *x, *np.abs(multipliers))) + "\n")
+            lines.flush()
+            bar.set_postfix_str(f"{parameter} = {p:.6g}", refresh=False)
+            bar.update()
+
+        yield progress
 
 
 def _print(orbit: PeriodicOrbit) -> None:
@@ -87,11 +137,18 @@ def _print(orbit: PeriodicOrbit) -> None:
     print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in orbit.multipliers))
 
 
-def _dataset(ways: list[OrbitBranch], parameter: str, scene: Any, method: Any) -> Any:
-    """Both directions as one branch, and its special points."""
-    down, up = ways
-    special = [*down.special, *up.special]
-    order = [(down, k) for k in range(len(down.orbits) - 1, 0, -1)] + [(up, k) for k in range(len(up.orbits))]
+def branch_dataset(
+    ways: list[OrbitBranch], parameter: str, p_range: tuple[float, float], scene: Any, method: Any
+) -> Any:
+    """Both directions, from the same orbit, as one branch; and its special points."""
+    down = ways[0]
+    up = ways[1] if len(ways) > 1 else down
+    last = len(down.orbits) - 1
+    order = [(down, k) for k in range(last, -1, -1)]
+    special = [s._replace(after=last - 1 - s.after) for s in down.special]
+    if len(ways) > 1:
+        order += [(up, k) for k in range(1, len(up.orbits))]
+        special += [s._replace(after=last + s.after) for s in up.special]
     multipliers = np.array([way.points.multipliers[k] for way, k in order])
     places = np.array([s.x for s in special]).reshape(len(special), multipliers.shape[1])
     variables = {
@@ -104,7 +161,8 @@ def _dataset(ways: list[OrbitBranch], parameter: str, scene: Any, method: Any) -
         "special_kind": (("special",), np.array([s.kind for s in special], dtype=str)),
         "special_p": (("special",), np.array([s.p for s in special])),
         "special_x": (("special", "state"), places),
+        "special_after": (("special",), np.array([s.after for s in special], dtype=np.int64)),
     }
     values = np.array([way.points.p[k] for way, k in order])
-    attributes = provenance(scene, method) | {"parameter": parameter, "phase": up.phase}
+    attributes = provenance(scene, method) | {"parameter": parameter, "phase": down.phase, "range": p_range}
     return labelled(variables, {parameter: (("point",), values)}, attributes)

@@ -37,9 +37,11 @@ class Periods:
     states : (m, kept, 2 n_q)   (q, v) at the end of each kept period
     time, before, after : (m, kept, most)   time [s] and gap velocities [m/s] of the first impacts in each period,
         nan where there were fewer
-    impacts : (m, kept)   number of impacts in each period
-    ends : (m, kept)   how often in each period the contact closed for good: chattering sequences that ended, and
-        impacts without rebound
+    landed : (m, kept, most)   times at which the contact closed for good in each period [s], the first ones: ends of
+        chattering sequences (their accumulation points), and impacts without rebound
+    impacts, ends : (m, kept)   number of impacts, and of these landings, in each period
+    tangents : (m, kept, 2, 2)   derivative of the state at the end of each kept period by that at its start;
+        (m, 0, 2, 2) where it was not asked for, or is not known in closed form
     reached : (m,)   number of the target a run came near to, -1 for none
     taken : (m,)   periods taken
     final : (m, 2 n_q)   last state
@@ -50,8 +52,10 @@ class Periods:
     time: Array
     before: Array
     after: Array
+    landed: Array
     impacts: Ints
     ends: Ints
+    tangents: Array
     reached: Ints
     taken: Ints
     final: Array
@@ -78,6 +82,7 @@ def periods(
     most: int = IMPACTS_KEPT,
     targets: Targets | None = None,
     strict: bool = True,
+    tangents: bool = False,
 ) -> Periods:
     """Follow runs over n periods of the scene's forcing, and keep what happens after the first `drop` of them.
 
@@ -88,10 +93,12 @@ def periods(
     starts : (m, 2 n_q) or (2 n_q,)   states (q, v) at the time phase x period
     n, drop : number of periods, and how many of them are dropped
     phase : of the section, as a share of the period in [0, 1)
-    most : impacts kept of each period
+    most : impacts kept of each period, and landings; the first ones, where there are more
     targets : a run ends early, after a whole period, where it comes near one of these
     strict : a start inside of the obstacle ends its run at once; states that time-stepping has computed may lie
         there a little, and go on where this is False
+    tangents : also derivatives, where the motion between impacts is known in closed form: along the events of
+        `EventDriven`, and from the recorded impacts of other methods, to their accuracy
 
     Raises
     ------
@@ -112,16 +119,29 @@ def periods(
         fast = lockstep.Lockstep(scene, method)
         codes = lockstep.CODES
     if fast is not None and fast.usable:
+        if tangents and isinstance(fast, follow.Follower):
+            task = task._replace(tangents=np.full((len(task.starts), n - drop, 2, 2), np.nan))
         fast.run(task, strict)
         status = np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64)
     else:
         one_by_one(scene, method, task, strict)
         status = task.codes
+    if tangents and not task.tangents.shape[1]:
+        task = task._replace(tangents=_from_logs(scene, task))
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
-        impacts=task.counts[..., 0], ends=task.counts[..., 1], reached=task.reached, taken=task.taken,
-        final=task.final, status=status,
+        landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
+        tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=status,
     )  # fmt: skip
+
+
+def _from_logs(scene: Scene, task: follow.Task) -> Array:
+    """Derivatives of the kept periods from their impacts, where the motion between these is known in closed form."""
+    exact = follow.Follower(scene, EventDriven()) if scene.n_c <= 1 else None
+    if exact is None or not exact.usable:
+        return task.tangents
+    log = np.ascontiguousarray(task.impacts[..., :2])
+    return np.asarray(exact.tangents_of(log, task.counts, task.t_start))
 
 
 def section(phase: float) -> float:
@@ -148,8 +168,10 @@ def _task(
         t_start=t, t_end=t + scene.period, drop=drop, periods=n, starts=x,
         targets=to.points, radius=to.radius, scale=to.scale,
         states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
+        landings=np.full((m, kept, most), np.nan),
         counts=np.zeros((m, kept, 2), dtype=np.int64), reached=np.full(m, follow.UNREACHED, dtype=np.int64),
-        taken=np.zeros(m, dtype=np.int64), final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
+        tangents=np.zeros((m, 0, 2, 2)), last=np.zeros(1), taken=np.zeros(m, dtype=np.int64),
+        final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
     )  # fmt: skip
 
 
@@ -189,7 +211,10 @@ def _one_period(
         later = run.impacts[run.impacts.time > task.t_start]  # a contact closed at the section is no landing
         shown = log[: task.impacts.shape[2]]
         task.impacts[i, k, : len(shown)] = np.stack([shown.time, shown.before, shown.after], axis=1)
-        task.counts[i, k] = len(log), int(np.sum(later.kind == Kind.STICK))
+        ends = later[later.kind == Kind.STICK]
+        shown = ends[: task.landings.shape[2]]
+        task.landings[i, k, : len(shown)] = shown.time
+        task.counts[i, k] = len(log), len(ends)
     return np.concatenate([run.q[-1], run.v[-1]]), int(Status.DONE)
 
 

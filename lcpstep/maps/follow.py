@@ -35,6 +35,7 @@ from lcpstep.events.flight.loop import run
 from lcpstep.events.flight.motion import CONTACT, OFFSET, T_END, G
 from lcpstep.events.flight.run import flight_of, numbers, oscillator_of
 from lcpstep.events.run import STATUS
+from lcpstep.maps.tangent import along_events, along_logs, begin_tangent, carry
 from lcpstep.model import ABSENT, model
 from lcpstep.recording import Kept, Recorder
 
@@ -61,7 +62,10 @@ class Task(NamedTuple):
     scale: Any  # (2,)
     states: Any  # (m, kept, 2) after each kept period
     impacts: Any  # (m, kept, most, 3) time and gap velocities before and after; the first ones of each period
+    landings: Any  # (m, kept, most) time of each landing in it; the first ones
     counts: Any  # (m, kept, 2) see IMPACTS, ENDS
+    tangents: Any  # (m, kept, 2, 2) derivative of each kept period's end by its start; (m, 0, 2, 2) for none
+    last: Any  # (1,) work space of it
     reached: Any  # (m,) the target that was reached, or UNREACHED
     taken: Any  # (m,) periods taken
     final: Any  # (m, 2) the last state
@@ -69,8 +73,8 @@ class Task(NamedTuple):
     strict: bool  # a start inside of the obstacle ends its run
 
 
-def follow(s: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
-    """Kernel: every run in turn; x0: constants and first numbers of a flight."""
+def follow(s: Any, aside: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
+    """Kernel: every run in turn; aside: a flight to ask; x0: constants and first numbers of a flight."""
     q, v = s.q, s.v
     for i in range(len(task.starts)):
         q[0], v[0] = task.starts[i, 0], task.starts[i, 1]
@@ -79,7 +83,7 @@ def follow(s: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
             code = INSIDE
         old_q, old_v = q[0], v[0]
         while k < task.periods and code == FINISHED and task.reached[i] == UNREACHED:
-            code = one_period(s, x0, record, count, task, i, k - task.drop)
+            code = one_period(s, aside, x0, record, count, task, i, k - task.drop)
             k += 1
             age += 1
             length, speed = max(length, abs(q[0])), max(speed, abs(v[0]))
@@ -118,7 +122,7 @@ def admissible(s: Any, x0: Any, t: float) -> bool:
     return bool(gap >= -ON_THE_SURFACE * max(1.0, abs(s.q[0])))
 
 
-def one_period(s: Any, x0: Any, record: Any, count: Any, task: Any, i: int, k: int) -> int:
+def one_period(s: Any, aside: Any, x0: Any, record: Any, count: Any, task: Any, i: int, k: int) -> int:
     """Kernel: the state s.q, s.v one period later; its events noted if k >= 0."""
     for j in range(len(x0)):
         s.x[j] = x0[j]
@@ -127,17 +131,23 @@ def one_period(s: Any, x0: Any, record: Any, count: Any, task: Any, i: int, k: i
     for j in range(len(count)):
         count[j] = 0
     count[MAX_EVENTS] = most
-    code = BUFFER_FULL
+    code, tangent = BUFFER_FULL, k >= 0 and task.tangents.shape[1] > 0
+    if tangent:
+        begin_tangent(task.tangents[i, k], task.last, task.t_start)
     while code == BUFFER_FULL:
         code = run(s, record, count, NO_LIMIT)
         if k >= 0:
             note_events(record, count, task, i, k)
+        if tangent:
+            along_events(aside, record, count[EVENT], task.tangents[i, k], task.last)
         count[EVENT] = 0
+    if tangent:
+        carry(aside, task.tangents[i, k], task.last, task.t_end)
     return code
 
 
 def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
-    """Kernel: impacts of the k-th kept period of run i, the first ones in full and all by their number."""
+    """Kernel: impacts and landings of the k-th kept period of run i, the first ones in full, all by their number."""
     for e in range(count[EVENT]):
         kind = int(record.events[e, 5])
         if kind == IMPACT:
@@ -148,6 +158,9 @@ def note_events(record: Any, count: Any, task: Any, i: int, k: int) -> None:
                 task.impacts[i, k, place, 2] = record.events[e, 3]
             task.counts[i, k, IMPACTS] += 1
         elif kind == STICK and record.events[e, 0] > task.t_start:
+            place = task.counts[i, k, ENDS]
+            if place < task.landings.shape[2]:
+                task.landings[i, k, place] = record.events[e, 0]
             task.counts[i, k, ENDS] += 1
 
 
@@ -176,14 +189,27 @@ class Follower:
 
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
+        scene, x0 = self.scene, self.constants()
+        record = Recorder(1, scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).buffers
+        count = np.zeros(N_COUNTERS, dtype=np.int64)
+        count[MAX_EVENTS] = self.method.max_events
+        kernel = compiled(follow) if self.fast else follow
+        under_way, aside = (flight_of(scene, self.model, x0.copy()) for _ in range(2))
+        kernel(under_way, aside, x0, record, count, task._replace(strict=strict))
+
+    def constants(self) -> Any:
+        """Constants and first numbers of a flight."""
         scene = self.scene
         spanned = copy(scene)  # a checked scene needs no further check
         object.__setattr__(
             spanned, "t_span", (scene.t_span[0], scene.t_span[0] + PERIODS_OF_SPAN * scene.period)
         )
-        x0 = numbers(spanned, self.model, self.oscillator, self.method)  # type: ignore[arg-type]
-        record = Recorder(1, scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).buffers
-        count = np.zeros(N_COUNTERS, dtype=np.int64)
-        count[MAX_EVENTS] = self.method.max_events
-        kernel = compiled(follow) if self.fast else follow
-        kernel(flight_of(scene, self.model, x0.copy()), x0, record, count, task._replace(strict=strict))
+        return numbers(spanned, self.model, self.oscillator, self.method)  # type: ignore[arg-type]
+
+    def tangents_of(self, log: Any, counts: Any, t_start: float) -> Any:
+        """Derivatives of periods from their impacts, as recorded by any method; see `tangent.along_logs`."""
+        out = np.zeros((*counts.shape[:2], 2, 2))
+        kernel = compiled(along_logs) if self.fast else along_logs
+        flight = flight_of(self.scene, self.model, self.constants())
+        kernel(flight, log, counts, t_start, t_start + self.scene.period, out, np.zeros(1))
+        return out

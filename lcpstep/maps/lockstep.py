@@ -89,6 +89,9 @@ def note_impacts(lanes: Any, task: Any, t: float, k: int) -> None:
                     task.impacts[i, k, place, 2] = lanes.u[i]
                 task.counts[i, k, IMPACTS] += 1
             elif lanes.closed[i] == STRUCK and k >= 0:
+                place = task.counts[i, k, ENDS]
+                if place < task.landings.shape[2]:
+                    task.landings[i, k, place] = t
                 task.counts[i, k, ENDS] += 1
             lanes.closed[i] = min(CLOSED, lanes.closed[i] + 1)
         else:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
-from lcpstep.maps.batch import INSIDE, Periods, periods, section
+from lcpstep.maps.batch import IMPACTS_KEPT, INSIDE, Periods, periods, section
 from lcpstep.simulate import Method
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Status
@@ -64,7 +64,9 @@ class StroboscopicMap:
         """The image of the state x = (q, v), (2 n_q,); LcpStepError where the motion ends early."""
         return np.asarray(self.follow(x, 1).states[0, -1])
 
-    def follow(self, x: ArrayLike, n: int, drop: int = 0) -> Periods:
+    def follow(
+        self, x: ArrayLike, n: int, drop: int = 0, *, most: int = IMPACTS_KEPT, tangents: bool = False
+    ) -> Periods:
         """One run of n periods, in full; its states are those of n iterations of the map.
 
         Raises
@@ -74,7 +76,10 @@ class StroboscopicMap:
         """
         x = checks.array("x", x, (2 * self.scene.n_q,))
         stepped = isinstance(self.method, Moreau)
-        run = periods(self.scene, self.method, x, n, drop=drop, phase=self.phase, strict=not stepped)
+        run = periods(
+            self.scene, self.method, x, n, drop=drop, phase=self.phase, most=most, strict=not stepped,
+            tangents=tangents,
+        )  # fmt: skip
         if run.status[0] == INSIDE:
             raise ValueError(f"x: {x.tolist()} lies inside of the obstacle at t = {self.time:g} s")
         if run.status[0] != Status.DONE:

@@ -5,19 +5,21 @@ The layout is that of G. Osorio, Complex Behavior in Impacting Systems, Fig 3.6.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from lcpstep.maps import Sections
 
-TWO_PI = 2.0 * math.pi
 
+def maps(
+    points: Mapping[str, Sections], title: str, lowest: float = 0.0, corners: Sequence[float] = ()
+) -> Any:
+    """One row a method: impacts (phase of the forcing, velocity after) and states once per period.
 
-def maps(points: Mapping[str, Sections], title: str, angle_at_start: float = 0.0, lowest: float = 0.0) -> Any:
-    """One row a method: impacts (angle of the forcing, velocity after) and states once per period.
-
-    The angle is angle_at_start at t = 0 and is shown within [lowest, lowest + 2 pi) [rad].
+    Parameters
+    ----------
+    lowest : where the circle of phases is cut: they are shown within [lowest, lowest + 1), in periods
+    corners : phases of the corners of the forcing
     """
     from matplotlib.figure import Figure
 
@@ -25,13 +27,14 @@ def maps(points: Mapping[str, Sections], title: str, angle_at_start: float = 0.0
     figure.suptitle(title)
     grid = figure.subplots(len(points), 2, sharex="col", sharey="col", squeeze=False)
     for (left, right), (name, p) in zip(grid, points.items(), strict=True):
-        angle = lowest + (TWO_PI * p.phase + angle_at_start - lowest) % TWO_PI
-        left.plot(angle, p.after, "k.", ms=1.5)
-        left.set(title=f"impact map: {name}", ylabel="gap velocity after impact [m/s]")
-        right.plot(p.q[:, 0], p.v[:, 0], "k.", ms=1.5)
+        left.plot(lowest + (p.phase - lowest) % 1.0, p.after, "k.", ms=3.0, mew=0.0, rasterized=True)
+        left.set(title=f"impact map: {name}", ylabel="gap velocity after [m/s]", xlim=(lowest, lowest + 1.0))
+        right.plot(p.q[:, 0], p.v[:, 0], "k.", ms=3.0, mew=0.0, rasterized=True)
         right.set(title=f"stroboscopic map: {name}", ylabel="velocity [m/s]")
+        for corner in corners:
+            left.axvline(lowest + (corner - lowest) % 1.0, color="C0", lw=0.5, alpha=0.6, zorder=0.5)
         for ax in (left, right):
             ax.grid(alpha=0.3)
-    grid[-1][0].set_xlabel("angle of the forcing at impact [rad]")
+    grid[-1][0].set_xlabel("phase of the forcing at impact [periods]")
     grid[-1][1].set_xlabel("position [m]")
     return figure

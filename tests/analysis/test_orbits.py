@@ -81,7 +81,7 @@ def test_a_branch_turns_at_a_fold_and_shows_its_unstable_half():
     assert branch.x[:, 0] == pytest.approx(exact, abs=1e-6)
     assert branch.stable[0]
     assert not branch.stable[-1]
-    assert branch.p[-1] > 0.7
+    assert branch.p[-1] == 0.7
 
 
 def test_a_torus_bifurcation_of_the_delayed_logistic_map_is_located():

@@ -1,0 +1,259 @@
+"""Following a branch: predictor along the tangent, corrector in the hyperplane across it, and special points between.
+
+    F(x, p) = P_p^n(x) - x = 0,      tau . (z - z_predicted) = 0,      z = (x, p)
+
+Source: Yu. Kuznetsov, Elements of Applied Bifurcation Theory (Springer 2004), sections 10.2-10.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.analysis.branch import Branch, Special, Steps
+from lcpstep.analysis.derivative import STENCIL
+from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
+from lcpstep.errors import LcpStepError
+from lcpstep.maps.iteration import Map, iterate
+
+Array = NDArray[np.float64]
+Family = Callable[[float], Map]
+Monitor = Callable[[float, Array], Mapping[str, float]]
+Progress = Callable[[float, Array, NDArray[np.complex128]], None]
+CORRECTIONS = 12  # Newton iterations of a point on the branch
+CONVERGED = 1e-11  # residual, relative to the size of the point
+CONTRACTION = 0.5  # a residual that shrinks by less than this is at its rounding, or will not converge
+STAGNATED = 1e-8
+INTERRUPTED = "interrupted"  # why a branch ended
+SOON = 3  # corrections after which dF/dp is computed anew
+FEW = 4  # corrections after which the step may grow
+GROWTH, SHRINK = 1.4, 0.5
+PARAMETER_STEP = 1e-5  # of the range, for the derivative by the parameter
+ROOT = 1e-13  # of a step, where a bifurcation is located
+KINDS = ("fold", "branch point", "flip", "torus", "jump")
+SMALL = 1e-4  # a test function this small at its sign change, relative to the ends, is zero there and no jump
+
+
+@dataclass
+class State:
+    """A point of the branch with all that is known there."""
+
+    z: Array
+    J: Array
+    slope: Array  # dF/dp
+    tests: dict[str, float] = field(default_factory=dict)
+
+
+class Follower:
+    """Predictor, corrector, and the end of the branch."""
+
+    def __init__(
+        self, family: Family, n: int, low: float, high: float, steps: Steps, monitor: Monitor | None,
+        character: Callable[[float, Array], object] | None, progress: Progress | None,
+    ) -> None:  # fmt: skip
+        self.family, self.n, self.low, self.high = family, n, low, high
+        self.steps, self.monitor, self.character = steps, monitor, character
+        self.progress = progress
+
+    def branch(self, z: Array, direction: float) -> Branch:
+        """The branch from the point z on, at first in this direction of the parameter."""
+        ahead = np.append(np.zeros(len(z) - 1), direction)
+        states, special, ds, ended = [self.started(z)], list[Special](), self.steps.first, ""
+        tangent = self.tangent(states[0], ahead)
+        self.tell(states[0])
+        try:
+            while not ended:
+                if len(states) == self.steps.points:
+                    ended = f"{len(states)} points computed"
+                    break
+                found = self.step(states[-1], tangent, ds)
+                if found is None:
+                    ds *= SHRINK
+                    if ds < self.steps.smallest:
+                        ended = f"no point of the branch beyond p = {states[-1].z[-1]:.12g}"
+                    continue
+                new, effort = found
+                if not self.low <= new.z[-1] <= self.high:
+                    new, ended = self.at_the_end(states[-1], new), "left the range"
+                if new is states[-1]:
+                    break
+                reached = float(tangent @ ((new.z - states[-1].z) / self.scale))
+                found_between = between(self, states[-1], new, tangent, reached)
+                special += [s._replace(after=len(states) - 1) for s in found_between]
+                states.append(new)
+                self.tell(new)
+                ahead = tangent * self.scale
+                self.measure(new.z)
+                new.slope = self.slope(new.z)
+                tangent = self.tangent(new, ahead / self.scale)
+                ds = min(self.steps.largest, ds * (GROWTH if effort <= FEW else 1.0))
+        except KeyboardInterrupt:
+            ended = INTERRUPTED
+        return Branch(
+            p=np.array([s.z[-1] for s in states]), x=np.array([s.z[:-1] for s in states]),
+            multipliers=np.array([multipliers(s.J) for s in states]), special=tuple(special), ended=ended,
+        )  # fmt: skip
+
+    def tell(self, state: State) -> None:
+        """Report a point that was found."""
+        if self.progress is not None:
+            self.progress(float(state.z[-1]), state.z[:-1], multipliers(state.J))
+
+    def started(self, z: Array) -> State:
+        """The first point."""
+        self.measure(z)
+        return self.with_tests(State(z, self.equations(z)[1], self.slope(z)))
+
+    def measure(self, z: Array) -> None:
+        """The units in which steps from z are counted."""
+        size = max(1.0, float(np.max(np.abs(z[:-1]))))
+        self.scale = np.append(np.full(len(z) - 1, size), self.high - self.low)
+
+    def at_the_end(self, state: State, outside: State) -> State:
+        """The point of the branch at the end of the range, between two points; the former where it is lost."""
+        end = self.low if outside.z[-1] < self.low else self.high
+        share = (end - state.z[-1]) / (outside.z[-1] - state.z[-1])
+        fixed = np.append(np.zeros(len(state.z) - 1), 1.0)  # Newton's method at this parameter
+        predicted = state.z + share * (outside.z - state.z)
+        predicted[-1] = end
+        try:
+            found, _ = self.correct(predicted, fixed)
+        except (ValueError, LcpStepError, np.linalg.LinAlgError):
+            return state
+        if found is None or self.differ(state.z, found.z):
+            return state
+        found.z[-1] = end
+        return self.with_tests(found)
+
+    def step(self, state: State, tangent: Array, ds: float) -> tuple[State, int] | None:
+        """The point at the distance ds along the tangent, corrected; None where there is none."""
+        try:
+            found, effort = self.correct(state.z + ds * tangent * self.scale, tangent)
+            if found is None:
+                return None
+            moved = float(np.linalg.norm((found.z - state.z) / self.scale))
+            if moved > 3.0 * ds or self.differ(state.z, found.z):  # caught by another branch
+                return None
+            return self.with_tests(found), effort
+        except (ValueError, LcpStepError, np.linalg.LinAlgError):
+            return None
+
+    def differ(self, z: Array, other: Array) -> bool:
+        """Whether two points are of different character, and so not of one branch."""
+        if self.character is None:
+            return False
+        one, two = (self.character(float(y[-1]), y[:-1]) for y in (z, other))
+        return one != two
+
+    def correct(self, predicted: Array, tangent: Array) -> tuple[State | None, int]:
+        """Newton's method on F = 0 within the hyperplane through the predicted point.
+
+        dF/dp costs most, and is that of the predicted point unless that does not converge soon.
+        """
+        z, before, slope = predicted.copy(), np.inf, None
+        for k in range(CORRECTIONS):
+            F, J = self.equations(z)
+            if slope is None or k >= SOON:
+                slope = self.slope(z)
+            error, size = float(np.max(np.abs(F))), max(1.0, float(np.max(np.abs(z[:-1]))))
+            off = float(tangent @ ((z - predicted) / self.scale))
+            if error <= CONVERGED * size or (error <= STAGNATED * size and error > CONTRACTION * before):
+                return State(z, J, slope), k
+            if k > 2 and error > 10.0 * before:
+                return None, k
+            before = error
+            matrix = np.vstack([extended(J, slope) * self.scale, tangent])
+            z = z - np.linalg.solve(matrix, np.append(F, off)) * self.scale
+        return None, CORRECTIONS
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """F and DP^n at z."""
+        image, J = image_and_derivative(self.family(float(z[-1])), z[:-1], self.n)
+        return image - z[:-1], J
+
+    def slope(self, z: Array) -> Array:
+        """dF/dp at z, (d,)."""
+        d = PARAMETER_STEP * (self.high - self.low)
+        total = np.zeros(len(z) - 1)
+        for s, w in STENCIL:
+            for side in (1.0, -1.0):
+                P = self.family(float(z[-1]) + side * s * d)
+                total += side * w * iterate(P, z[:-1], self.n)[-1] / d
+        return total
+
+    def tangent(self, state: State, before: Array) -> Array:
+        """Unit tangent in scaled variables, in the direction of the one before."""
+        tangent = np.linalg.svd(extended(state.J, state.slope) * self.scale)[2][-1]
+        return np.asarray(tangent if tangent @ before >= 0.0 else -tangent)
+
+    def with_tests(self, state: State) -> State:
+        """The point with its test functions."""
+        J, one = state.J, np.eye(len(state.J))
+        state.tests = {"fold": float(np.linalg.det(J - one)), "flip": float(np.linalg.det(J + one))}
+        pair = [abs(m) for m in multipliers(J) if m.imag > 0.0]
+        if pair:
+            state.tests["torus"] = max(pair) - 1.0
+        if self.monitor is not None:
+            watched = self.monitor(float(state.z[-1]), state.z[:-1])
+            state.tests |= {f" {name}": value for name, value in watched.items()}
+        return state
+
+
+def extended(J: Array, slope: Array) -> Array:
+    """(F_x, F_p), (d, d + 1)."""
+    return np.column_stack([J - np.eye(len(J)), slope])
+
+
+def between(follower: Follower, state: State, end: State, tangent: Array, ds: float) -> list[Special]:
+    """Special points within a step of length ds along the tangent, in their order."""
+    found: list[tuple[float, Special]] = []
+    for name, value in state.tests.items():
+        other = end.tests.get(name)
+        if other is not None and value * other < 0.0:
+            place = _located(follower, state, end, tangent, ds, name)
+            found += [] if place is None else [place]
+    watched = [special for _, special in found if special.kind not in KINDS]
+    # Where the branch has a kink it cannot be followed to the jump itself; but what makes it jump is located
+    found = [
+        (s, x._replace(p=watched[0].p, x=watched[0].x))
+        if x.kind == "jump" and s == 1.0 and watched
+        else (s, x)
+        for s, x in found
+    ]
+    return [special for _, special in sorted(found, key=lambda pair: pair[0])]
+
+
+def _located(
+    follower: Follower, state: State, end: State, tangent: Array, ds: float, name: str
+) -> tuple[float, Special] | None:
+    """Where one test function changes its sign, as a share of the step, and what is there; None for nothing."""
+    from scipy.optimize import brentq
+
+    at: dict[float, State] = {0.0: state, 1.0: end}
+
+    def test(s: float) -> float:
+        if s not in at:
+            point = follower.step(state, tangent, s * ds)
+            if point is None or name not in point[0].tests:
+                raise LcpStepError("lost")
+            at[s] = point[0]
+        return at[s].tests[name]
+
+    try:
+        s = brentq(test, 0.0, 1.0, xtol=ROOT, rtol=1e-15)
+    except LcpStepError:  # the branch has a kink in between, sharper than the hyperplane can follow
+        return None if name.startswith(" ") else (1.0, _special("jump", end))
+    jumps = abs(test(s)) > SMALL * max(abs(state.tests[name]), abs(end.tests[name]))
+    if jumps and name.startswith(" "):  # a monitored number that jumps does not pass zero
+        return None
+    kind = "jump" if jumps else name.strip()
+    if kind == "fold" and follower.tangent(state, tangent)[-1] * follower.tangent(end, tangent)[-1] > 0.0:
+        kind = "branch point"
+    return s, _special(kind, at[s])
+
+
+def _special(kind: str, at: State) -> Special:
+    return Special(kind, float(at.z[-1]), at.z[:-1], multipliers(at.J))

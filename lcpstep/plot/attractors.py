@@ -1,0 +1,86 @@
+"""Pictures of attractors: impact map and stroboscopic map, one row a method.
+
+The contents are those of G. Osorio, Complex Behavior in Impacting Systems, Fig 3.6: phase of the forcing against the
+gap velocity after the impact, and position against velocity once per period.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.plot.bifurcation import LETTERS
+
+Array = NDArray[np.float64]
+ORDINALS = 6  # impacts of a period with a colour of their own; later ones share the last
+FEW, MANY = 5.0, 2.0  # sizes of a few points, and of thousands
+
+
+def attractors(rows: Mapping[str, Sequence[Any]], title: str = "", corners: Sequence[float] = ()) -> Any:
+    """Figure of attractors (`lcpstep.analysis.attractors.Attractor`).
+
+    Parameters
+    ----------
+    rows : attractors by the name of the method that found them
+    corners : phases of the corners of the forcing, as shares of the period
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13.0, 0.8 + 4.6 * len(rows)), layout="constrained")
+    figure.suptitle(title)
+    grid = figure.subplots(len(rows), 2, sharex="col", sharey="col", squeeze=False)
+    for (left, right), (method, found) in zip(grid, rows.items(), strict=True):
+        impact_panel(left, found, corners)
+        section_panel(right, found)
+        left.set_title(f"impacts: {method}", fontsize=10)
+        right.set_title(f"once per period: {method}", fontsize=10)
+    return figure
+
+
+def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -> None:
+    """Phase and velocity after each impact, coloured by its number in the period."""
+    from matplotlib import colormaps
+
+    shades = colormaps["viridis"](np.linspace(0.0, 0.92, ORDINALS))
+    phase, after, number = (
+        np.concatenate([getattr(a, f"impact_{name}") for a in found] or [np.zeros(0)])
+        for name in ("phase", "after", "number")
+    )
+    size = FEW if all(a.periods for a in found) else MANY
+    for k in range(1, ORDINALS + 1):
+        which = number == k if k < ORDINALS else number >= k
+        if np.any(which):
+            label = f"{k}" if k < ORDINALS else f"{k} and later"
+            dots(ax, phase[which], after[which], shades[k - 1], size, label)
+    for k, corner in enumerate(corners):
+        ax.axvline(corner, color="C0", lw=0.5, alpha=0.6, zorder=0.5)
+        ax.annotate(LETTERS[k % len(LETTERS)], (corner, 1.0), (1.5, -4.0 - 7.0 * (k % 2)), va="top", fontsize=7,
+                    xycoords=("data", "axes fraction"), textcoords="offset points", color="C0")  # fmt: skip
+    ax.set(xlabel="phase of the forcing [periods]", ylabel="gap velocity after [m/s]", xlim=(0.0, 1.0))
+    ax.tick_params(labelbottom=True)
+    ax.grid(alpha=0.3)
+    if len(phase):
+        ax.legend(title="impact of the period", fontsize=8, title_fontsize=8, loc="upper left",
+                  bbox_to_anchor=(1.0, 1.0), frameon=False)  # fmt: skip
+
+
+def section_panel(ax: Any, found: Sequence[Any]) -> None:
+    """Position and velocity once per period, one colour an attractor."""
+    for k, a in enumerate(found):
+        n = a.cloud.shape[1] // 2
+        dots(
+            ax, a.cloud[:, 0], a.cloud[:, n], f"C{k}", FEW if a.periods else MANY, f"{a.name}: {a.share:.1%}"
+        )
+    ax.set(xlabel="position [m]", ylabel="velocity [m/s]")
+    ax.tick_params(labelbottom=True)
+    ax.grid(alpha=0.3)
+    ax.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def dots(ax: Any, x: Array, y: Array, colour: Any, size: float, label: str) -> None:
+    """Points, and a mark of their colour in the legend that can be seen at any size."""
+    ax.plot(x, y, "o", color=colour, ms=size, mew=0.0, rasterized=len(x) > 200)
+    ax.plot([], [], "o", color=colour, ms=5, label=label)

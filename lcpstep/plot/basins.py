@@ -1,0 +1,31 @@
+"""Pictures of basins of attraction."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+COLOURS = "tab20"
+
+
+def basins(data: Any, title: str = "") -> Any:
+    """Figure of a basin dataset: one colour an attractor, white for none, grey for the obstacle."""
+    from matplotlib import colormaps
+    from matplotlib.figure import Figure
+
+    label = data["label"].values
+    shades = np.array([(0.6, 0.6, 0.6), (1.0, 1.0, 1.0), *colormaps[COLOURS](np.arange(20))[:, :3]])
+    figure = Figure(figsize=(9, 7), layout="constrained")
+    ax = figure.subplots()
+    q, v = data["q"].values, data["v"].values
+    extent = (q[0], q[-1], v[0], v[-1])
+    ax.imshow(shades[np.minimum(label + 2, len(shades) - 1)], origin="lower", aspect="auto", extent=extent)
+    shares = zip(data["name"].values, data["share"].values, data["share_error"].values, strict=True)
+    for k, (name, share, error) in enumerate(shares):
+        ax.plot(
+            [], [], "s", color=shades[min(k + 2, len(shades) - 1)], label=f"{name}: {share:.4f} ± {error:.4f}"
+        )
+    ax.legend(loc="upper right")
+    ax.set(title=title, xlabel="position [m]", ylabel="velocity [m/s]")
+    return figure

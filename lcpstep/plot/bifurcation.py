@@ -1,0 +1,168 @@
+"""Pictures of brute-force bifurcation diagrams: panels over the parameter, one above the other.
+
+The panels are those of G. Osorio, Complex Behavior in Impacting Systems, Figs 4.5 to 4.12: phases of the impacts,
+position on the stroboscopic section, and for motions that chatter the accumulation points and how many impacts
+there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from lcpstep.plot.words import parameter_label
+
+PANELS = {
+    "phase": "phase of impacts [periods]",
+    "speed": "gap velocity\nbefore impacts [m/s]",
+    "position": "position\non the section [m]",
+    "velocity": "velocity\non the section [m/s]",
+    "accumulation": "accumulation points:\nphase [periods]",
+    "impacts": "impacts per period",
+}
+USUAL = ("phase", "position")
+CHATTERING = ("accumulation", "impacts")
+PHASES = ("phase", "accumulation")
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
+MISSING = "C3"
+FINE = 4000  # places along an axis that can be told apart
+
+
+def bifurcation(data: Any, title: str = "", show: Sequence[str] | None = None) -> Any:
+    """Figure of a bifurcation dataset.
+
+    Parameters
+    ----------
+    show : names of `PANELS`; where not given, phases and positions, and where sequences of impacts end within the
+        window their accumulation points and the number of impacts
+    """
+    shown = list(show or panels_of(data))
+    figure, axes = _figure(len(shown), title or f"{data.attrs['scene']}: {data.attrs['start']} start")
+    for ax, name in zip(axes, shown, strict=True):
+        panel(ax, data, name)
+    _over(axes, data)
+    return figure
+
+
+def panels_of(data: Any) -> tuple[str, ...]:
+    """The panels that say something of a diagram."""
+    return USUAL + (CHATTERING if data.sizes["landing"] else ())
+
+
+def overlaid(
+    reference: Any, others: Mapping[str, Any], apart: Mapping[str, Any], title: str = "",
+    show: Sequence[str] | None = None,
+) -> Any:  # fmt: skip
+    """Figure of one bifurcation diagram in black and others, by name, under it; below, how far each is from it.
+
+    apart : of each other one, by the same names, from `lcpstep.analysis.agreement.agreement`
+    """
+    parameter = str(reference.attrs["parameter"])
+    shown = list(show or USUAL)
+    figure, axes = _figure(
+        len(shown) + 1, title or f"{reference.attrs['scene']}: {reference.attrs['start']} start"
+    )
+    distance = axes[-1]
+    for ax, name in zip(axes, shown, strict=False):
+        for k, other in enumerate(others.values()):
+            panel(ax, other, name, f"C{k}", 2.5)
+        panel(ax, reference, name)
+    for k, name in enumerate(others):
+        away = apart[name]["phase_distance"].values
+        distance.semilogy(reference[parameter].values, away, f"C{k}.-", label=name)
+    distance.semilogy([], [], "k.", label="reference")
+    distance.set(ylabel="distance of\nthe phases [periods]")
+    distance.grid(alpha=0.3)
+    distance.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+    _over(axes, reference)
+    return figure
+
+
+def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
+    """Points of one panel."""
+    x, y = thinned(*points(data, name))
+    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 1.2, 4.0))
+    ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
+    ax.set_ylabel(PANELS[name])
+    if name in PHASES:
+        ax.set_ylim(0.0, 1.0)
+        corners(ax, data)
+    if name == "impacts":
+        ax.set_ylim(bottom=0.0)
+    if name in ("phase", "speed", "impacts"):
+        _warned(ax, data)
+
+
+def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Parameter and ordinate of every point of a panel."""
+    values = data[str(data.attrs["parameter"])].values
+    listed = {"phase": "impact_phase", "speed": "impact_before", "accumulation": "landing_phase"}
+    if name in listed:
+        kind = listed[name].split("_")[0]
+        return values[data[f"{kind}_value"].values], data[listed[name]].values
+    if name == "impacts":
+        y = np.where(data["status"].values[..., None] == 0, data["impacts"].values, np.nan)
+    else:
+        y = data[{"position": "q", "velocity": "v"}[name]].isel(coordinate=0).values
+    return np.broadcast_to(values[None, :, None], y.shape).ravel(), y.ravel()
+
+
+def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """One of all points that would lie on each other in the picture: a periodic motion repeats itself."""
+    seen = np.isfinite(y)
+    x, y = x[seen], y[seen]
+    if len(y) == 0:
+        return x, y
+    cell = np.round((y - np.min(y)) / max(float(np.ptp(y)), 1e-300) * FINE).astype(np.int64)
+    column = np.unique(x, return_inverse=True)[1]
+    kept = np.unique(column * (FINE + 1) + cell, return_index=True)[1]
+    return x[kept], y[kept]
+
+
+def corners(ax: Any, data: Any) -> None:
+    """Lines at the corners of the forcing, with a letter each at the right end."""
+    values = data[str(data.attrs["parameter"])].values
+    for k, phase in enumerate(data["corner_phase"].values.T):
+        ax.plot(values, phase, color="C0", lw=0.6, alpha=0.7, zorder=0.5)
+        if len(LETTERS) > k and np.isfinite(phase[-1]):
+            ax.annotate(
+                LETTERS[k], (1.0, phase[-1]), (4.0 + 9.0 * (k % 2), 0.0), xycoords=("axes fraction", "data"),
+                textcoords="offset points", color="C0", fontsize=8, va="center",
+            )  # fmt: skip
+
+
+def _warned(ax: Any, data: Any) -> None:
+    """Marks along the top where impacts of a period are missing, and where runs ended early."""
+    values = data[str(data.attrs["parameter"])].values
+    most = int(data.attrs["most"])
+    cut = np.any(data["impacts"].values > most, axis=(0, 2))
+    early = np.any(data["status"].values != 0, axis=0)
+    for which, mark, text in (
+        (cut, "v", f"more than {most} impacts a period: only the first {most} are shown"),
+        (early, "x", "a run ended early"),
+    ):
+        if np.any(which):
+            ax.plot(
+                values[which], np.full(np.sum(which), 1.0), mark, color=MISSING, ms=5, clip_on=False, label=text,
+                transform=ax.get_xaxis_transform(),
+            )  # fmt: skip
+            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), fontsize=8, frameon=False)
+
+
+def _figure(rows: int, title: str) -> tuple[Any, Any]:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 1.0 + 3.2 * rows), layout="constrained")
+    figure.suptitle(title)
+    return figure, figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
+
+
+def _over(axes: Any, data: Any) -> None:
+    """The common axis, which ends where the window does."""
+    parameter = str(data.attrs["parameter"])
+    values = data[parameter].values
+    axes[-1].set_xlabel(parameter_label(parameter))
+    if len(values) > 1:
+        axes[-1].set_xlim(values[0], values[-1])

@@ -1,0 +1,37 @@
+"""Methods and units in words, for titles and axes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lcpstep.dataset import UNITS
+
+DPI = 150
+
+
+def method_words(method: Any) -> str:
+    """A method as a reader of a figure wants it: Moreau, h = 0.0001 s, theta = 0.5."""
+    name = type(method).__name__
+    if getattr(method, "tolerance", None) is not None:
+        return f"{name}, tolerance {method.tolerance:g}"
+    if hasattr(method, "h"):
+        theta = f", theta = {method.theta:g}" if hasattr(method, "theta") else f", order {method.order}"
+        return f"{name}, h = {method.h:g} s{theta}"
+    return f"event-driven, tolerance {method.rtol:g}"
+
+
+def parameter_label(name: str) -> str:
+    """The parameter's name with its unit, where it has one."""
+    unit = {"rpm": "rpm"}.get(name, UNITS.get(name))
+    return "cam speed [rpm]" if name == "rpm" else f"{name} [{unit}]" if unit else name
+
+
+def scene_words(scene: Any) -> str:
+    """The scene, and how fast its cam turns."""
+    rpm = scene.parameters.get("rpm")
+    return str(scene.name) if rpm is None else f"{scene.name} at {rpm:.9g} rpm"
+
+
+def title_of(scene: Any, what: str, method: Any) -> str:
+    """Scene, what is shown, and by which method."""
+    return f"{scene_words(scene)}: {what}; {method_words(method)}"

@@ -1,0 +1,118 @@
+"""Names of attractors: one each, by either method, told apart up to what the grid of time-stepping does."""
+
+import numpy as np
+import pytest
+
+from lagrangian.scenes import cam_follower
+from lcpstep import EventDriven, Moreau
+from lcpstep.analysis.attractors import attractors, mean_impacts, random_starts
+from lcpstep.analysis.basins import outside
+from lcpstep.analysis.grid_error import spread
+from lcpstep.analysis.grouping import Settled, grouped, overlap
+from lcpstep.analysis.lyapunov import growth_of_runs
+from lcpstep.analysis.variation import PeriodMap
+from lcpstep.maps import periods
+
+BOX = [[0.0, -60.0], [1.5, 60.0]]
+
+
+def found(rpm, method, n=40, seed=0, **settings):
+    scene = cam_follower(rpm=rpm)
+    return attractors(scene, method, outside(scene, random_starts(BOX, n, seed), 0.0), **settings)
+
+
+def test_time_stepping_names_the_two_orbits_at_358_5_rpm_as_event_driven_does():
+    exact, stepped = found(358.5, EventDriven()), found(358.5, Moreau(h=1e-4))
+    assert {a.name for a in stepped.found} == {a.name for a in exact.found} == {"O(3, 8)", "O(1, 2)"}
+    assert len(stepped.found) == 2
+    shares = {a.name: a.share for a in exact.found}
+    for a in stepped.found:
+        deviation = np.sqrt(shares[a.name] * (1.0 - shares[a.name]) / len(stepped.label))
+        assert a.share == pytest.approx(shares[a.name], abs=2.0 * deviation)
+        assert np.isfinite(a.lyapunov.largest)
+    # The exponent of O(1, 2) is that of a complex pair, log 0.8^2, wherever its impacts are
+    (two,) = [a for a in stepped.found if a.name == "O(1, 2)"]
+    assert two.lyapunov.largest == pytest.approx(2.0 * np.log(0.8), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_no_attractor_is_listed_twice_at_361_5_rpm(seed):
+    exact = found(361.5, EventDriven(), 60, seed)
+    assert sorted(a.name for a in exact.found) == ["O(1, 2)", "chaotic"]
+
+
+def test_chattering_and_chaos_have_their_names_by_time_stepping():
+    assert [a.name for a in found(125.0, Moreau(h=1e-4), 6, transient=30, window=60, longest=10).found] == [
+        "O(1, chattering)"
+    ]
+    (chaos,) = found(660.0, Moreau(h=1e-4), 12).found
+    assert chaos.name == "chaotic"
+    assert chaos.lyapunov.largest == pytest.approx(0.385, abs=0.05)
+
+
+def test_an_attractor_can_be_seen():
+    (chaos,) = found(660.0, EventDriven(), 5).found
+    assert len(np.unique(chaos.cloud, axis=0)) > 7000
+    (stepped,) = found(660.0, Moreau(h=1e-4), 5, points=2000).found
+    assert len(np.unique(stepped.cloud, axis=0)) > 1900
+    for a in (chaos, stepped):
+        assert a.impact_number.min() == 1
+        assert np.mean(a.impact_number == 1) > 0.5  # 1.27 impacts per period
+
+
+def test_the_spread_of_time_stepping_shrinks_with_the_step():
+    scene = cam_follower(rpm=700.0)
+    x = periods(scene, EventDriven(), [1.33, -66.2], 50).final
+    radii = [float(spread(scene, Moreau(h=h), x, 0.0).radius[0]) for h in (1e-4, 2e-5)]
+    assert 2.0 < radii[0] / radii[1] < 12.0
+    chaotic = spread(cam_follower(rpm=660.0), Moreau(h=1e-4), np.array([[0.9, -3.0]]), 0.0)
+    assert not chaotic.forgets[0]
+
+
+def cloud(random, n, centre):
+    return random.normal(size=(n, 2)) + np.asarray(centre)
+
+
+def test_clouds_of_one_distribution_are_one_and_of_two_are_two():
+    random = np.random.default_rng(1)
+    one, other = cloud(random, 300, [0.0, 0.0]), cloud(random, 4000, [0.0, 0.0])
+    assert overlap(one, other)
+    assert overlap(other, one)
+    assert not overlap(other, cloud(random, 300, [12.0, 0.0]))
+    closed = np.tile(one[:81], (3, 1))  # a cycle that rounding has closed
+    assert overlap(closed, other)
+
+
+def test_a_motion_that_slips_belongs_to_the_orbit_it_slips_along():
+    random = np.random.default_rng(2)
+    orbit = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    noisy = orbit[random.integers(3, size=240)] + 0.01 * random.uniform(-1.0, 1.0, (240, 2))
+    regular = np.tile(orbit, (80, 1)) + 0.01 * random.uniform(-1.0, 1.0, (240, 2))
+    unit = np.ones(2)
+    runs = [
+        Settled(0, noisy, unit, 0.03, 0),
+        Settled(1, regular, unit, 0.03, 3),
+        Settled(2, noisy + 5.0, unit, 0.03, 0),
+    ]
+    assert sorted(map(sorted, grouped(runs))) == [[0, 1], [2]]
+
+
+def test_exponents_of_many_runs_are_those_of_products():
+    A = np.array([[2.0, 1.0], [1.0, 1.0]])
+    derivatives = np.tile(A, (5, 60, 1, 1))
+    assert growth_of_runs(derivatives).largest == pytest.approx(np.log((3.0 + np.sqrt(5.0)) / 2.0), abs=1e-9)
+    derivatives[:, 30:32] = 0.0
+    assert growth_of_runs(derivatives).largest == -np.inf
+
+
+def test_mean_impacts_come_to_those_of_the_orbit_as_the_step_goes_down():
+    scene = cam_follower(rpm=700.0)
+    exact = PeriodMap(scene, EventDriven()).many([1.33, -66.2], 200, 199, most=4)
+    errors = []
+    for h in (1e-4, 1e-5):
+        run = PeriodMap(scene, Moreau(h=h)).many(exact.final, 200, 100, most=4)
+        log, counts = mean_impacts(run, 0, 1)
+        assert counts.tolist() == [[1, 0]]
+        errors.append(abs(log[0, 0, 0] - exact.time[0, 0, 0]) / scene.period)
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[1] < 1e-3

@@ -1,0 +1,120 @@
+"""Derivatives of periods in closed form, the exponents that they add up to, and branches followed with them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian.scenes import cam_follower, impact_oscillator
+from lcpstep import EventDriven
+from lcpstep.analysis.continuation import Steps, continue_point
+from lcpstep.analysis.derivative import differences
+from lcpstep.analysis.lyapunov import lyapunov
+from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
+from lcpstep.analysis.variation import PeriodMap
+from lcpstep.cli import main
+from lcpstep.cli.orbit import branch_dataset
+from lcpstep.plot.orbits import stretches
+
+CASES = [
+    {},
+    {"coordinates": "absolute"},
+    {"b": 3.0, "g0": 9.81, "restitution": 0.6},
+    {"b": 200.0, "coordinates": "absolute"},  # overdamped
+]
+
+
+@pytest.mark.parametrize("values", CASES)
+@pytest.mark.parametrize("phase", [0.0, 0.37])
+def test_derivatives_of_periods_are_those_of_the_map(values, phase):
+    P = PeriodMap(cam_follower(rpm=660.0, **values), EventDriven(), phase)
+    # At a phase of its own the obstacle may lie above the start of the scene
+    x = P.follow([0.9, 3.0], 40, 39).final[0]
+    images, derivatives = P.along(x, 12)
+    for y, image, J in zip([x, *images[:-1]], images, derivatives, strict=True):
+        assert np.array_equal(P(y), image)
+        size = np.max(np.abs(J))
+        assert pytest.approx(P.differentiated(y), abs=1e-11 * size) == J  # walking along the events
+        if size > 0.0:
+            assert pytest.approx(differences(P, y, 1e-6), abs=1e-5 * size) == J
+
+
+def test_a_forced_oscillator_above_its_stop_has_its_area_law():
+    # det DP = r^2m exp(-2 delta T), whatever the impacts are
+    scene = impact_oscillator(omega=1.3, amplitude=0.9, stop=0.2)
+    P = PeriodMap(scene, EventDriven())
+    run = P.follow(np.concatenate([scene.q0, scene.v0]), 60, tangents=True)
+    p = scene.parameters
+    damping = math.exp(-float(scene.system.C[0, 0] / scene.system.M[0, 0]) * scene.period)
+    r = float(p.get("restitution", p.get("r", math.nan)))
+    held = run.ends[0] == 0
+    assert np.sum(run.impacts[0][held]) > 10
+    expected = r ** (2.0 * run.impacts[0][held]) * damping
+    assert np.linalg.det(run.tangents[0][held]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_motion_that_lands_forgets_everything():
+    P = PeriodMap(cam_follower(rpm=125.0), EventDriven())
+    assert np.all(P.along([0.0, 0.0], 3, 3)[1] == 0.0)
+    assert lyapunov(P, [0.0, 0.0], 50).largest == -math.inf
+
+
+def test_the_exponent_of_a_periodic_orbit_is_that_of_its_multipliers():
+    scene = cam_follower(rpm=700.0)
+    orbit = periodic_orbit(scene, [1.33, -66.2])
+    P = PeriodMap(scene, EventDriven())
+    # Both multipliers have the modulus 0.8: the determinant is 0.8^2
+    # up to what the direction turns on the way: the spiral is an ellipse of some log 100
+    assert lyapunov(P, orbit.x[0], 20_000).largest == pytest.approx(math.log(0.8), abs=math.log(100) / 20_000)
+
+
+def test_a_branch_ends_at_the_range_both_ways_and_changes_where_its_special_points_are():
+    def family(a):
+        return lambda x: a - x * x
+
+    ways = [continue_point(family, [0.5], 0.75, (0.1, 0.9), forward=forward) for forward in (False, True)]
+    assert [way.p[-1] for way in ways] == [0.1, 0.9]
+    for way in ways:
+        assert way.x[-1, 0] == pytest.approx(-0.5 + math.sqrt(0.25 + way.p[-1]), abs=1e-12)
+    (flip,) = ways[1].of_kind("flip")  # the multiplier -2 x is -1 at a = 3/4 exactly: at the start itself
+    assert flip.p == pytest.approx(0.75, abs=1e-9)
+
+
+def test_parts_of_a_branch_are_cut_at_the_flip():
+    pytest.importorskip("xarray")
+    scene = cam_follower(rpm=735.0)
+    settled = PeriodMap(scene, EventDriven()).follow([1.0, -70.0], 300, 299).final[0]
+    orbit = periodic_orbit(scene, settled)
+    p_range = (730.0, 745.0)
+    ways = [
+        continue_orbit(lambda p: cam_follower(rpm=p), orbit, 735.0, p_range, forward=forward, steps=Steps())
+        for forward in (False, True)
+    ]
+    data = branch_dataset(ways, "rpm", p_range, scene, EventDriven())
+    (p, _, stable), (rest, _, other) = stretches(data)
+    assert (stable, other) == (True, False)
+    assert p[0] == 730.0
+    assert rest[-1] == 745.0
+    assert p[-1] == rest[0] == pytest.approx(739.3197802, abs=1e-7)
+
+
+def test_a_branch_that_is_interrupted_is_saved_as_far_as_it_came(capsys, tmp_path, monkeypatch):
+    xarray = pytest.importorskip("xarray")
+    calls = []
+
+    def stop(self, state):
+        calls.append(float(state.z[-1]))
+        if len(calls) == 6:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("lcpstep.analysis.predictor.Follower.tell", stop)
+    arguments = "orbit cam-follower --rpm 700 --range 690 710"
+    assert main([*arguments.split(), "--out", str(tmp_path)]) == 130
+    assert "ended: interrupted" in capsys.readouterr().out
+    with xarray.open_dataset(tmp_path / "branch.nc") as data:
+        assert data["rpm"].values[::-1].tolist() == calls
+
+
+def test_orbit_draws_itself(tmp_path):
+    assert main(["orbit", "cam-follower", "--rpm", "700", "--draw", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / "orbit.png").stat().st_size > 1000
