@@ -130,8 +130,8 @@ def looks(d: Description, end: float) -> Any:
     start = d.t_span[0]
     steps = (end - start) / d.h
     whole = np.unique(np.linspace(1, max(1, int(steps + 1e-9)), LOOKS).astype(int))
-    times = start + whole * d.h
-    return np.unique(np.minimum(np.append(times[whole <= steps], end), end))
+    times = start + whole[whole <= steps + 1e-9] * d.h
+    return np.minimum(times, end) if len(times) else np.array([end])
 
 
 def finer_by(r: Run) -> float:

@@ -127,7 +127,9 @@ def _motions(rng: Any, n: int, shape: Any) -> dict[str, Any]:
     size = digits(10.0 ** rng.uniform(-3, -0.3))
     found: dict[str, Any] = {"omega": omega, "form": int(rng.random() < 0.3)}
     if kind < 0.22:
-        found["amplitude"] = tuple(digits(x) for x in size * rng.choice([0.0, 1.0, 1.0, -0.5], m))
+        found["amplitude"] = (
+            tuple(digits(x) for x in size * rng.choice([0.0, 1.0, 1.0, -0.5], m)) if m > 1 else (size,)
+        )
         found["phase"] = tuple(digits(x) for x in rng.choice([0.0, rng.uniform(0.0, 6.0)], m))
     else:
         found["frame"] = tuple(digits(x) for x in size * rng.normal(size=n))

@@ -135,11 +135,13 @@ def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
     times = [logs[0].time, logs[1].time - v.shift]
     contacts = [logs[0].contact, logs[1].contact if v.order is None else v.order[logs[1].contact]]
     fast = max((float(np.max(np.abs(x.before), initial=0.0)) for x in logs), default=0.0)
+    sizes = b.run.scales(b.d)
+    fast = max(fast, 1e-6 * sizes.reach / sizes.time)
     end = min(b.told, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
     for i, j in ((0, 1), (1, 0)):
         strong = (np.abs(logs[i].before) > STRONG * fast) & (times[i] < end) & (times[i] > start)
         for t, c, u in zip(times[i][strong], contacts[i][strong], logs[i].before[strong], strict=True):
-            late = LATE * b.run.scales(b.d).time + 10.0 * _allowed(b, t) / abs(u)
+            late = LATE * sizes.time + 10.0 * _allowed(b, t) / abs(u)
             late = late + b.d.h if b.run.method.startswith("moreau") else late
             near = times[j][contacts[j] == c]
             if not len(near) or np.min(np.abs(near - t)) > late:
