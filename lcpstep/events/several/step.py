@@ -23,6 +23,7 @@ from lcpstep.events.dop853 import (
     LEAST,
     STAGES,
     combine,
+    dense_error,
     error_norm,
     factor,
     interpolant,
@@ -136,6 +137,11 @@ def take_step(s: Any, count: Any, longest: float) -> float:
             return -float(STEP_TOO_SMALL)
         error = error_norm(w, h, s.plan.rtol, s.plan.atol) if good else math.inf
         if error <= 1.0:
+            if not dense_stages(s, h):
+                return -float(NOT_FINITE)
+            count[FORCES] += EXTRA_STAGES
+            error = max(error, dense_error(w, h, s.plan.rtol, s.plan.atol))
+        if error <= 1.0:
             break
         # rows held may become dependent, or a force infinite, beyond what a shorter step reaches
         h *= max(LEAST, factor(error)) if math.isfinite(error) else LEAST
@@ -143,9 +149,6 @@ def take_step(s: Any, count: Any, longest: float) -> float:
         if not refuse(w, t, s.plan.scan) or h <= 4.0 * RESOLUTION * max(abs(t), s.plan.scan):
             return -float(STEP_TOO_SMALL if good and math.isfinite(error) else NOT_FINITE)
     s.x[NEXT_STEP] = max(h * factor(error), s.x[NEXT_STEP] if truncated else 0.0)
-    if not dense_stages(s, h):
-        return -float(NOT_FINITE)
-    count[FORCES] += EXTRA_STAGES
     return h
 
 
