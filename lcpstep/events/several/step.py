@@ -64,7 +64,7 @@ from lcpstep.events.several.state import (
 )
 
 PARTS = 4  # scan intervals of a step
-REFINEMENTS = 4  # of an event's time by repeated steps
+REFINEMENTS = 3  # of an event's time by repeated steps
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 
 
@@ -179,18 +179,21 @@ def dense_stages(s: Any, h: float) -> bool:
 
 
 def shorten(s: Any, c: int, tau: float, kind: int) -> float:
-    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface."""
-    for _ in range(REFINEMENTS):
-        stages(s, tau)
+    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface.
+
+    The last repetition is not corrected any more: what is returned is the length of the step whose end is the state.
+    """
+    stages(s, tau)
+    for _ in range(REFINEMENTS if kind == MEETS else 0):
         dense_stages(s, tau)
-        if kind != MEETS:
-            break
         observe(s, tau)
         g, u = s.contact[GAP, c], s.contact[SPEED, c]
         correction = -g / u if u < 0.0 else 0.0
         if abs(correction) <= 2.0 * RESOLUTION * (abs(s.x[T0]) + tau) or abs(correction) > 1e-3 * tau:
             break
         tau += correction
+        stages(s, tau)
+    dense_stages(s, tau)
     return tau
 
 
