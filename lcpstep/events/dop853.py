@@ -21,6 +21,8 @@ UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step
 # Steps refused within a stretch of the scan: the right-hand side has no derivatives that a step could resolve
 HOPELESS, STRETCH = 2000, 1e-3
+DENSE = 3.0  # tolerances within which the dense output must be
+LOOK, DEFECT = 0.7, 7.0  # where it is looked at, and what one sees there
 UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
 REFUSED, STRETCH_END = range(2)
 
@@ -138,6 +140,27 @@ def interpolant(w: Any, h: float) -> None:
             for j in range(16):
                 total += w.tab.D[k, j] * w.K[j, i]
             w.F[3 + k, i] = h * total
+
+
+def dense_error(w: Any, h: float, rtol: float, atol: float) -> float:
+    """Estimated error of the dense output of positions over DENSE tolerances, where y = (q, v) and q' = v.
+
+    The derivative of q's polynomial and v's polynomial part by an error whose shape over the step is always the same:
+    its largest value over that at the place LOOK is DEFECT. No evaluation is needed.
+    """
+    n, worst = len(w.y) // 2, 0.0
+    for i in range(n):
+        value = slope = speed = 0.0
+        for k in range(7):
+            value += w.F[6 - k, i]
+            speed += w.F[6 - k, n + i]
+            x, dx = (LOOK, 1.0) if k % 2 == 0 else (1.0 - LOOK, -1.0)
+            slope = slope * x + value * dx
+            value *= x
+            speed *= x
+        defect = abs(slope - h * (w.y[n + i] + speed))
+        worst = max(worst, defect / (atol + rtol * max(abs(w.y[i]), abs(w.y_new[i]))))
+    return worst / (DEFECT * DENSE)
 
 
 def interpolate(F: Any, y: Any, x: float, out: Any) -> None:

@@ -21,6 +21,7 @@ from lcpstep.events.several.equations import bias_of, biases, constraint_rows, m
 from lcpstep.events.several.held import hold_contacts, right_hand_side, solve_held
 from lcpstep.events.several.impact import apply
 from lcpstep.events.several.keep import log
+from lcpstep.events.several.motion import gap_tolerance
 from lcpstep.events.several.parabolas import first_root
 from lcpstep.events.several.state import (
     ACCELERATION,
@@ -82,7 +83,7 @@ def chatter_left(s: Any, c: int) -> float:
     if u == 0.0:  # opened by the forces
         return -1.0
     speed = largest(s.state[V], 0.0)
-    tolerance = s.plan.atol + s.plan.rtol * largest(s.state[Q], 0.0)
+    tolerance = gap_tolerance(s, c)
     slow = u <= s.plan.atol + s.plan.rtol * speed
     low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
     if slow and low:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.dense import assign, largest
+from lcpstep.dense import assign
 from lcpstep.events.bookkeeping import (
     BUFFER_FULL,
     EVENT,
@@ -30,7 +30,7 @@ from lcpstep.events.several.forces import CONTRADICTION, DONE, contact_forces
 from lcpstep.events.several.held import constrain, hold_contacts, note
 from lcpstep.events.several.impact import speed_noise, strike
 from lcpstep.events.several.keep import keep_event, log
-from lcpstep.events.several.motion import lift, rebase
+from lcpstep.events.several.motion import gap_tolerance, lift, rebase
 from lcpstep.events.several.parabolas import polish, synchronise
 from lcpstep.events.several.state import (
     ACCELERATION,
@@ -53,7 +53,6 @@ from lcpstep.events.several.state import (
     STRUCK,
     TERMS,
     WAS_CLOSED,
-    Q,
 )
 
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -91,10 +90,10 @@ def jump(s: Any, record: Any, count: Any) -> int:
 
 def approaches(s: Any) -> bool:
     """Whether a contact on the surface approaches it; one there without speed to rounding is closed."""
-    hit, tolerance = False, touching(s)
+    hit = False
     for c in range(len(s.G)):
         u = s.contact[SPEED, c]
-        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] <= tolerance:
+        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] <= touching(s, c):
             noise = speed_noise(s, c)
             if u <= noise:
                 if not s.constant:
@@ -107,9 +106,9 @@ def approaches(s: Any) -> bool:
     return hit
 
 
-def touching(s: Any) -> float:
-    """Gaps that are closed: zero where they are followed exactly, else below the tolerance."""
-    return 0.0 if s.constant else s.plan.atol + s.plan.rtol * largest(s.state[Q], 1.0)
+def touching(s: Any, c: int) -> float:
+    """The gap below which a contact is closed: zero where gaps are followed exactly, else the tolerance."""
+    return 0.0 if s.constant else gap_tolerance(s, c)
 
 
 def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from lcpstep.dense import assign, join, split
@@ -52,6 +53,16 @@ def lift(s: Any, c: int) -> None:
     for j in range(s.state.shape[1]):
         s.state[Q, j] -= s.MR[i, j] * s.contact[GAP, c] / s.D[i, i]
     s.contact[GAP, c] = 0.0
+
+
+def gap_tolerance(s: Any, c: int) -> float:
+    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance."""
+    i, least = len(s.J) + c, math.inf
+    for j in range(s.state.shape[1]):
+        moved = abs(s.MR[i, j])
+        if moved > 0.0:
+            least = min(least, (s.plan.atol + s.plan.rtol * abs(s.state[Q, j])) * s.D[i, i] / moved)
+    return least
 
 
 def press(s: Any, tau: float) -> None:

@@ -23,6 +23,7 @@ from lcpstep.events.dop853 import (
     LEAST,
     STAGES,
     combine,
+    dense_error,
     error_norm,
     factor,
     interpolant,
@@ -63,7 +64,7 @@ from lcpstep.events.several.state import (
 )
 
 PARTS = 4  # scan intervals of a step
-REFINEMENTS = 4  # of an event's time by repeated steps
+REFINEMENTS = 3  # of an event's time by repeated steps
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 
 
@@ -136,6 +137,11 @@ def take_step(s: Any, count: Any, longest: float) -> float:
             return -float(STEP_TOO_SMALL)
         error = error_norm(w, h, s.plan.rtol, s.plan.atol) if good else math.inf
         if error <= 1.0:
+            if not dense_stages(s, h):
+                return -float(NOT_FINITE)
+            count[FORCES] += EXTRA_STAGES
+            error = max(error, dense_error(w, h, s.plan.rtol, s.plan.atol))
+        if error <= 1.0:
             break
         # rows held may become dependent, or a force infinite, beyond what a shorter step reaches
         h *= max(LEAST, factor(error)) if math.isfinite(error) else LEAST
@@ -143,9 +149,6 @@ def take_step(s: Any, count: Any, longest: float) -> float:
         if not refuse(w, t, s.plan.scan) or h <= 4.0 * RESOLUTION * max(abs(t), s.plan.scan):
             return -float(STEP_TOO_SMALL if good and math.isfinite(error) else NOT_FINITE)
     s.x[NEXT_STEP] = max(h * factor(error), s.x[NEXT_STEP] if truncated else 0.0)
-    if not dense_stages(s, h):
-        return -float(NOT_FINITE)
-    count[FORCES] += EXTRA_STAGES
     return h
 
 
@@ -176,18 +179,21 @@ def dense_stages(s: Any, h: float) -> bool:
 
 
 def shorten(s: Any, c: int, tau: float, kind: int) -> float:
-    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface."""
-    for _ in range(REFINEMENTS):
-        stages(s, tau)
+    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface.
+
+    The last repetition is not corrected any more: what is returned is the length of the step whose end is the state.
+    """
+    stages(s, tau)
+    for _ in range(REFINEMENTS if kind == MEETS else 0):
         dense_stages(s, tau)
-        if kind != MEETS:
-            break
         observe(s, tau)
         g, u = s.contact[GAP, c], s.contact[SPEED, c]
         correction = -g / u if u < 0.0 else 0.0
         if abs(correction) <= 2.0 * RESOLUTION * (abs(s.x[T0]) + tau) or abs(correction) > 1e-3 * tau:
             break
         tau += correction
+        stages(s, tau)
+    dense_stages(s, tau)
     return tau
 
 

@@ -13,6 +13,7 @@ from lcpstep.events.dop853 import (
     LEAST,
     STAGES,
     combine,
+    dense_error,
     error_norm,
     factor,
     interpolant,
@@ -39,6 +40,11 @@ def take_step(s: Any, count: Any, longest: float) -> float:
         if error - error != 0.0:
             return -float(NOT_FINITE)
         if error <= 1.0:
+            if not rk_dense(s, s.x[NOW], h):
+                return -float(NOT_FINITE)
+            count[FORCES] += EXTRA_STAGES
+            error = max(error, dense_error(s.w, h, s.plan.rtol, s.plan.atol))
+        if error <= 1.0:
             break
         h *= max(LEAST, factor(error))
         truncated = first = False
@@ -46,9 +52,6 @@ def take_step(s: Any, count: Any, longest: float) -> float:
         if not refuse(s.w, s.x[NOW], s.plan.scan) or h <= smallest:
             return -float(STEP_TOO_SMALL)
     s.x[NEXT_STEP] = max(h * factor(error), s.x[NEXT_STEP] if truncated else 0.0)
-    if not rk_dense(s, s.x[NOW], h):
-        return -float(NOT_FINITE)
-    count[FORCES] += EXTRA_STAGES
     return h
 
 
