@@ -99,7 +99,7 @@ def test_the_first_arc_of_a_cam_without_symmetry_begins_at_zero():
 def test_the_cam_is_pushed_up_from_the_very_start_of_the_lift():
     scene, out = scenes.cam_follower(rpm=358.0), np.zeros((1, 3))
     scene.system.frame(0.0, scene.q0, scene.v0, scene.p, out)
-    c, dc, ddc = cam_lift(mpf(math.pi / 2), mpf(math.pi / 2 + ONE_SIDED))
+    _, _, ddc = cam_lift(mpf(math.pi / 2), mpf(math.pi / 2 + ONE_SIDED))
     assert out[0, 2] == pytest.approx(float(ddc) * (2 * math.pi * 358 / 60) ** 2, rel=1e-13)
     assert out[0, 2] == pytest.approx(297.6, abs=0.05)
 
