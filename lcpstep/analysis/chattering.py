@@ -10,7 +10,7 @@ Systems, section 4.3.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ from lcpstep.trajectory import Kind, Status
 
 Array = NDArray[np.float64]
 Family = Callable[[float], Scene]
+Phases = dict[tuple[int, str, int], float]
 FORGOTTEN = 4  # periods after which a motion that sticks has forgotten its start
 ROOT = 1e-12  # relative accuracy of a crossing
 AT_CORNER = 1e-11  # of the period: an event this near to a corner lies on it
@@ -127,7 +128,8 @@ def corner_crossings(
 
     Returns
     -------
-    crossings by increasing parameter, each located to 1e-12 of it
+    crossings by increasing parameter, each located to 1e-12 of it; beyond it the event may be elsewhere, or the
+    sequence without an end
 
     Raises
     ------
@@ -138,76 +140,105 @@ def corner_crossings(
         raise ValueError(f"p_range: expected low < high, got {p_range!r}")
     if checks.count("points", points) < 2:
         raise ValueError(f"points: expected at least 2, got {points}")
-    grid = np.linspace(low, high, points)
-    before: dict[tuple[int, str, int, int], float] = {}
+    followed = _Followed(make, impacts, method)
     found: list[Crossing] = []
+    before: Phases = {}
+    grid = [float(p) for p in np.linspace(low, high, points)]
     for k, p in enumerate(grid):
-        now = _distances(make(float(p)), impacts, method)
-        for key in before.keys() & now.keys():
-            a, b = _off(before[key]), _off(now[key])
-            if a * b <= 0.0 and abs(a - b) < 0.5 and (a, b) != (0.0, 0.0):
-                root = _located(
-                    make, key, float(grid[k - 1]), float(p), before[key], now[key], impacts, method
-                )
-                if root is not None:
-                    found.append(Crossing(*key, root))
+        now = followed.phases(p)
+        if k > 0:
+            found += followed.crossings(grid[k - 1], p, before, now)
+            found += followed.ends(grid[k - 1], p, before, now) + followed.ends(p, grid[k - 1], now, before)
         before = now
         if progress is not None:
-            progress(float(p))
+            progress(p)
     return sorted(found, key=lambda c: c.p)
 
 
-def _distances(
-    scene: Scene, impacts: int, method: EventDriven | None
-) -> dict[tuple[int, str, int, int], float]:
-    """From each corner to each followed event, as shares of the period in [-1/2, 1/2)."""
-    corners = np.asarray(scene.corners) / scene.period
+@dataclass(frozen=True, eq=False)
+class _Followed:
+    """The chattering sequences of a family of scenes, and what is followed of them."""
 
-    def events(s: Sequence) -> Iterator[tuple[str, int, float]]:
-        yield "release", 0, s.release
-        for j, phase in enumerate(s.impacts[:impacts]):
-            yield "impact", j + 1, float(phase)
-        yield "accumulation", 0, s.accumulation
+    make: Family
+    impacts: int
+    method: EventDriven | None
 
-    return {
-        (i, event, number, c): float((phase - corner + 0.5) % 1.0 - 0.5)
-        for i, s in enumerate(sequences(scene, method))
-        for event, number, phase in events(s)
-        for c, corner in enumerate(corners)
-    }
+    def phases(self, p: float) -> Phases:
+        """Phase of each followed event, by sequence, kind and number."""
+        found = {}
+        for i, s in enumerate(sequences(self.make(p), self.method)):
+            found[i, "release", 0] = s.release
+            found[i, "accumulation", 0] = s.accumulation
+            found |= {(i, "impact", j + 1): float(x) for j, x in enumerate(s.impacts[: self.impacts])}
+        return found
+
+    def corners(self, p: float) -> Array:
+        """Phases of the corners."""
+        scene = self.make(p)
+        return np.asarray(scene.corners) / scene.period
+
+    def crossings(self, a: float, b: float, at_a: Phases, at_b: Phases) -> list[Crossing]:
+        """Events that are there at both ends of an interval, on the two sides of a corner."""
+        found = []
+        for event in at_a.keys() & at_b.keys():
+            for c, (corner_a, corner_b) in enumerate(zip(self.corners(a), self.corners(b), strict=True)):
+                start, end = _distance(at_a[event], corner_a), _distance(at_b[event], corner_b)
+                if _off(start) * _off(end) <= 0.0 and abs(start - end) < 0.5 and _off(start) != _off(end):
+                    p = self.located(event, c, a, b, start, end)
+                    if p is not None:
+                        found.append(Crossing(*event, c, p))
+        return found
+
+    def located(
+        self, event: tuple[int, str, int], c: int, a: float, b: float, start: float, end: float
+    ) -> float | None:
+        """The parameter between a and b at which an event comes to corner c; None where it jumps across it.
+
+        start, end : its distance at a and b
+        """
+        from scipy.optimize import brentq
+
+        def distance(p: float) -> float:
+            phase = self.phases(p).get(event)
+            if phase is None:
+                raise LcpStepError("lost")
+            d = _distance(phase, self.corners(p)[c])
+            return abs(d) - AT_CORNER if stays else d
+
+        stays = _off(start) == 0.0 or _off(end) == 0.0
+        try:
+            p = float(brentq(distance, a, b, xtol=ROOT * abs(b), rtol=4.0 * np.finfo(float).eps))
+            # Where it jumps once it has passed the corner, one side comes near
+            near = min(abs(distance(min(max(p + k * ROOT * abs(b), a), b))) for k in (0, -2, 2))
+        except LcpStepError:  # the event is not there all the way
+            return None
+        return p if near <= REACHED else None
+
+    def ends(self, a: float, b: float, at_a: Phases, at_b: Phases) -> list[Crossing]:
+        """Events on a corner where their sequence, which is there at a and not at b, ends to be."""
+        found = []
+        for i in {event[0] for event in at_a} - {event[0] for event in at_b}:
+            there, gone, last = a, b, at_a
+            while abs(there - gone) > ROOT * abs(b):
+                p = 0.5 * (there + gone)
+                now = self.phases(p)
+                if (i, "release", 0) in now:
+                    there, last = p, now
+                else:
+                    gone = p
+            for event in (e for e in last if e[0] == i):
+                for c, corner in enumerate(self.corners(there)):
+                    near = abs(_distance(last[event], corner)) <= REACHED
+                    if near and event[1] != "release":
+                        found.append(Crossing(*event, c, 0.5 * (there + gone)))
+        return found
+
+
+def _distance(phase: float, corner: float) -> float:
+    """From a corner to an event, as share of the period in [-1/2, 1/2)."""
+    return float((phase - corner + 0.5) % 1.0 - 0.5)
 
 
 def _off(distance: float) -> float:
     """A distance of which rounding is taken for zero: a release may stay on a corner over a range of parameters."""
     return 0.0 if abs(distance) <= AT_CORNER else distance
-
-
-def _located(
-    make: Family,
-    key: tuple[int, str, int, int],
-    a: float,
-    b: float,
-    start: float,
-    end: float,
-    impacts: int,
-    method: EventDriven | None,
-) -> float | None:
-    """The parameter between a and b at which an event comes to its corner; None where it jumps across it.
-
-    start, end : its distance at a and b
-    """
-    from scipy.optimize import brentq
-
-    def distance(p: float) -> float:
-        found = _distances(make(p), impacts, method)
-        if key not in found:
-            raise LcpStepError("lost")
-        return abs(found[key]) - AT_CORNER if stays else found[key]
-
-    stays = _off(start) == 0.0 or _off(end) == 0.0
-    try:
-        p = float(brentq(distance, a, b, xtol=ROOT * abs(b), rtol=4.0 * np.finfo(float).eps))
-        near = distance(p)
-    except LcpStepError:  # the event is not there all the way
-        return None
-    return p if abs(near) <= REACHED else None

@@ -1,0 +1,93 @@
+"""Where chattering sequences of the cam-follower end: against 110 digits, at corners of the cam above all."""
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from lagrangian import scenes
+from lcpstep import EventDriven
+from lcpstep.analysis.chattering import corner_crossings, sequences
+from tests.cam_sequences import sequences as exact_sequences
+
+# Speeds at which the end of a sequence meets a corner, by bisection of `cam_sequences` [rpm]
+FLAT = 119.712481039598336  # nose to top dwell, on the way up; the cam presses on both sides
+EDGE = 136.312372392873732  # top dwell to nose: beyond it the cam falls away, and the sequence goes on
+LAST = 198.560511431792319  # flank to nose, one turn later: beyond it no sequence ends
+MEETINGS = [(FLAT, 2), (EDGE, 3), (LAST, 1)]
+
+
+def resting(rpm):
+    return scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0)
+
+
+def assert_sequences_are_exact(rpm, turns, method=None, most=100):
+    cam, exact = exact_sequences(rpm, turns, most)
+    found = sequences(resting(rpm), method)[:most]
+    ended = [s for s in exact if s[2] is not None][: len(found)]
+    assert len(found) == len(ended) > 0
+    with mp.workdps(30):
+        for s, (release, impacts, end) in zip(found, ended, strict=True):
+            assert s.release == pytest.approx(float(release / cam.period % 1), abs=1e-14)
+            assert s.accumulation == pytest.approx(float(end / cam.period % 1), abs=4e-12)
+            followed = [float(t / cam.period % 1) for t, _ in impacts[: len(s.impacts)]]
+            np.testing.assert_allclose(s.impacts, followed, rtol=0, atol=4e-12)
+
+
+@pytest.mark.parametrize("rpm", [115.0, 119.7125])
+def test_sequences_that_end_near_a_corner_agree_with_many_digits(rpm):
+    assert_sequences_are_exact(rpm, 1, most=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rpm", [114.98, 115.2, 118.0, 119.7, 119.712, 119.71248, 119.7125, 119.713, 119.73])
+@pytest.mark.parametrize("method", [EventDriven(), EventDriven(rtol=1e-13, atol=1e-14)])
+def test_sequences_of_slow_cams(rpm, method):
+    assert_sequences_are_exact(rpm, 1, method)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "rpm",
+    [134.9, 136.3, 136.37, 136.4, 160.0, 171.0, 172.0, 175.0, 178.0, 180.0, 191.0, 195.0, 198.0, 198.56],
+)
+def test_sequences_of_faster_cams(rpm):
+    assert_sequences_are_exact(rpm, 2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("speed", "corner"), MEETINGS)
+def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(speed, corner):
+    def before_the_corner(rpm):
+        cam, found = exact_sequences(rpm, 2)
+        n = corner if speed != LAST else corner + 6
+        return found[0][2] is not None and found[0][2] < cam.corner(n)
+
+    assert before_the_corner(speed * (1 - 2e-14))
+    assert not before_the_corner(speed * (1 + 2e-14))
+
+
+@pytest.mark.parametrize(("speed", "corner"), MEETINGS)
+@pytest.mark.parametrize("width", [(0.03, 0.02), (1e-3, 2e-3), (1e-6, 1e-6)])
+def test_the_end_of_a_sequence_meets_the_corner_at_that_speed_from_both_sides(speed, corner, width):
+    low, high = speed - width[0], speed + width[1]
+    found = corner_crossings(resting, (low, high), points=2, impacts=0)
+    (meeting,) = [c for c in found if (c.event, c.corner, c.sequence) == ("accumulation", corner, 0)]
+    assert meeting.p == pytest.approx(speed, rel=2e-12)
+
+
+@pytest.mark.parametrize("apart", [1e-6, 1e-8, 1e-10])
+def test_the_end_passes_a_corner_that_presses_on_both_sides_without_a_jump(apart):
+    scene = resting(FLAT)
+    corner = scene.corners[2] / scene.period
+    before = sequences(resting(FLAT * (1 - apart)))[0].accumulation - corner
+    after = sequences(resting(FLAT * (1 + apart)))[0].accumulation - corner
+    assert -1.1 * apart < before < -0.9 * apart  # it moves by 0.96 turns, relative to the speed
+    assert 0.1 * apart < after < apart  # beyond the corner it is pressed harder
+
+
+@pytest.mark.parametrize("below", [1e-9, 1e-6, 1e-3])
+@pytest.mark.parametrize("rpm", [114.9793, 114.98, 115.0, 115.05])
+def test_no_release_is_without_impact(rpm, below):
+    for s in sequences(resting(rpm * (1 + below))):
+        assert len(s.impacts) > 0
+        assert s.accumulation > s.release
