@@ -67,8 +67,10 @@ from lcpstep.stepping.located_work import (
 from lcpstep.stepping.refine import keep_closed, solve_chosen
 
 COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
-TURNS_AT_ONCE = 16  # of one contact at one instant: more are no motion but a sequence that has no end
-STRIKES_AT_ONCE = 100_000  # the same of elastic impacts
+FAINT = 1e-10  # of the velocities that have acted in a step: the end of a sequence of events at one instant
+AT_ONCE = 16  # events of one contact at one instant after which faint ones are settled,
+AT_ONCE_FAST = 1000  # all but strikes of elastic contacts,
+AT_ONCE_ELASTIC = 100_000  # and all
 
 
 @inline
@@ -115,7 +117,8 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
                 w.mark[GROUNDED, c] = LEFT
                 continue
         if w.mark[STATUS, c] == OPEN:
-            stick(m, plan, w, record, count, x, c, t)
+            stick(w, record, count, x, c, t)
+            turn(m, plan, w, x, c, 0.0, False)
         w.num[OLDER, c], w.num[OLDER_TIME, c] = force, t + 0.5 * rest
         w.num[FORCE_NOW, c] = force
     return True
@@ -203,27 +206,39 @@ def idle(x: Any, count: Any) -> None:
     count[IDLE] += 1
 
 
-def turn(m: Any, plan: Any, w: Any, x: Any, c: int, struck: bool) -> None:
-    """Note that contact c strikes, closes or opens; where it goes on so at one instant, the motion there is settled.
+def turn(m: Any, plan: Any, w: Any, x: Any, c: int, u: float, struck: bool) -> None:
+    """Note that contact c strikes, closes or opens at speed u; where that goes on for ever, the motion is settled.
 
-    An elastic contact may be struck as often as masses are unlike; only at one and the same time is that counted.
+    What goes on at one instant has no end if its speeds are faint. An elastic contact may be struck as often as
+    masses are unlike, and is counted at one and the same time only.
     """
     elastic = struck and m.restitution[c] == 1.0
     if x[SIGMA] - w.num[TURNED, c] > (0.0 if elastic else COLLAPSE * plan.h):
         w.num[TURNS, c] = 0.0
     w.num[TURNED, c] = x[SIGMA]
-    w.num[TURNS, c] += TURNS_AT_ONCE / STRIKES_AT_ONCE if elastic else 1.0
-    if w.num[TURNS, c] >= TURNS_AT_ONCE:
+    w.num[TURNS, c] += 1.0
+    if w.num[TURNS, c] < AT_ONCE:
+        return
+    if elastic:
+        most = AT_ONCE_ELASTIC
+    else:
+        most = AT_ONCE if faint(plan, w, c, u) else AT_ONCE_FAST
+    if w.num[TURNS, c] >= most:
         x[STALLED] = 1.0
 
 
-def stick(m: Any, plan: Any, w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
+@inline
+def faint(plan: Any, w: Any, c: int, u: float) -> bool:
+    """Whether a gap velocity is next to nothing beside what has acted in this step."""
+    return abs(u) <= FAINT * speed_terms(plan, w, c)
+
+
+def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
     """A contact stays closed from here on."""
     w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
     x[CLOSED_NOW] += 1
     w.num[OLDER, c] = w.num[FORCE_NOW, c] = 0.0
     log(record, count, t, c, 0.0, 0.0, 0.0, STICK)
-    turn(m, plan, w, x, c, False)
 
 
 @inline
@@ -247,7 +262,7 @@ def release(
     w.num[FORCE_NOW, c] = w.num[OLDER, c] = 0.0
     w.num[GAP, c], w.num[RATE, c] = 0.0, after
     log(record, count, t, c, 0.0, after, 0.0, RELEASE)
-    turn(m, plan, w, x, c, False)
+    turn(m, plan, w, x, c, after, False)
     x[EVENTS] += 1
 
 

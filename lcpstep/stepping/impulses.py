@@ -13,7 +13,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.stepping.contact_forces import COLLAPSE, log, release, speed_terms, stick, turn
+from lcpstep.stepping.contact_forces import (
+    AT_ONCE_FAST,
+    COLLAPSE,
+    faint,
+    log,
+    release,
+    speed_terms,
+    stick,
+    turn,
+)
 from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import pass_on
@@ -57,7 +66,9 @@ SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
-IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are an inelastic collapse
+IN_A_ROW = (
+    8  # so many impacts, each at the instant of the one before, are an inelastic collapse once they are faint
+)
 
 
 def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float, count: Any) -> int:
@@ -141,7 +152,8 @@ def closes(m: Any, plan: Any, w: Any, x: Any, c: int, alone: bool) -> bool:
     w.num[LAST, c] = x[SIGMA]
     if r == 1.0 or r == 0.0:
         return False
-    if w.mark[CLOSE_HITS, c] >= IN_A_ROW:
+    hits = w.mark[CLOSE_HITS, c]
+    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.num[RATE, c])):
         return True
     if w.num[HALF, c] >= 0.0:
         return False
@@ -207,18 +219,18 @@ def after_impact(
         return
     if p == 0.0:
         return
+    turn(m, plan, w, x, c, before, True)
     if w.mark[PLASTIC, c] == 1:
         T = 0.0
         if w.num[HALF, c] < 0.0 and w.mark[CLOSE_HITS, c] < IN_A_ROW:
             T = r * before / w.num[HALF, c] / (1.0 - r)
             p += -2.0 * w.num[HALF, c] * T / w.W[c, c]
         log(record, count, t + T, c, before, 0.0, p, ACCUMULATION)
-        stick(m, plan, w, record, count, x, c, t + T)
+        stick(w, record, count, x, c, t + T)
         return
     w.num[RATE, c] = -r * before if r > 0.0 else 0.0
     log(record, count, t, c, before, w.num[RATE, c], p, IMPACT)
-    turn(m, plan, w, x, c, True)
     if r == 0.0:
-        stick(m, plan, w, record, count, x, c, t)
+        stick(w, record, count, x, c, t)
     elif before == 0.0:
         x[TOUCHING] = 1.0

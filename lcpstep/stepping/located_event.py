@@ -6,7 +6,7 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, product
-from lcpstep.stepping.contact_forces import idle, speed_terms, stick
+from lcpstep.stepping.contact_forces import idle, speed_terms, stick, turn
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
@@ -44,7 +44,8 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
     if c != CORNER and w.num[RATE, c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
         if w.num[RATE, c] <= ROUNDING * speed_terms(plan, w, c):
-            stick(m, plan, w, record, count, x, c, now)
+            stick(w, record, count, x, c, now)
+            turn(m, plan, w, x, c, 0.0, False)
         idle(x, count)
         return FINISHED
     if not plan.constant:

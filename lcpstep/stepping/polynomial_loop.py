@@ -12,7 +12,7 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
-from lcpstep.stepping.contact_forces import hold, idle, release, speed_terms, stick
+from lcpstep.stepping.contact_forces import hold, idle, release, speed_terms, stick, turn
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
@@ -310,7 +310,8 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
     if c != CORNER and w.num[RATE, c] >= -still:
         w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
         if w.num[RATE, c] <= still or x[SIGMA] - w.num[LAST, c] <= SLOW * plan.h:
-            stick(m, plan, w, record, count, x, c, t)
+            stick(w, record, count, x, c, t)
+            turn(m, plan, w, x, c, 0.0, False)
         w.num[LAST, c] = x[SIGMA]
         idle(x, count)
         return FINISHED

@@ -158,7 +158,7 @@ def note(
                 IMPACT,
             )
             if touches:
-                stick(m, plan, w, record, count, x, c, end)
+                stick(w, record, count, x, c, end)
         elif closed and not pressed and w.num[RATE, c] > ROUNDING * speed_terms(plan, w, c):
             release(m, plan, w, record, count, x, c, end, w.num[RATE, c])
         if w.mark[STATUS, c] == CLOSED:
