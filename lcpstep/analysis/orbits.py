@@ -19,7 +19,7 @@ from lcpstep.analysis.derivative import derivative
 from lcpstep.analysis.fixed_points import multipliers, periodic_point
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulate import Method, fitted, simulate
 
 Array = NDArray[np.float64]
 SAMPLES = 64  # of the gap per period, between impacts
@@ -160,7 +160,7 @@ def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
     span = (t, t + (phase - orbit.phase) % 1.0 * T)
     if span[1] <= span[0]:
         return orbit
-    run = simulate(_started(orbit.scene, orbit.x[0], span), orbit.method, keep=[span[1]])
+    run = simulate(_started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
     x = np.concatenate([run.q[-1], run.v[-1]])
     return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)
 
