@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import CellType, FunctionType
 from typing import Any
 
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
 MANY = 50  # numbers in a message
+ASYMMETRY = 1e-12  # of the largest entry: what rounding may leave
 
 
 def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -32,8 +34,8 @@ def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
 def number(name: str, value: Any, *, least: float = -np.inf, most: float = np.inf) -> float:
     """A finite real number within [least, most]."""
     try:
-        result = float(value)
-    except (TypeError, ValueError):
+        result = _real(name, value).item()
+    except ValueError:
         raise ValueError(f"{name}: expected a number, got {value!r}") from None
     if not np.isfinite(result):
         raise ValueError(f"{name}: expected a finite number, got {value!r}")
@@ -59,9 +61,11 @@ def matrix(name: str, value: ArrayLike) -> Array:
 
 
 def _real(name: str, value: ArrayLike) -> Array:
+    """Numbers, and nothing that could be taken for such: no text, no truth values, nothing masked."""
     try:
         given = np.array(value)
-        if np.iscomplexobj(given):
+        texts = given.dtype == object and any(isinstance(x, (str, bytes, bool)) for x in given.flat)
+        if given.dtype.kind not in "iufO" or texts or np.ma.is_masked(value):
             raise TypeError
         return np.array(given, dtype=np.float64)
     except (TypeError, ValueError):
@@ -100,10 +104,39 @@ def count(name: str, value: Any) -> int:
     return result
 
 
+def period(value: Any) -> float:
+    """A positive time, or infinity where nothing repeats."""
+    try:
+        result = float(_real("period", value).item())
+    except ValueError:
+        result = math.nan
+    if not result > 0.0:
+        raise ValueError(f"period: expected a positive time or math.inf, got {value!r}")
+    return result
+
+
+def instance(name: str, value: Any, *kinds: type) -> None:
+    """TypeError for an object of another class."""
+    if not isinstance(value, kinds):
+        raise TypeError(f"{name}: expected a {' or '.join(kind.__name__ for kind in kinds)}, got {value!r}")
+
+
+def symmetric(name: str, value: Array) -> Array:
+    """A symmetric matrix up to rounding, or an error that names the two entries that are furthest apart."""
+    apart = np.abs(value - value.T)
+    if np.max(apart, initial=0.0) > ASYMMETRY * np.max(np.abs(value), initial=0.0):
+        i, j = sorted(np.unravel_index(int(np.argmax(apart)), apart.shape))
+        raise ValueError(
+            f"{name}: expected a symmetric matrix, got {value[i, j]:g} in row {i}, column {j} and {value[j, i]:g} in "
+            f"row {j}, column {i}; forces without a potential are given by lagrangian.System"
+        )
+    return value
+
+
 def mass_matrix(name: str, value: Array) -> Array:
     """A symmetric positive definite matrix, or an error that says which of the two it is not."""
     scale = np.max(np.abs(value), initial=0.0)
-    if not np.allclose(value, value.T, rtol=0.0, atol=1e-12 * scale):
+    if not np.allclose(value, value.T, rtol=0.0, atol=ASYMMETRY * scale):
         raise ValueError(f"{name}: the mass matrix must be symmetric, got\n{value}")
     lowest = float(np.linalg.eigvalsh(value)[0])
     if lowest <= 0.0:
@@ -164,6 +197,23 @@ def python(f: Any, callers: tuple[Any, ...] = ()) -> Any:
     copy = FunctionType(f.__code__, f.__globals__ | fast, f.__name__, f.__defaults__, closure)
     copy.__kwdefaults__ = f.__kwdefaults__
     return copy
+
+
+def numbers(parameters: Mapping[str, Any]) -> list[Any]:
+    """The values of parameters that are no text; those of switches as 0 and 1."""
+    return [float(x) if isinstance(x, bool) else x for x in parameters.values() if not isinstance(x, str)]
+
+
+class ReadOnly(dict[str, Any]):
+    """A dictionary that stays as it is; copies and pickles are like it, and `dict(x)` is one that can be changed."""
+
+    def _refuse(self, *arguments: Any, **keywords: Any) -> Any:
+        raise TypeError("parameters: what has been made from them would not change; make another scene")
+
+    __setitem__ = __delitem__ = __ior__ = update = setdefault = pop = popitem = clear = _refuse
+
+    def __reduce__(self) -> Any:
+        return ReadOnly, (dict(self),)
 
 
 def shown(x: NDArray[Any]) -> str:

@@ -34,7 +34,8 @@ class LinearContacts:
 
     Raises
     ------
-    ValueError   a shape does not fit, a number is not finite, or a restitution lies outside [0, 1]
+    ValueError   a shape does not fit, a number is not finite, a row of G is zero, or a restitution lies outside of
+        [0, 1]
     """
 
     G: ArrayLike
@@ -46,9 +47,13 @@ class LinearContacts:
     def __post_init__(self) -> None:
         read = sparse.matrix if self.sparse else checks.matrix
         object.__setattr__(self, "G", read("G", self.G))
+        empty = sparse.empty_rows(self.G) if self.sparse else np.flatnonzero(~np.any(self.G, axis=1))
+        if len(empty):
+            raise ValueError(f"G: row {empty[0]} is zero: the gap depends on no coordinate")
         object.__setattr__(self, "offset", checks.per_contact("offset", self.offset, self.n_c))
         object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
         if self.friction is not None:
+            checks.instance("friction", self.friction, Coulomb)
             object.__setattr__(self, "friction", self.friction.fitted(self.n_c))
 
     @property
@@ -108,6 +113,7 @@ class Contacts:
         object.__setattr__(self, "n_c", checks.count("n_c", self.n_c))
         object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
         if self.friction is not None:
+            checks.instance("friction", self.friction, Coulomb)
             object.__setattr__(self, "friction", self.friction.fitted(self.n_c))
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:

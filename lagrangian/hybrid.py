@@ -208,7 +208,8 @@ class HybridScene:
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
             raise TypeError(f"system: expected a lagrangian.HybridSystem, got {self.system!r}")
-        p = [x for x in self.parameters.values() if not isinstance(x, str)] if self.p is None else self.p
+        p = checks.numbers(self.parameters) if self.p is None else self.p
+        object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         object.__setattr__(self, "x0", checks.array("x0", self.x0, (self.system.n_x,)))
         object.__setattr__(self, "p", checks.vector("p", p))
         if self.mode not in self.system.names:
@@ -217,8 +218,7 @@ class HybridScene:
         if not span[0] < span[1]:
             raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
         object.__setattr__(self, "t_span", (float(span[0]), float(span[1])))
-        if not self.period > 0.0:
-            raise ValueError(f"period: expected a positive time or math.inf, got {self.period!r}")
+        object.__setattr__(self, "period", checks.period(self.period))
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
 
     def started(self, x0: ArrayLike, mode: str, t_span: tuple[float, float] | None = None) -> HybridScene:

@@ -15,7 +15,7 @@ from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
 from lagrangian.relations import check_derivatives
-from lagrangian.system import LinearSystem, System
+from lagrangian.system import Harmonic, LinearSystem, System
 
 ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
 EXACT_START = 1e-9  # how near a motion in closed form must start to the initial state
@@ -34,9 +34,9 @@ class Scene:
     contacts : LinearContacts, Contacts, or None for a system that meets nothing
     joints : LinearJoints, Joints, or None   bilateral constraints, which the initial state must satisfy
     p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given
-    parameters : names and values of the scene's parameters, for reports
+    parameters : names and values of the scene's parameters, for reports; read-only
     corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
-    period : period of the forcing [s], math.inf where nothing repeats
+    period : period of the forcing [s], a whole number of turns of a `Harmonic` force; math.inf where nothing repeats
     name : a short name, for reports
     exact : function of times (m,) giving q and v, each (m, n_q), or None
         The motion from q0, v0 where it is known in closed form; v is the right limit at an impact. One that does
@@ -45,8 +45,10 @@ class Scene:
 
     Raises
     ------
-    ValueError   a shape does not fit, a callback fails, or the initial state lies inside an obstacle or
-        off a joint; the message names the argument
+    TypeError   system, contacts or joints are none
+    ValueError   a shape does not fit, a callback fails, a derivative does not belong to its function, the period is
+        not that of the force, or the initial state lies inside an obstacle or off a joint; the message names the
+        argument
     """
 
     system: LinearSystem | System
@@ -63,8 +65,10 @@ class Scene:
     exact: Callable[[Array], tuple[Array, Array]] | None = None
 
     def __post_init__(self) -> None:
+        self._check_parts()
         n_q = self.system.n_q
-        p = [x for x in self.parameters.values() if not isinstance(x, str)] if self.p is None else self.p
+        p = checks.numbers(self.parameters) if self.p is None else self.p
+        object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         corners = np.sort(checks.vector("corners", self.corners))
         object.__setattr__(self, "q0", checks.array("q0", self.q0, (n_q,)))
         object.__setattr__(self, "v0", checks.array("v0", self.v0, (n_q,)))
@@ -103,6 +107,13 @@ class Scene:
         state = checks.array("q", q, (self.n_q,)), checks.array("v", v, (self.n_q,))
         return self.contacts.state(float(t), *state, np.array(self.p))
 
+    def _check_parts(self) -> None:
+        checks.instance("system", self.system, LinearSystem, System)
+        if self.contacts is not None:
+            checks.instance("contacts", self.contacts, LinearContacts, Contacts)
+        if self.joints is not None:
+            checks.instance("joints", self.joints, LinearJoints, Joints)
+
     def _check_times(self) -> None:
         span = checks.vector("t_span", self.t_span)
         if len(span) != 2:
@@ -111,8 +122,13 @@ class Scene:
         if not t_start < t_end:
             raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
         object.__setattr__(self, "t_span", (t_start, t_end))
-        if not (isinstance(self.period, (int, float, np.number)) and self.period > 0.0):
-            raise ValueError(f"period: expected a positive time or math.inf, got {self.period!r}")
+        object.__setattr__(self, "period", checks.period(self.period))
+        force = getattr(self.system, "force", None)
+        if isinstance(force, Harmonic) and not force.repeats_after(self.period):
+            raise ValueError(
+                f"period: {self.period!r} s are no whole number of turns of the force, which takes "
+                f"{2.0 * math.pi / abs(force.omega):.9g} s for one (omega = {force.omega!r})"
+            )
         corners = np.asarray(self.corners)
         if math.isfinite(self.period) and np.any((corners < 0.0) | (corners >= self.period)):
             raise ValueError(f"corners: expected times in [0, {self.period}), got {corners.tolist()}")

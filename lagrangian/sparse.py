@@ -54,6 +54,22 @@ def zero(n: int) -> Any:
     return matrix("zero", csr_array((n, n)))
 
 
+def symmetric(name: str, K: Any) -> Any:
+    """A symmetric matrix up to rounding, or an error that says that it is not."""
+    difference = abs(K - K.T)
+    if difference.nnz and difference.max() > ASYMMETRY * abs(K).max():
+        raise ValueError(
+            f"{name}: expected a symmetric matrix, got one with entries {difference.max():g} apart from their mirror "
+            f"images; forces without a potential are given by lagrangian.System"
+        )
+    return K
+
+
+def empty_rows(G: Any) -> Any:
+    """Numbers of the rows without an entry that is not zero."""
+    return np.flatnonzero(abs(G).sum(axis=1) == 0.0)
+
+
 def mass_matrix(name: str, M: Any) -> Any:
     """A symmetric positive definite matrix, or an error that says which of the two it is not."""
     difference = abs(M - M.T)

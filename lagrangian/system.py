@@ -12,6 +12,7 @@ time t, coordinates q (n_q,), velocities v (n_q,) and the scene's parameters p (
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,8 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
+
+TURN = 1e-6  # by how much a period may differ from whole turns of the force
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +48,13 @@ class Harmonic:
         checks.number("force.omega", self.omega)
         return constant, cosine, sine
 
+    def repeats_after(self, period: float) -> bool:
+        """Whether the force is the same a period later; infinity is no period."""
+        if not (np.any(self.cosine) or np.any(self.sine)) or self.omega == 0.0 or math.isinf(period):
+            return True
+        turns = abs(self.omega) * period / (2.0 * math.pi)
+        return round(turns) >= 1 and abs(turns - round(turns)) <= TURN
+
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
@@ -53,7 +63,7 @@ class LinearSystem:
     Parameters
     ----------
     M : (n_q, n_q)   symmetric positive definite mass matrix [kg]
-    C, K : (n_q, n_q)   damping [N s/m] and stiffness [N/m]; None for zero
+    C, K : (n_q, n_q)   damping and gyroscopic terms [N s/m], and stiffness, symmetric [N/m]; None for zero
         If one of M, C, K is a scipy.sparse matrix, all are kept as such, and `Moreau` makes none of them dense.
     force : Harmonic, (n_q,) constant force, callback filling out (n_q,), or None   F(t) [N]
     frame : callback filling out (n_q, 3), or None
@@ -62,7 +72,8 @@ class LinearSystem:
 
     Raises
     ------
-    ValueError   a shape does not fit, a number is not finite, or M is not symmetric positive definite
+    ValueError   a shape does not fit, a number is not finite, M is not symmetric positive definite, or K is not
+        symmetric
     """
 
     M: ArrayLike
@@ -80,7 +91,8 @@ class LinearSystem:
             zero = np.zeros(square)
             object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
             object.__setattr__(self, "C", checks.array("C", zero if self.C is None else self.C, square))
-            object.__setattr__(self, "K", checks.array("K", zero if self.K is None else self.K, square))
+            K = checks.array("K", zero if self.K is None else self.K, square)
+            object.__setattr__(self, "K", checks.symmetric("K", K))
         if not callable(self.force):
             force = self.force if self.force is not None else 0.0
             force = force if isinstance(force, Harmonic) else Harmonic(constant=force)
@@ -94,6 +106,7 @@ class LinearSystem:
         for name, value in (("C", self.C), ("K", self.K)):
             kept = sparse.zero(len(M.indptr) - 1) if value is None else sparse.matrix(name, value, square)
             object.__setattr__(self, name, kept)
+        sparse.symmetric("K", self.K)
 
     @property
     def sparse(self) -> bool:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulate import Method, fitted, simulate
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
@@ -102,7 +102,8 @@ def compare(
 def timed(scene: Scene, method: Method, progress: Callable[[float], None] | None = None) -> Timed:
     """A run and its wall time; one short run before it takes the compilation."""
     t_start, t_end = scene.t_span
-    simulate(replace(scene, t_span=(t_start, t_start + 1e-6 * (t_end - t_start))), method)
+    short = replace(scene, t_span=(t_start, t_start + 1e-6 * (t_end - t_start)))
+    simulate(short, fitted(method, short.t_span))
     start = time.perf_counter()
     trajectory = simulate(scene, method, progress=progress)
     return Timed(trajectory, time.perf_counter() - start)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Protocol, overload
+from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 
 from lagrangian import HybridScene, Scene
 from lcpstep.errors import LcpStepError, SimulationError
@@ -23,6 +23,13 @@ class Method(Protocol):
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene."""
+
+
+def fitted(method: Method, t_span: tuple[float, float]) -> Method:
+    """The method with no longer step than a span that is not of the user's choice."""
+    h = getattr(method, "h", 0.0)
+    fits = h <= t_span[1] - t_span[0]
+    return method if fits else cast(Method, replace(cast(Any, method), h=t_span[1] - t_span[0]))
 
 
 @overload

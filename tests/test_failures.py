@@ -1,6 +1,7 @@
 """What goes wrong during a run: named, with time and state, and without losing what was computed before."""
 
 import math
+from dataclasses import replace
 from importlib.metadata import metadata
 
 import numpy as np
@@ -301,10 +302,18 @@ def test_a_step_below_the_resolution_of_time_is_refused(method):
         run(FALLING, FLOOR, method)
 
 
-@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2)])
-def test_a_span_much_shorter_than_a_step_takes_one(method):
-    m = simulate(Scene(FALLING, 1.0, -1.0, (0.0, 1e-13), FLOOR), method)
+@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2), Located(1e-2, order=4)])
+def test_a_step_longer_than_the_span_is_refused(method):
+    scene = Scene(FALLING, 1.0, -1.0, (0.0, 9.9e-3), FLOOR)
+    with pytest.raises(LcpStepError, match=r"^h: steps of 0\.01 s are longer than the span of 0\.0099 s"):
+        simulate(scene, method)
+    m = simulate(scene, replace(method, h=9.9e-3))
     assert m.counts.steps == 1
+    assert m.t[-1] == 9.9e-3
+
+
+def test_the_longest_step_of_a_tolerance_may_be_longer_than_the_span():
+    m = simulate(Scene(FALLING, 1.0, -1.0, (0.0, 1e-13), FLOOR), Moreau(1e-2, tolerance=1e-6))
     assert m.t[-1] == 1e-13
     np.testing.assert_allclose(m.q[-1] - 1.0, -1e-13, rtol=1e-2)
 

@@ -21,7 +21,7 @@ from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulate import Method, fitted, simulate
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -166,7 +166,7 @@ def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
     span = (t, t + (phase - orbit.phase) % 1.0 * T)
     if span[1] <= span[0]:
         return orbit
-    run = simulate(_started(orbit.scene, orbit.x[0], span), orbit.method, keep=[span[1]])
+    run = simulate(_started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
     x = np.concatenate([run.q[-1], run.v[-1]])
     return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)
 

@@ -59,7 +59,10 @@ class EventDriven:
     def __post_init__(self) -> None:
         object.__setattr__(self, "rtol", checks.number("rtol", self.rtol, least=LEAST_TOLERANCE, most=1.0))
         object.__setattr__(self, "atol", checks.positive("atol", self.atol))
-        object.__setattr__(self, "max_events", int(checks.number("max_events", self.max_events, least=1)))
+        most = checks.number("max_events", self.max_events, least=1)
+        if most != int(most):
+            raise ValueError(f"max_events: expected a whole number, got {self.max_events!r}")
+        object.__setattr__(self, "max_events", int(most))
 
     def run_hybrid(
         self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]

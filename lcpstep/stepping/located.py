@@ -37,7 +37,7 @@ from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.located_piece import pressed
 from lcpstep.stepping.race import race
-from lcpstep.stepping.steps import WHOLE, check_resolved, divided
+from lcpstep.stepping.steps import WHOLE, check_steps, divided
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -108,7 +108,7 @@ class Located:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        check_resolved(self.h, scene.t_span)
+        check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
         require(scene, "Located", joints=True, friction=False)
         variant = "a tolerance" if self.tolerance is not None else f"order={self.order!r}"
         joints = self.order == 2 and self.tolerance is None

@@ -24,7 +24,7 @@ from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
-from lcpstep.stepping.steps import RESTING, WHOLE, check_resolved, divided
+from lcpstep.stepping.steps import RESTING, WHOLE, check_steps, divided
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -81,7 +81,7 @@ class Moreau:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        check_resolved(self.h, scene.t_span)
+        check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
         if self.lcp != "lemke" and self.beyond_contacts(scene):
             raise LcpStepError(
                 f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '

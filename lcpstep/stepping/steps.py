@@ -1,4 +1,4 @@
-"""What all fixed steps agree on: when a span is a whole number of them, and which are too short.
+"""What all fixed steps agree on: when a span is a whole number of them, and which are too long or too short.
 
 Steps that are lost in the rounding of the times they are added to are refused: such a run would never end.
 """
@@ -14,14 +14,19 @@ WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 
 
-def check_resolved(h: float, span: tuple[float, float]) -> None:
-    """LcpStepError if times of the span cannot tell one step from the next."""
+def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
+    """LcpStepError if steps of h do not fit the span: longer than it, or lost in the rounding of its times.
+
+    longest : whether h is a bound on steps that are chosen by a tolerance, and may be as long as it likes
+    """
     start, end = span
-    least = 4.0 * RESOLUTION * max(abs(start), abs(end))
-    if h < least and h < end - start:
+    rounding = 4.0 * RESOLUTION * max(abs(start), abs(end))
+    if h > (end - start) * (1.0 + WHOLE) + rounding and not longest:
+        raise LcpStepError(f"h: steps of {h:g} s are longer than the span of {end - start:g} s")
+    if h < rounding and h < end - start:
         raise LcpStepError(
             f"h: steps of {h:g} s are lost in the rounding of times up to {max(abs(start), abs(end)):g} s; "
-            f"expected at least {least:.2g} s"
+            f"expected at least {rounding:.2g} s"
         )
 
 

@@ -1,15 +1,27 @@
 """Scenes: trial of every callback, the start outside of obstacles, times and corners, and the scenes ready to use."""
 
+import copy
 import dataclasses
 import inspect
 import math
+import pickle
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Harmonic,
+    LinearContacts,
+    LinearJoints,
+    LinearSystem,
+    Scene,
+    System,
+    scenes,
+)
 
 NOT_FINITE = st.sampled_from([math.nan, math.inf, -math.inf])
 
@@ -380,3 +392,92 @@ def test_a_harmonic_force_is_what_its_name_says():
     made = scenes.impact_oscillator(omega=3.0, amplitude=2.0)
     assert isinstance(made.system.force, Harmonic)
     assert made.period == pytest.approx(2 * math.pi / 3.0, rel=1e-15)
+
+
+# --- what is no number, no system, no period
+
+
+@pytest.mark.parametrize(
+    "value", ["1", True, np.ma.masked_array([1.0], mask=[True]), 1j, None, [["1"]], b"1"]
+)
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda x: LinearSystem(M=x), lambda x: LinearSystem(M=1.0, force=Harmonic(cosine=x, omega=1.0)),
+        lambda x: LinearSystem(M=1.0, force=Harmonic(cosine=1.0, omega=x)), lambda x: LinearContacts(x),
+        lambda x: LinearContacts(1.0, offset=x), lambda x: LinearContacts(1.0, restitution=x),
+        lambda x: LinearContacts(1.0, friction=Coulomb(x, 1.0)), lambda x: LinearJoints(x),
+        lambda x: scene(q0=x), lambda x: scene(v0=x), lambda x: scene(t_span=(x, x)),
+        lambda x: scene(corners=[x]), lambda x: scene(period=x), lambda x: scene(p=[x]),
+    ],
+)  # fmt: skip
+def test_what_only_looks_like_a_number_is_refused_by_name(make, value):
+    with pytest.raises(
+        ValueError,
+        match=r"^(M|G|offset|restitution|force\.\w+|friction\.mu|q0|v0|t_span|corners|period|p): expected",
+    ):
+        make(value)
+
+
+@pytest.mark.parametrize(
+    "make", [lambda K: K, lambda K: pytest.importorskip("scipy.sparse").csr_array(K)], ids=["dense", "sparse"]
+)
+def test_an_unsymmetric_stiffness_is_refused_and_gyroscopic_terms_are_not(make):
+    circulatory = np.array([[3.0, 1.0], [-1.0, 3.0]])
+    LinearSystem(M=np.eye(2), C=make(circulatory))
+    with pytest.raises(ValueError, match=r"^K: expected a symmetric matrix, .*lagrangian\.System"):
+        LinearSystem(M=make(np.eye(2)), K=make(circulatory))
+    LinearSystem(M=np.eye(2), K=make(circulatory + circulatory.T) * (1.0 + 1e-16))
+
+
+@pytest.mark.parametrize("make", [LinearContacts, LinearJoints])
+@pytest.mark.parametrize("sparse", [False, True])
+def test_a_gap_that_depends_on_nothing_is_refused(make, sparse):
+    G = np.array([[1.0, 0.0], [0.0, 0.0]])
+    with pytest.raises(ValueError, match=r"^G: row 1 is zero"):
+        make(pytest.importorskip("scipy.sparse").csr_array(G) if sparse else G)
+
+
+@pytest.mark.parametrize(
+    ("period", "right"), [(math.pi, True), (2 * math.pi, True), (3.141592654, True), (math.inf, True),
+                          (1.0, False), (0.5 * math.pi, False), (3.1416, False), (1e-9, False)],
+)  # fmt: skip
+def test_a_period_is_a_whole_number_of_turns_of_the_force(period, right):
+    system = LinearSystem(M=1.0, force=Harmonic(constant=-1.0, cosine=2.0, omega=-2.0))
+    if right:
+        assert scene(system=system, period=period).period == period
+    else:
+        with pytest.raises(
+            ValueError, match=r"^period: .* no whole number of turns of the force.*3\.14159265 s"
+        ):
+            scene(system=system, period=period)
+    resting = LinearSystem(M=1.0, force=Harmonic(constant=-1.0, omega=2.0))
+    assert scene(system=resting, period=period).period == period
+
+
+def test_parameters_stay_as_they_are():
+    made = scenes.bouncing_ball()
+    for change in (
+        lambda p: p.update(g=1.0), lambda p: p.__setitem__("g", 1.0), lambda p: p.pop("g"), lambda p: p.clear(),
+        lambda p: p.setdefault("x", 1.0), lambda p: p.__delitem__("g"), lambda p: p.popitem(),
+    ):  # fmt: skip
+        with pytest.raises(TypeError, match="make another scene"):
+            change(made.parameters)
+    p = made.parameters
+    for same in (copy.copy(p), copy.deepcopy(p), pickle.loads(pickle.dumps(p))):
+        assert same == made.parameters
+        with pytest.raises(TypeError):
+            same["g"] = 1.0
+    assert {**made.parameters, "g": 1.0}["g"] == 1.0
+    given = {"g": 9.81}
+    own = scene(parameters=given)
+    given["g"] = 1.0
+    assert own.parameters["g"] == 9.81
+
+
+@pytest.mark.parametrize("part", ["system", "contacts", "joints"])
+def test_a_part_of_another_class_is_refused_by_name(part):
+    with pytest.raises(TypeError, match=rf"^{part}: expected a Linear"):
+        scene(**{part: 3.0})
+    with pytest.raises(TypeError, match=r"^friction: expected a Coulomb"):
+        LinearContacts(1.0, friction=0.3)
