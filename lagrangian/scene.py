@@ -14,6 +14,7 @@ from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
+from lagrangian.pickling import Pickled
 from lagrangian.system import LinearSystem, System
 
 ROUNDING = 64 * np.finfo(float).eps  # of a gap evaluated on the obstacle
@@ -22,7 +23,7 @@ JOINT_ROUNDING = 1e-12  # of a joint that the user's own arithmetic has closed
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Pickled):
     """System, contacts, initial state and time span.
 
     Parameters

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
+from lagrangian.pickling import Pickled
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +48,7 @@ class Harmonic:
 
 
 @dataclass(frozen=True, eq=False)
-class LinearSystem:
+class LinearSystem(Pickled):
     """M v' + C v + K q = F(t), with constant matrices.
 
     Parameters
@@ -115,7 +116,7 @@ class LinearSystem:
 
 
 @dataclass(frozen=True, eq=False)
-class System:
+class System(Pickled):
     """M(t, q) v' = f(t, q, v): any Lagrangian system, its mass matrix and forces as functions.
 
     Parameters

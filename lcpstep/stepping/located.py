@@ -377,26 +377,21 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=interpolation.parabolic(t, q, v, self.kept.all) if self.method.order == 2 else self.again(),
+            dense=self.between(t, q, v),
             joint_impulse=joint,
         )  # fmt: skip
+
+    def between(self, t: Array, q: Array, v: Array) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones where these tell."""
+        if self.method.order == 2:
+            return interpolation.Parabolic(t, q, v, self.kept.all)
+        return Again(self.method, self.scene)
 
     def impulse(self) -> Array:
         """Impulses of contacts and joints since the last kept state."""
         joints = self.work.joints
         of_joints = np.zeros(0) if joints is None else joints.own.num[JOINT_IMPULSE]
         return np.concatenate([self.work.num[work.IMPULSE], of_joints])
-
-    def again(self) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, by another run that keeps them."""
-        method, scene = self.method, self.scene
-
-        def at(times: Array) -> tuple[Array, Array]:
-            unique, place = np.unique(times, return_inverse=True)
-            m = method.run(scene, Kept.parse(unique, scene.t_span), lambda _: None)
-            return m.q[place], m.v[place]
-
-        return at
 
     def message(self, status: Status, t: float, q: Array, v: Array) -> str:
         """How the run ended with its last finite state, in words."""
@@ -422,6 +417,20 @@ class _Run:
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
             return f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together {where}"
         return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
+
+
+@dataclass(frozen=True, eq=False)
+class Again:
+    """States at any time, by another run that keeps them."""
+
+    method: Located
+    scene: Scene
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Q and v at these times, each (m, n_q)."""
+        unique, place = np.unique(times, return_inverse=True)
+        m = self.method.run(self.scene, Kept.parse(unique, self.scene.t_span), lambda _: None)
+        return m.q[place], m.v[place]
 
 
 STATUS = {
