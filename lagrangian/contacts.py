@@ -17,10 +17,11 @@ from numpy.typing import ArrayLike
 from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
 from lagrangian.friction import Coulomb
+from lagrangian.pickling import Pickled
 
 
 @dataclass(frozen=True, eq=False)
-class LinearContacts:
+class LinearContacts(Pickled):
     """Gaps g = G q + offset - s(t): flat obstacles, at rest or moving with s(t).
 
     Parameters
@@ -82,7 +83,7 @@ class LinearContacts:
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
+class Contacts(Pickled):
     """Gaps g(t, q) of any form.
 
     Parameters

@@ -21,10 +21,11 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
+from lagrangian.pickling import Pickled
 
 
 @dataclass(frozen=True, eq=False)
-class Coulomb:
+class Coulomb(Pickled):
     """Dry friction of the contacts that carry it.
 
     Parameters

@@ -26,13 +26,14 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks
 from lagrangian.checks import Array
+from lagrangian.pickling import Pickled
 
 Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
 RISING, FALLING, BOTH = 1, -1, 0
 
 
 @dataclass(frozen=True, eq=False)
-class Guard:
+class Guard(Pickled):
     """When a mode is left, and for which.
 
     Parameters
@@ -62,7 +63,7 @@ class Guard:
 
 
 @dataclass(frozen=True, eq=False)
-class Mode:
+class Mode(Pickled):
     """A vector field, and the guards that leave it; of guards reached at one time the first acts.
 
     Parameters
@@ -81,7 +82,7 @@ class Mode:
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(Pickled):
     """A switching surface H(t, x) = 0 between two modes, on which the motion may slide.
 
     Parameters
@@ -175,7 +176,7 @@ class HybridSystem:
 
 
 @dataclass(frozen=True, eq=False)
-class HybridScene:
+class HybridScene(Pickled):
     """A system with modes, its initial state and mode, and a time span.
 
     Parameters

@@ -15,10 +15,11 @@ from numpy.typing import ArrayLike
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.pickling import Pickled
 
 
 @dataclass(frozen=True, eq=False)
-class LinearJoints:
+class LinearJoints(Pickled):
     """Joints G q + offset = s(t).
 
     Parameters
@@ -50,7 +51,7 @@ class LinearJoints:
 
 
 @dataclass(frozen=True, eq=False)
-class Joints:
+class Joints(Pickled):
     """Joints g(t, q) = 0 of any form.
 
     Parameters

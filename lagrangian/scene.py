@@ -14,6 +14,7 @@ from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
+from lagrangian.pickling import Pickled
 from lagrangian.relations import check_derivatives
 from lagrangian.system import Harmonic, LinearSystem, System
 
@@ -23,7 +24,7 @@ JOINT_ROUNDING = 1e-12  # of a joint that the user's own arithmetic has closed
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Scene(Pickled):
     """System, contacts, initial state and time span.
 
     Parameters

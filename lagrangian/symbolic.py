@@ -17,14 +17,8 @@ Needs sympy: pip install "lcpstep[symbolic]".
 
 from __future__ import annotations
 
-import hashlib
-import os
-import sys
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -33,6 +27,8 @@ from numpy.typing import ArrayLike
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts
+from lagrangian.derived import load
+from lagrangian.pickling import Pickled
 from lagrangian.scene import Scene
 from lagrangian.system import System
 
@@ -80,7 +76,7 @@ class Equations:
 
 
 @dataclass(frozen=True, eq=False)
-class Mechanism:
+class Mechanism(Pickled):
     """What `derive` found: a system and its contacts, ready for scenes.
 
     system : lagrangian.System, whose callbacks read the parameters from p
@@ -210,7 +206,7 @@ def derive(
     g = [variables.read(f"gaps[{i}]", gap, variables.v) for i, gap in enumerate(_sequence(gaps))]
     equations = _equations(L, D, Q, g, variables)
     source = _source(equations)
-    module = _load(source)
+    module = load(source)
     _check_mass(equations.M, module.mass, variables, values)
     return Mechanism(
         system=_system(equations.M, module),
@@ -515,29 +511,3 @@ def _printed(name: str, expression: Expr) -> str:
     if "None" in text or "Not supported" in text or printer.module_imports.keys() - {"math"}:
         raise ValueError(f"{name}: cannot be written with Python's math functions alone: {expression}")
     return text
-
-
-def _load(source: str) -> Any:
-    """The source as a module, kept in a file so that its compiled functions can be kept, too."""
-    name = "lagrangian_derived_" + hashlib.sha256(source.encode()).hexdigest()[:20]
-    if name not in sys.modules:
-        module = ModuleType(name)
-        exec(compile(source, _kept(name, source), "exec"), vars(module))
-        sys.modules[name] = module
-    return sys.modules[name]
-
-
-def _kept(name: str, source: str) -> str:
-    """Path of a file with this source in the user's cache folder; no path where that cannot be written."""
-    try:
-        base = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
-        path = Path(base) / "lcpstep" / "derived" / f"{name}.py"
-        if not path.exists() or path.read_text() != source:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            handle, draft = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
-            with os.fdopen(handle, "w") as file:
-                file.write(source)
-            Path(draft).replace(path)
-    except (OSError, RuntimeError):
-        return f"<{name}>"
-    return str(path)

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 
 from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
+from lagrangian.pickling import Pickled
 
 TURN = 1e-6  # by how much a period may differ from whole turns of the force
 
@@ -57,7 +58,7 @@ class Harmonic:
 
 
 @dataclass(frozen=True, eq=False)
-class LinearSystem:
+class LinearSystem(Pickled):
     """M v' + C v + K q = F(t), with constant matrices.
 
     Parameters
@@ -128,7 +129,7 @@ class LinearSystem:
 
 
 @dataclass(frozen=True, eq=False)
-class System:
+class System(Pickled):
     """M(t, q) v' = f(t, q, v): any Lagrangian system, its mass matrix and forces as functions.
 
     Parameters

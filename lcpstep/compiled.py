@@ -19,7 +19,6 @@ import dis
 import functools
 import hashlib
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar, cast
@@ -176,14 +175,10 @@ def _cfunc(f: FunctionType, arguments: tuple[Any, ...], returned: Any, dependenc
 
 
 def _keep_on_disk(compilable: Any, f: FunctionType, copy: FunctionType, kind: str) -> None:
-    """Keep the machine code of f, compiled from this copy of it, unless it would not be found again.
+    """Keep the machine code of f, compiled from this copy of it, unless it reads what may change unseen.
 
-    That is so for functions typed into a terminal or made by exec, and for those that read objects of which
-    nobody can tell whether they have changed. They are compiled afresh in each process.
+    A function that reads objects of which nobody can tell whether they have changed is compiled in each process.
     """
-    home = sys.modules.get(f.__module__)
-    if not os.path.exists(f.__code__.co_filename) or vars(home or os) is not f.__globals__:
-        return
     if UNKNOWN in _dependencies(f):
         return
     from lcpstep.kept import Kept

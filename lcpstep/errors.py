@@ -7,7 +7,23 @@ from collections.abc import Iterable
 from typing import Any
 
 
-class LcpStepError(Exception):
+class Pickled:
+    """Base of exceptions that can be pickled, whatever the arguments of their class: message and attributes."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (type(self), self.args, vars(self))  # type: ignore[attr-defined]
+
+
+def _again(cls: type[BaseException], args: tuple[Any, ...], attributes: dict[str, Any]) -> BaseException:
+    """An exception as it was pickled."""
+    error = cls.__new__(cls, *args)
+    error.args = args
+    for name, value in attributes.items():
+        setattr(error, name, value)
+    return error
+
+
+class LcpStepError(Pickled, Exception):
     """Base class of the library's errors."""
 
 
@@ -38,7 +54,7 @@ class SimulationError(LcpStepError):
         self.trajectory = trajectory
 
 
-class SimulationInterrupted(KeyboardInterrupt):
+class SimulationInterrupted(Pickled, KeyboardInterrupt):
     """The user's interrupt, with the part of the motion that was computed before in `trajectory`."""
 
     def __init__(self, trajectory: Any) -> None:
@@ -46,7 +62,7 @@ class SimulationInterrupted(KeyboardInterrupt):
         self.trajectory = trajectory
 
 
-class StudyInterrupted(KeyboardInterrupt):
+class StudyInterrupted(Pickled, KeyboardInterrupt):
     """The user's interrupt of a study, with everything measured before in `study`."""
 
     def __init__(self, study: Any) -> None:
@@ -59,8 +75,8 @@ class NotWritten(LcpStepError, OSError):
 
     def __init__(self, file: object, reason: OSError) -> None:
         self.reason, self.file = reason.strerror or str(reason), str(file)
+        self.code = reason.errno  # None where a library does not say
         super().__init__(f"{file} could not be written: {self.reason}")
-        self.errno = reason.errno
 
 
 class DamagedFile(LcpStepError, ValueError):

@@ -63,13 +63,13 @@ class Kept:
     @property
     def cache_path(self) -> str:
         """The folder that is tried first."""
-        return str(folders(self.source)[0])
+        return str(next(iter(folders(self.source)), ""))
 
     def load_overload(self, signature: Any, target: Any) -> Any:
         """Machine code for these types of arguments; None where it is not kept."""
         target.refresh()
         name = self.entry(signature, target.codegen())
-        owners = {0, own_number(), self.source.stat().st_uid}
+        owners = {0, own_number(), *([self.source.stat().st_uid] if self.source.exists() else [])}
         for folder in [*folders(self.source), *temporary(make=False)]:
             payload = read(folder / name, owners)
             if payload is not None:
@@ -106,7 +106,8 @@ def folders(source: Path) -> list[Path]:
     if numba.config.CACHE_DIR:
         return [Path(numba.config.CACHE_DIR)]
     user = Path(AppDirs("lcpstep", appauthor=False).user_cache_dir) / "kernels"
-    return [source.absolute().parent / "__pycache__", *([user] if user.is_absolute() else [])]
+    beside = [source.absolute().parent / "__pycache__"] if source.exists() else []  # a file, not a terminal
+    return [*beside, *([user] if user.is_absolute() else [])]
 
 
 def temporary(make: bool) -> list[Path]:

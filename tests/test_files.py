@@ -78,7 +78,7 @@ def test_a_part_without_space_is_named_and_those_before_are_kept(tmp_path):
         pytest.raises(NotWritten, match=r"part-00000-00001\.npz could not be written") as caught,
     ):
         store.save(0, 1, {"x": NUMBERS}, None)
-    assert caught.value.errno == errno.EFBIG
+    assert caught.value.code == errno.EFBIG
     assert np.array_equal(store.load(0, 0)[0]["x"], NUMBERS[:10])
     assert store.load(0, 1) is None
     assert len(list((tmp_path / "s").iterdir())) == 2

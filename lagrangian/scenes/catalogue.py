@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, ParamSpec
 
 from lagrangian import checks
+from lagrangian.checks import Array
 from lagrangian.scene import Scene
 
 P = ParamSpec("P")
@@ -33,9 +34,33 @@ def checked(make: Callable[P, Scene]) -> Callable[P, Scene]:
                 checks.number(name, value)
             elif isinstance(default, int) and (isinstance(value, bool) or not hasattr(value, "__index__")):
                 raise ValueError(f"{name}: expected a whole number, got {value!r}")
-        return make(*arguments, **named)
+        scene = make(*arguments, **named)
+        if scene.exact is not None and not isinstance(scene.exact, Exact):
+            exact = Exact(made, arguments, named, scene.exact)
+            object.__setattr__(scene, "exact", exact)  # new a moment ago, and checked with the same motion
+        return scene
 
     return made
+
+
+@dataclass(eq=False)
+class Exact:
+    """The motion of a ready scene in closed form; pickled as the call that makes the scene."""
+
+    make: Callable[..., Scene]
+    arguments: tuple[Any, ...]
+    named: dict[str, Any]
+    motion: Callable[[Array], tuple[Array, Array]] | None
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Q and v at these times."""
+        if self.motion is None:
+            self.motion = self.make(*self.arguments, **self.named).exact.motion  # type: ignore[union-attr]
+        return self.motion(times)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the function itself."""
+        return vars(self) | {"motion": None}
 
 
 @dataclass(frozen=True)

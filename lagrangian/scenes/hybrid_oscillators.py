@@ -8,6 +8,7 @@ Systems, sections 2.13 and 2.14; R. I. Leine, H. Nijmeijer, Dynamics and Bifurca
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ def bilinear_oscillator(
         parameters={"left": left, "right": right, "damping": damping, "amplitude": amplitude, "omega": omega},
         period=math.inf if free else 2.0 * math.pi / omega,
         name="bilinear-oscillator",
-        exact=(lambda times: _two_half_waves(times, left, right, x0, v0)) if free else None,
+        exact=partial(_two_half_waves, left=left, right=right, x0=x0, v0=v0) if free else None,
     )
 
 
@@ -116,18 +117,14 @@ def dry_friction_oscillator(
         parameters={"drag": drag, "amplitude": amplitude, "omega": omega},
         period=math.inf if amplitude == 0.0 else 2.0 * math.pi / omega,
         name="dry-friction-oscillator",
-        exact=_one_coordinate(coulomb_oscillator(x0, drag).exact) if amplitude == 0.0 else None,
+        exact=partial(_joined, motion=coulomb_oscillator(x0, drag).exact) if amplitude == 0.0 else None,
     )
 
 
-def _one_coordinate(motion: Any) -> Any:
+def _joined(times: Array, motion: Any) -> Array:
     """A motion in closed form as states (x, x') of the first coordinate."""
-
-    def exact(times: Array) -> Array:
-        q, v = motion(times)
-        return np.stack([q[:, 0], v[:, 0]], axis=1)
-
-    return exact
+    q, v = motion(times)
+    return np.stack([q[:, 0], v[:, 0]], axis=1)
 
 
 def _slower(t: float, x: Any, p: Any, out: Any) -> None:
@@ -185,7 +182,7 @@ def stick_slip_oscillator(
         (0.0, t_end),
         parameters={"belt": belt, "static": static, "kinetic": kinetic},
         name="stick-slip-oscillator",
-        exact=lambda times: _stick_slip(times, belt, static, kinetic, x0),
+        exact=partial(_stick_slip, belt=belt, static=static, kinetic=kinetic, x0=x0),
     )
 
 

@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return FAILED
     except NotWritten as error:
         print(f"lcpstep: {error}", file=sys.stderr)
-        return FAILED if error.errno in NO_SPACE else USAGE
+        return FAILED if error.code in NO_SPACE else USAGE
     except (LcpStepError, ValueError, OSError) as error:  # OSError: a file or folder that cannot be written
         print(f"lcpstep: {error}", file=sys.stderr)
         return USAGE

@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,7 @@ from lcpstep.events.bookkeeping import (
     TOO_MANY_EVENTS,
 )
 from lcpstep.faults import forget
-from lcpstep.model import ABSENT, Model, culprit, unrepeatable
+from lcpstep.model import ABSENT, Model, culprit, model, unrepeatable
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -161,15 +162,48 @@ def one_contact_recorder(scene: Scene, kept: Kept, dense: bool) -> Recorder:
     return Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK, dense=dense)
 
 
-def between(complete: bool, s: States, evaluate: Callable[[Array, Any], tuple[Array, Array]]) -> Any:
-    """States at any time, from the kept state before each; refused where that state was not kept."""
+@dataclass(eq=False)
+class Between(ABC):
+    """States at any time, from the kept state before each; a function of times (m,) that can be pickled."""
 
-    def at(times: Array) -> tuple[Array, Array]:
-        if not complete and not np.all(np.isin(times, s.t)):
+    s: States
+    complete: bool  # whether no state was left out; else only the kept ones are known
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Q and v at these times, each (m, n_q); ValueError where the state before one was not kept."""
+        if not self.complete and not np.all(np.isin(times, self.s.t)):
             raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-        return evaluate(times, np.maximum(np.searchsorted(s.t, times, side="right") - 1, 0))
+        return self.evaluate(times, np.maximum(np.searchsorted(self.s.t, times, side="right") - 1, 0))
 
-    return at
+    @abstractmethod
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+
+
+@dataclass(eq=False)
+class BetweenByModel(Between):
+    """The same for motions that are evaluated by the scene's equations."""
+
+    scene: Scene
+    made: (
+        tuple[Model, bool] | None
+    )  # the scene's model, and whether it is compiled: good in this process only
+
+    @property
+    def model(self) -> tuple[Model, bool]:
+        """The scene's model, made when it is needed."""
+        if self.made is None:
+            self.made = model(self.scene)
+        return self.made
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is good in any process."""
+        return vars(self) | {"made": None}
+
+
+def without_impulses(s: States) -> States:
+    """The states alone: their impulses are the trajectory's."""
+    return s._replace(impulse=np.zeros((0, 0)))
 
 
 def scan_interval(scene: Scene, m: Model, rate: float) -> float:

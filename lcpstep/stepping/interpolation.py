@@ -2,58 +2,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Between = Callable[[Array], tuple[Array, Array]]
 
 
-def linear(t: Array, q: Array, v: Array, every_step: bool) -> Between:
-    """Positions and velocities linear within a step: the theta-method.
+@dataclass(frozen=True, eq=False)
+class Between(ABC):
+    """A function of times (m,) within a run, which can be pickled.
 
     Parameters
     ----------
     t : (n,) times of the kept states [s]
     q, v : (n, n_q) the states
     every_step : whether all steps were kept; if not, only the kept states are known
-
-    Returns
-    -------
-    Function of times (m,) within t; it raises ValueError for one between states that are not known
     """
 
-    def at(times: Array) -> tuple[Array, Array]:
-        i = before(t, times)
-        if len(t) == 1:
-            return q[i], v[i]
+    t: Array
+    q: Array
+    v: Array
+    every_step: bool
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Q and v at these times, each (m, n_q); ValueError for one between states that are not known."""
+        i = before(self.t, times)
+        return (self.q[i], self.v[i]) if len(self.t) == 1 else self.within(times, i)
+
+    @abstractmethod
+    def within(self, times: Array, i: Any) -> tuple[Array, Array]:
+        """The states in the steps from rows i of the kept ones."""
+
+
+class Linear(Between):
+    """Positions and velocities linear within a step: the theta-method."""
+
+    def within(self, times: Array, i: Any) -> tuple[Array, Array]:
+        """The states in the steps from rows i of the kept ones."""
+        t, q, v = self.t, self.q, self.v
         share = (times - t[i]) / (t[i + 1] - t[i])
-        known(every_step, (share == 0.0) | (share == 1.0))
+        known(self.every_step, (share == 0.0) | (share == 1.0))
         share = share[:, None]
         return (1.0 - share) * q[i] + share * q[i + 1], (1.0 - share) * v[i] + share * v[i + 1]
 
-    return at
 
+class Parabolic(Between):
+    """The parabola through both positions that leaves with the first velocity."""
 
-def parabolic(t: Array, q: Array, v: Array, every_step: bool) -> Between:
-    """The parabola through both positions that leaves with the first velocity; otherwise as `linear`."""
-
-    def at(times: Array) -> tuple[Array, Array]:
-        i = before(t, times)
-        if len(t) == 1:
-            return q[i], v[i]
+    def within(self, times: Array, i: Any) -> tuple[Array, Array]:
+        """The states in the steps from rows i of the kept ones."""
+        t, q, v = self.t, self.q, self.v
         last, length = times == t[-1], (t[i + 1] - t[i])[:, None]
         tau = (times - t[i])[:, None]
-        known(every_step, (tau[:, 0] == 0.0) | last)
+        known(self.every_step, (tau[:, 0] == 0.0) | last)
         half = (q[i + 1] - q[i] - length * v[i]) / length**2
         q_at, v_at = q[i] + tau * (v[i] + tau * half), v[i] + 2.0 * tau * half
         q_at[last], v_at[last] = q[-1], v[-1]
         return q_at, v_at
-
-    return at
 
 
 def before(t: Array, times: Array) -> NDArray[np.intp]:

@@ -29,7 +29,7 @@ from lcpstep.stepping import (
 )
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping.interpolation import parabolic as between
+from lcpstep.stepping.interpolation import Parabolic
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_event import straighten
@@ -379,31 +379,23 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=between(t, q, v, self.kept.all) if self.method.order == 2 else self.again(*last[1:]),
+            dense=self.between(t, q, v, *last[1:]),
             joint_impulse=joint,
         )  # fmt: skip
+
+    def between(
+        self, t: Array, q: Array, v: Array, q_end: Array, v_end: Array
+    ) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time: from the kept ones where these tell, by another run where they do not."""
+        if self.method.order == 2:
+            return Parabolic(t, q, v, self.kept.all)
+        return Again(self.method, self.scene, q_end, v_end)
 
     def impulse(self) -> Array:
         """Impulses of contacts and joints since the last kept state."""
         joints = self.work.joints
         of_joints = np.zeros(0) if joints is None else joints.own.num[JOINT_IMPULSE]
         return np.concatenate([self.work.num[work.IMPULSE], of_joints])
-
-    def again(self, q: Array, v: Array) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, by another run that keeps them; one that ends early, ends in the state q, v."""
-        method, scene = self.method, self.scene
-
-        def at(times: Array) -> tuple[Array, Array]:
-            unique, place = np.unique(times, return_inverse=True)
-            try:
-                m = method.run(scene, Kept.parse(unique, scene.t_span), lambda _: None)
-            except SimulationError as stopped:
-                m = stopped.trajectory
-            n = len(unique) - len(m.t)  # times as late as the end to rounding, which the run no longer passes
-            all_q, all_v = np.vstack([m.q, np.tile(q, (n, 1))]), np.vstack([m.v, np.tile(v, (n, 1))])
-            return all_q[place], all_v[place]
-
-        return at
 
     def message(self, status: Status, t: float, q: Array, v: Array) -> str:
         """How the run ended with its last finite state, in words."""
@@ -429,6 +421,28 @@ class _Run:
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
             return f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together {where}"
         return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
+
+
+@dataclass(frozen=True, eq=False)
+class Again:
+    """States at any time, by another run that keeps them; one that ends early, ends in the state q_end, v_end."""
+
+    method: Located
+    scene: Scene
+    q_end: Array
+    v_end: Array
+
+    def __call__(self, times: Array) -> tuple[Array, Array]:
+        """Q and v at these times, each (m, n_q)."""
+        unique, place = np.unique(times, return_inverse=True)
+        try:
+            m = self.method.run(self.scene, Kept.parse(unique, self.scene.t_span), lambda _: None)
+        except SimulationError as stopped:
+            m = stopped.trajectory
+        n = len(unique) - len(m.t)  # times as late as the end to rounding, which the run no longer passes
+        q = np.vstack([m.q, np.tile(self.q_end, (n, 1))])
+        v = np.vstack([m.v, np.tile(self.v_end, (n, 1))])
+        return q[place], v[place]
 
 
 STATUS = {

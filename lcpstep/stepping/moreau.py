@@ -326,7 +326,7 @@ class _Run:
     def between(self) -> Callable[..., interpolation.Between]:
         """How states between kept ones follow from them: long steps are parabolas."""
         adapted = self.method.tolerance is not None and adaptive_moreau.bending(self.method.theta) == 1.0
-        return interpolation.parabolic if adapted else interpolation.linear
+        return interpolation.Parabolic if adapted else interpolation.Linear
 
     def message(self, status: Status) -> str:
         """How the run ended, in words."""

@@ -292,7 +292,7 @@ class Run:
             counts=Counts(
                 steps=self.steps, lcp_calls=self.problems, force_evaluations=self.forces, events=self.all_events
             ),
-            dense=interpolation.linear(t, kept.q, kept.v, self.kept.all),
+            dense=interpolation.Linear(t, kept.q, kept.v, self.kept.all),
         )  # fmt: skip
 
     def message(self, status: Status) -> str:

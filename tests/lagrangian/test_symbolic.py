@@ -2,6 +2,7 @@
 
 import functools
 import importlib
+import linecache
 import math
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from lagrangian import Contacts, Scene, System
 from lcpstep import EventDriven, Moreau, simulate
 from tests.differences import derivative, jacobian
 from tests.known import driven
+from tests.processes import python
 
 sympy = pytest.importorskip("sympy")
 dynamicsymbols = pytest.importorskip("sympy.physics.mechanics").dynamicsymbols
@@ -432,20 +434,29 @@ def test_states_of_another_size_have_no_energy():
 # --- the module
 
 
-def test_callbacks_live_in_a_file_that_is_written_once():
+def test_the_source_of_callbacks_is_shown_by_tracebacks():
     f = pendulum().system.force
     assert vars(sys.modules[f.__module__]) is f.__globals__
-    with open(f.__code__.co_filename) as file:
-        assert file.read() == pendulum().source
+    assert linecache.getlines(f.__code__.co_filename) == pendulum().source.splitlines(keepends=True)
 
 
-def test_without_a_folder_to_write_in_callbacks_live_in_memory(monkeypatch, tmp_path):
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    x = dynamicsymbols("x")
-    fall = derive(x.diff() ** 2 / 2 - 1.625 * x, x)
-    assert value(fall.system.force, (0.0, np.zeros(1), np.zeros(1)), [], 1) == -1.625
-    assert simulate(fall.scene([0.0], [0.0], (0.0, 1.0)), EXACT).q[-1] == pytest.approx(-0.8125)
+def test_the_next_process_finds_the_machine_code_of_callbacks(tmp_path):
+    program = """
+import sympy
+from sympy.physics.mechanics import dynamicsymbols
+from lagrangian.symbolic import derive
+from lcpstep import Moreau, compiled, simulate
+x = dynamicsymbols("x")
+fall = derive(x.diff() ** 2 / 2 - 1.625 * x, x)
+print(simulate(fall.scene([0.0], [0.0], (0.0, 1.0)), Moreau(0.5)).q[-1, 0])
+print(compiled._cfunc.cache_info().currsize)
+"""
+    folder = {"NUMBA_CACHE_DIR": str(tmp_path)}
+    first = python(program, **folder)
+    kept = {file.name: file.stat().st_mtime_ns for file in tmp_path.iterdir()}
+    assert any("force" in name for name in kept)
+    assert python(program, **folder) == first
+    assert {file.name: file.stat().st_mtime_ns for file in tmp_path.iterdir()} == kept
 
 
 def test_models_need_no_sympy():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from lcpstep.events.flight import loop, motion
 from lcpstep.events.flight.keep import evaluate as states_between
 from lcpstep.events.flight.oscillator import Oscillator, oscillator
 from lcpstep.events.flight.reach import reach
-from lcpstep.events.run import Run, between, one_contact_recorder, scan_interval
+from lcpstep.events.run import BetweenByModel, Run, one_contact_recorder, scan_interval, without_impulses
 from lcpstep.model import ABSENT, Model
 from lcpstep.recording import Kept, States
 
@@ -104,14 +105,20 @@ class ClosedForm(Run):
 
     def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the flights that start there."""
+        complete = self.kept.all or self.kept.on_events
+        return Flights(without_impulses(s), complete, self.scene, (self.model, self.fast), self.start)
 
-        def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
-            kernel = compiled(states_between) if self.fast else states_between
-            out = Wanted(times, row, np.zeros((len(times), 1)), np.zeros((len(times), 1)))
-            kernel(flight_of(self.scene, self.model, self.start.copy()), s, out)
-            return out.q, out.v
 
-        result: Callable[[Array], tuple[Array, Array]] = between(
-            self.kept.all or self.kept.on_events, s, evaluate
-        )
-        return result
+@dataclass(eq=False)
+class Flights(BetweenByModel):
+    """States between kept ones, in closed form."""
+
+    start: Array  # constants and initial state of a flight
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        m, fast = self.model
+        kernel = compiled(states_between) if fast else states_between
+        out = Wanted(times, row, np.zeros((len(times), 1)), np.zeros((len(times), 1)))
+        kernel(flight_of(self.scene, m, self.start.copy()), self.s, out)
+        return out.q, out.v

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -120,16 +121,8 @@ class Several(run.Run):
 
     def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""
-        moved = moved_constant if self.system.constant else moved_by_step
         F = self.recorder.dense()
-
-        def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
-            if np.all(times == s.t[row]):
-                return s.q[row], s.v[row]
-            return moved(s, F, times, row)
-
-        result: Callable[[Array], tuple[Array, Array]] = run.between(self.kept.all, s, evaluate)
-        return result
+        return Moved(run.without_impulses(s), self.kept.all, self.system.constant, F)
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""
@@ -151,6 +144,21 @@ class Several(run.Run):
             return f"{bound}; the last at contacts {latest}, closed are {closed}, {where}"
         words = super().message(code)
         return words if code == FINISHED else f"{words}; closed contacts {closed}"
+
+
+@dataclass(eq=False)
+class Moved(run.Between):
+    """States between kept ones, under constant accelerations or by the dense output of the steps."""
+
+    constant: bool
+    F: Array  # after each kept state
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        if np.all(times == self.s.t[row]):
+            return self.s.q[row], self.s.v[row]
+        moved = moved_constant if self.constant else moved_by_step
+        return moved(self.s, self.F, times, row)
 
 
 def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from lcpstep.events.bookkeeping import Wanted
 from lcpstep.events.clock import clock
 from lcpstep.events.contact import FREE, HOLD, MODE, NOW, keep
 from lcpstep.events.plan import Plan, plan
-from lcpstep.events.run import Run, between, one_contact_recorder
+from lcpstep.events.run import BetweenByModel, Run, one_contact_recorder, without_impulses
 from lcpstep.events.single import loop
 from lcpstep.events.single.equations import NEXT_STEP, Piece
 from lcpstep.events.single.keep import evaluate as states_between
@@ -76,13 +77,22 @@ class RungeKutta(Run):
 
     def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the pieces of motion that start there."""
-        dense, n_q = self.recorder.dense(), self.scene.n_q
+        made = self.piece.model, self.fast
+        dense = self.recorder.dense()
+        return Pieces(without_impulses(s), self.kept.all, self.scene, made, self.piece.plan, dense)
 
-        def evaluate(times: Array, row: Any) -> tuple[Array, Array]:
-            out = Wanted(times, row, np.zeros((len(times), n_q)), np.zeros((len(times), n_q)))
-            kernel = compiled(states_between) if self.fast else states_between
-            kernel(piece(self.scene, self.piece.model, self.piece.plan), s, dense, out)
-            return out.q, out.v
 
-        result: Callable[[Array], tuple[Array, Array]] = between(self.kept.all, s, evaluate)
-        return result
+@dataclass(eq=False)
+class Pieces(BetweenByModel):
+    """States between kept ones, by the dense output of the steps and the equations of contact."""
+
+    plan: Plan
+    dense: Array
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        m, fast = self.model
+        out = Wanted(times, row, *np.zeros((2, len(times), self.scene.n_q)))
+        kernel = compiled(states_between) if fast else states_between
+        kernel(piece(self.scene, m, self.plan), self.s, self.dense, out)
+        return out.q, out.v
