@@ -11,11 +11,36 @@ from collections.abc import Sequence
 
 from lcpstep import __version__
 from lcpstep.cli import abs as abs_
-from lcpstep.cli import attractor, basin, bifurcation, compare, corner, hard, orbit, scenes, simulate, study
+from lcpstep.cli import (
+    attractor,
+    basin,
+    bifurcation,
+    compare,
+    corner,
+    hard,
+    orbit,
+    scenes,
+    simulate,
+    study,
+    thesis,
+)
 from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 
-COMMANDS = (compare, simulate, scenes, study, hard, attractor, bifurcation, basin, orbit, corner, abs_)
+COMMANDS = (
+    compare,
+    simulate,
+    scenes,
+    study,
+    hard,
+    attractor,
+    bifurcation,
+    basin,
+    orbit,
+    corner,
+    abs_,
+    thesis,
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
