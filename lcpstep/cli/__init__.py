@@ -12,11 +12,36 @@ from collections.abc import Sequence
 
 from lcpstep import __version__
 from lcpstep.cli import abs as abs_
-from lcpstep.cli import attractor, basin, bifurcation, compare, corner, hard, orbit, scenes, simulate, study
+from lcpstep.cli import (
+    attractor,
+    basin,
+    bifurcation,
+    compare,
+    corner,
+    hard,
+    orbit,
+    scenes,
+    simulate,
+    study,
+    thesis,
+)
 from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
 from lcpstep.errors import LcpStepError, NotWritten, SimulationError, SimulationInterrupted
 
-COMMANDS = (compare, simulate, scenes, study, hard, attractor, bifurcation, basin, orbit, corner, abs_)
+COMMANDS = (
+    compare,
+    simulate,
+    scenes,
+    study,
+    hard,
+    attractor,
+    bifurcation,
+    basin,
+    orbit,
+    corner,
+    abs_,
+    thesis,
+)
 NO_SPACE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, None}  # None: a library that does not say why
 
 

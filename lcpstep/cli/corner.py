@@ -146,12 +146,11 @@ def _result(
 
 def _text(r: dict[str, Any]) -> str:
     def rows(name: str) -> str:
+        """The entries of one matrix, with the decimals that are known."""
         value, off = np.array(r["map"][name]), max(r["map_error"][name], float(np.finfo(float).tiny))
         places = max(0, min(14, int(-np.log10(2.0 * off))))
-        text = {"float_kind": lambda x: f"{x:.{places}f}"}
-        return (
-            np.array2string(value, formatter=text, prefix=" " * 14) if value.ndim else f"{value:.{places}f}"
-        )
+        shown = [", ".join(f"{x:.{places}f}" for x in row) for row in np.atleast_2d(value)]
+        return ("\n" + " " * 14).join(shown)
 
     lines = [
         f"{r['scene']}: an impact meets corner {r['corner']} at {r['parameter']} = {r['value']:.9f}",

@@ -53,8 +53,13 @@ def _plane(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
         _orbit(ax, scene, cycle, color="C0", label="limit cycle")
         ax.plot(cycle.slip, cycle.torque, "ko", ms=4)
         for state, s, T in zip(cycle.states, cycle.slip, cycle.torque, strict=True):
-            ax.annotate(f" enters {state}", (s, T), fontsize=8)
-    ax.set(title="state plane", xlabel="slip [-]", ylabel="brake torque [N m]", xlim=(0.0, 1.0))
+            ax.annotate(state, (s, T), (3.0, 4.0), textcoords="offset points", fontsize=9)
+    ax.set(
+        title="state plane; numbers: the states entered",
+        xlabel="slip [-]",
+        ylabel="brake torque [N m]",
+        xlim=(0.0, 1.0),
+    )
     ax.legend(fontsize=7)
     ax.grid(alpha=0.3)
 

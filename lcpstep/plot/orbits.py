@@ -17,7 +17,8 @@ from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]
 SAMPLES = 2000
-STABLE, UNSTABLE = {"color": "k", "ls": "-", "lw": 1.5}, {"color": "C3", "ls": "--", "lw": 1.3}
+STABLE: dict[str, Any] = {"color": "k", "ls": "-", "lw": 1.5}
+UNSTABLE: dict[str, Any] = {"color": "C3", "ls": "--", "lw": 1.3}
 MARKS = {
     "corner": "D",
     "flip": "o",

@@ -7,13 +7,13 @@ import pytest
 
 from lagrangian.scenes import cam_follower, impact_oscillator
 from lcpstep import EventDriven
+from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps, continue_point
 from lcpstep.analysis.derivative import differences
 from lcpstep.analysis.lyapunov import lyapunov
 from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import main
-from lcpstep.cli.orbit import branch_dataset
 from lcpstep.plot.orbits import stretches
 
 CASES = [

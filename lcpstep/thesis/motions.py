@@ -1,0 +1,133 @@
+"""Figs 3.4-3.6, 4.3, 4.4, 4.10: motions of the cam-follower over time, in the state plane, and on sections."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from lagrangian.scenes import cam_follower
+from lcpstep import EventDriven, Moreau, simulate
+from lcpstep.analysis.attractors import attractors, random_starts
+from lcpstep.analysis.orbits import PeriodicOrbit, periodic_orbit
+from lcpstep.compare import Comparison, compare
+from lcpstep.maps import sections
+from lcpstep.plot.motion import portraits, time_series
+from lcpstep.plot.orbits import motion_panel, state_panel
+from lcpstep.plot.sections import maps
+from lcpstep.simulate import Method
+from lcpstep.trajectory import Kind
+
+SPEEDS = (358.0, 660.0, 700.0)
+STEP = 1e-4
+FLANK_NOSE = 1  # the corner at which the thesis cuts the circle of phases
+BOX = [[0.0, -60.0], [1.5, 60.0]]
+
+
+@lru_cache(maxsize=1)
+def _compared() -> tuple[list[str], list[Comparison]]:
+    titles = [f"{rpm:g} rpm" for rpm in SPEEDS]
+    return titles, [compare(cam_follower(rpm=rpm), Moreau(h=STEP), EventDriven()) for rpm in SPEEDS]
+
+
+def series() -> tuple[Any, dict[str, Any]]:
+    """Fig 3.4."""
+    titles, found = _compared()
+    return time_series(found, titles), _impacts(titles, found)
+
+
+def portraits_of_both() -> tuple[Any, dict[str, Any]]:
+    """Fig 3.5."""
+    titles, found = _compared()
+    return portraits(found, titles), _impacts(titles, found)
+
+
+def _impacts(titles: list[str], found: list[Comparison]) -> dict[str, Any]:
+    return {
+        title: {
+            name: {"impact_times": run.impacts.time, "before": run.impacts.before, "after": run.impacts.after}
+            for name, run in (("time-stepping", c.fast.trajectory), ("event-driven", c.reference.trajectory))
+        }
+        for title, c in zip(titles, found, strict=True)
+    }
+
+
+def maps_of_both() -> tuple[Any, dict[str, Any]]:
+    """Fig 3.6."""
+    scene = cam_follower(rpm=660.0)
+    methods: dict[str, Method] = {"time-stepping, h = 1e-4 s": Moreau(h=STEP), "event-driven": EventDriven()}
+    found = {name: sections(scene, method, 6000, 300) for name, method in methods.items()}
+    corners = [float(c) / scene.period for c in np.asarray(scene.corners)]
+    figure = maps(found, "cam-follower at 660 rpm, 5700 periods after 300", corners[FLANK_NOSE], corners)
+    return figure, {name: vars(x) for name, x in found.items()}
+
+
+def two_sequences() -> tuple[Any, dict[str, Any]]:
+    """Fig 4.3."""
+    return _over_the_cam(125.0)
+
+
+def one_sequence() -> tuple[Any, dict[str, Any]]:
+    """Fig 4.4."""
+    return _over_the_cam(150.0)
+
+
+def _over_the_cam(rpm: float) -> tuple[Any, dict[str, Any]]:
+    """Two turns of the settled motion, and the gap on a logarithmic scale, on which chattering is seen."""
+    from matplotlib.figure import Figure
+
+    scene = cam_follower(rpm=rpm, q0=0.0, v0=0.0)
+    T = scene.period
+    run = simulate(replace(scene, t_span=(0.0, 6.0 * T)), EventDriven(), keep="impacts")
+    span = (4.0 * T, 6.0 * T)
+    log = run.impacts[(run.impacts.time >= span[0])]
+    t = np.unique(np.concatenate([np.linspace(*span, 6000), log.time]))
+    q, v = run.at(t)
+    figure = Figure(figsize=(11, 6), layout="constrained")
+    figure.suptitle(f"follower over the cam at {rpm:g} rpm, event-driven: two turns of the settled motion")
+    above, below = figure.subplots(2, 1, sharex=True)
+    motion_panel(above, scene, t, q, v)
+    above.set_xlabel("")
+    below.semilogy(t / T, np.maximum(q[:, 0], 1e-18), "C0-", lw=0.9)
+    ends = log[log.kind == Kind.STICK]
+    for time in ends.time:
+        below.axvline(time / T, color="C3", lw=0.8)
+    releases = log[log.kind == Kind.RELEASE]
+    for time in releases.time:
+        below.axvline(time / T, color="C2", lw=0.8)
+    below.plot([], [], color="C2", label="release")
+    below.plot([], [], color="C3", label="accumulation point")
+    below.set(xlabel="time [periods]", ylabel="gap [m]", ylim=(1e-10, None))
+    below.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    below.grid(alpha=0.3)
+    return figure, {"rpm": rpm, "impact_times": log.time[log.kind == Kind.IMPACT], "accumulation": ends.time}
+
+
+def coexisting_orbits() -> tuple[Any, dict[str, Any]]:
+    """Fig 4.10."""
+    from matplotlib.figure import Figure
+
+    scene = cam_follower(rpm=358.5)
+    found = attractors(scene, EventDriven(), random_starts(BOX, 60, 0)).found
+    orbits = [periodic_orbit(scene, a.points[0], a.periods) for a in found]
+    figure = Figure(figsize=(12, 4.2 * len(orbits)), layout="constrained")
+    figure.suptitle("coexisting stable orbits of the cam-follower at 358.5 rpm, event-driven")
+    grid = figure.subplots(len(orbits), 2, width_ratios=[1.6, 1.0], squeeze=False)
+    for row, orbit in zip(grid, orbits, strict=True):
+        draw_orbit(row[0], row[1], orbit)
+        row[0].set_title(orbit.name, fontsize=10)
+    return figure, {o.name: {"x": o.x, "time": o.time, "before": o.before, "after": o.after} for o in orbits}
+
+
+def draw_orbit(left: Any, right: Any, orbit: PeriodicOrbit) -> None:
+    """One orbit over its period, and in the state plane."""
+    run = orbit.run()
+    jumps = run.impacts.time[run.impacts.kind == Kind.IMPACT]
+    t0, t1 = run.scene.t_span
+    t = np.unique(np.concatenate([np.linspace(t0, t1, 3000), jumps, np.nextafter(jumps, t0)]))
+    q, v = run.at(t)
+    motion_panel(left, orbit.scene, t, q, v)
+    state_panel(right, t, q[:, 0], v[:, 0], jumps)
+    right.plot(orbit.x[:, 0], orbit.x[:, 1], "C3o", ms=4)

@@ -1,0 +1,75 @@
+"""The figures of the thesis: each name makes its files, wrong names get the nearest, data are what is drawn."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lcpstep.cli import main
+from lcpstep.cli.common import DONE, USAGE
+from lcpstep.thesis import FIGURES, cams, maps
+from lcpstep.thesis.maps import SCENARIOS, normal_form
+
+FAST = ("2", "3.2", "3.3", "4.4", "7.2", "7.5")
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
+    assert main(["thesis", name, "--out", str(tmp_path)]) == DONE
+    for kind in ("png", "svg", "json"):
+        assert (tmp_path / f"figure-{name}.{kind}").stat().st_size > 500
+    assert json.loads((tmp_path / f"figure-{name}.json").read_text())
+    assert main(["thesis", name, "--out", str(tmp_path)]) == USAGE
+    assert "exists already; --overwrite" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in FIGURES if name not in FAST])
+def test_every_figure_can_be_made(name, tmp_path):
+    assert main(["thesis", name, "--out", str(tmp_path)]) == DONE
+    assert len(list(tmp_path.iterdir())) == 3
+
+
+def test_a_figure_that_does_not_exist_is_named_with_the_nearest(tmp_path, capsys):
+    assert main(["thesis", "3.2", "4.14", "--out", str(tmp_path / "new")]) == USAGE
+    said = capsys.readouterr().err
+    assert "unknown figure of the thesis '4.14'; did you mean" in said
+    assert "'4.13'" in said
+    assert not (tmp_path / "new").exists()  # nothing was begun
+    assert main(["thesis", "--list"]) == DONE
+    listed = capsys.readouterr().out
+    assert [line.split()[0] for line in listed.splitlines()] == list(FIGURES)
+
+
+def test_the_rises_have_the_smoothness_they_are_named_for():
+    _, data = cams.smoothness()
+    angle = data["angle"]
+    for name, jumps in (("degree one: velocity jumps", 1), ("degree two: acceleration jumps", 2)):
+        lift, velocity, acceleration = data[name]
+        assert lift[-1] == pytest.approx(0.15)
+        assert np.trapezoid(velocity, angle) == pytest.approx(0.15, abs=2e-4)
+        assert (np.max(np.abs(np.diff(velocity))) > 0.1) == (jumps == 1)
+        assert (np.max(np.abs(np.diff(acceleration))) > 0.1) == (jumps == 2)
+    lift, velocity, acceleration = data["degree three: jerk jumps"]
+    assert np.max(np.abs(np.gradient(lift, angle) - velocity)) < 1e-3
+    assert np.max(np.abs(np.diff(acceleration))) < 0.01
+
+
+def test_branches_of_the_normal_forms_are_their_closed_forms():
+    _, data = maps.normal_forms()
+    for branch in data["fold: x → x + a − x²"]:
+        assert np.asarray(branch["x"]) ** 2 == pytest.approx(np.asarray(branch["a"]), abs=1e-9)
+    flip = data["flip: x → −(1 + a) x + x³"]
+    two = [b for b in flip if np.max(np.abs(b["x"])) > 1e-3]
+    assert two
+    for branch in two:  # x -> -x: x^2 = a
+        assert np.asarray(branch["x"]) ** 2 == pytest.approx(np.asarray(branch["a"]), abs=1e-8)
+
+
+def test_scenarios_are_continuous_maps_with_the_matrices_they_name():
+    for values in SCENARIOS.values():
+        f = normal_form(*values)
+        assert f.gap()[0] < 1e-12
+        for A, (trace, det) in ((f.A_minus, values[:2]), (f.A_plus, values[2:])):
+            assert np.trace(A) == pytest.approx(trace)
+            assert np.linalg.det(A) == pytest.approx(det, abs=1e-12)
