@@ -1,4 +1,7 @@
-"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`."""
+"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`.
+
+Every anomaly is printed with the lines that reproduce it, and at the end tables; exit status 1 if there is any.
+"""
 
 from __future__ import annotations
 
@@ -6,43 +9,87 @@ import argparse
 import os
 import sys
 from collections import Counter
+from collections.abc import Iterator
 
+from benchmarks.judge.case import SHARE
+from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
-from benchmarks.judge.pool import CPU_LIMIT, answers
-from benchmarks.judge.runs import WAYS, lines
+from benchmarks.judge.pool import CPU_LIMIT, Answer, Court, answers
+from benchmarks.judge.report import Tally, report
+from benchmarks.judge.runs import WAYS, Finding, lines
+from benchmarks.judge.shapes import FAMILIES
 
 
-def main() -> int:
-    """Exit status 1 if anything was found."""
+def options() -> argparse.ArgumentParser:
+    """What can be asked for."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.judge", description=__doc__)
     parser.add_argument("--scenes", type=int, default=1000, help="how many")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--method", nargs="+", choices=sorted(WAYS), default=list(WAYS))
-    parser.add_argument("--family", nargs="+", default=None, help="only these classes of scenes")
+    parser.add_argument("--family", nargs="+", choices=sorted(FAMILIES), help="only these classes of scenes")
+    parser.add_argument("--kind", help="only anomalies whose class has this in its name are shown")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--limit", type=float, default=CPU_LIMIT, help="CPU seconds of one run")
+    parser.add_argument(
+        "--share", type=float, default=SHARE, help="of runs asked in other words; 1: do everything"
+    )
     parser.add_argument("--shown", type=int, default=3, help="anomalies shown of each class and method")
-    given = parser.parse_args()
-    numbers = range(given.first, given.first + given.scenes)
-    scenes = ((k, draw(given.seed, k)) for k in numbers)
-    chosen = ((k, d) for k, d in scenes if given.family is None or d.family in given.family)
-    runs: Counter[tuple[str, str]] = Counter()
-    found: Counter[tuple[str, str]] = Counter()
-    for answer in answers(chosen, given.method, given.workers, given.limit):
-        for name, ending in answer.endings.items():
-            runs[name, ending] += 1
+    parser.add_argument(
+        "--shrink", type=float, default=0.0, metavar="SECONDS", help="to make each of these small"
+    )
+    parser.add_argument("--report", metavar="FILE", help="write the tables there, in Markdown")
+    return parser
+
+
+def scenes(given: argparse.Namespace) -> Iterator[tuple[int, Description]]:
+    """The scenes asked for, with their numbers."""
+    for k in range(given.first, given.first + given.scenes):
+        d = draw(given.seed, k)
+        if not given.family or d.family in given.family:
+            yield k, d
+
+
+def small(d: Description, finding: Finding, given: argparse.Namespace) -> Description:
+    """The scene made small, in `given.shrink` seconds."""
+    from benchmarks.judge.shrink import shrunk
+
+    court = Court(given.limit)
+
+    def wrong(new: Description) -> bool:
+        return any(
+            x.kind == finding.kind for x in court.ask(new, finding.method) if x.method == finding.method
+        )
+
+    try:
+        return shrunk(d, wrong, given.shrink)
+    finally:
+        court.close()
+
+
+def show(answer: Answer, finding: Finding, given: argparse.Namespace) -> None:
+    """An anomaly, and what reproduces it."""
+    print(f"# scene {answer.index}, {finding.method}: {finding.kind}: {finding.text}")
+    d = small(answer.scene, finding, given) if given.shrink else answer.scene
+    print(lines(d, finding.method), end="\n\n", flush=True)
+
+
+def main() -> int:
+    """Exit status 1 if anything was found."""
+    given = options().parse_args()
+    tally, shown = Tally(), Counter[tuple[str, str]]()
+    for answer in answers(scenes(given), given.method, given.workers, given.limit, given.share):
+        tally.add(answer)
         for finding in answer.findings:
-            found[finding.method, finding.kind] += 1
-            if found[finding.method, finding.kind] <= given.shown:
-                print(f"# scene {answer.index}, {finding.method}: {finding.kind}: {finding.text}")
-                print(lines(answer.scene, finding.method), end="\n\n", flush=True)
-    for key, count in sorted(runs.items()):
-        print(*key, count)
-    print()
-    for key, count in sorted(found.items()):
-        print(*key, count)
-    return 1 if found else 0
+            key = finding.method, finding.kind
+            shown[key] += 1
+            if shown[key] <= given.shown and (given.kind or "") in finding.kind:
+                show(answer, finding, given)
+    print(report(tally))
+    if given.report:
+        with open(given.report, "w", encoding="utf-8") as file:
+            file.write(report(tally) + "\n")
+    return 1 if tally.found else 0
 
 
 if __name__ == "__main__":

@@ -29,15 +29,19 @@ def judged(
     methods: Iterable[str] = tuple(WAYS),
     tell: Callable[[str], None] = lambda name: None,
     share: float = SHARE,
+    without: tuple[str, ...] = (),
 ) -> Verdict:
     """Runs of the methods on a scene; `tell` is called with the name of the method that is at work.
 
     `share`: of the runs that are held against others of the same question in other words; with 1 everything is done.
+    `without`: methods that are left out, the reference too.
     """
     endings, findings, reference = {}, [], None
     methods = [x for x in methods if share == 1.0 or chance(d, x, 0).random() < WAYS[x].share]
     with np.errstate(all="ignore"):
         for name in dict.fromkeys([REFERENCE, *methods]):
+            if name in without:
+                continue
             tell(name)
             r = run(d, name)
             if name in methods:

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any, NamedTuple
 
+from benchmarks.judge.case import SHARE, judged
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import Clock, Finding
 
@@ -29,18 +30,16 @@ class Answer(NamedTuple):
     findings: list[Finding]
 
 
-def _work(pipe: Any, limit: float) -> None:
+def _work(pipe: Any, limit: float, share: float) -> None:
     """A worker: scenes in; names of methods at work and verdicts out."""
-    from benchmarks.judge.case import judged
-
     Clock.limit = limit
     while True:
         task = pipe.recv()
         if task is None:
             return
-        scene, methods = task
+        scene, methods, without = task
         try:
-            pipe.send(judged(scene, methods, pipe.send))
+            pipe.send(judged(scene, methods, pipe.send, share, without))
         except Exception as error:  # of the judge itself: raised where everybody sees it
             pipe.send(RuntimeError(f"{error!r} in {scene!r}\n{traceback.format_exc()}"))
 
@@ -48,21 +47,19 @@ def _work(pipe: Any, limit: float) -> None:
 class _Worker:
     """A process, and what it is at."""
 
-    def __init__(self, limit: float) -> None:
+    def __init__(self, limit: float, share: float) -> None:
         context = multiprocessing.get_context("spawn")
         self.pipe, other = context.Pipe()
-        self.process = context.Process(target=_work, args=(other, limit), daemon=True)
+        self.process = context.Process(target=_work, args=(other, limit, share), daemon=True)
         self.process.start()
         other.close()
         self.task: Any = None
         self.at = ""
-        self.lost: dict[str, str] = {}
-        self.found: list[Finding] = []
 
-    def give(self, index: int, scene: Description, methods: list[str]) -> None:
-        """A scene to judge."""
-        self.task, self.at = (index, scene, methods), ""
-        self.pipe.send((scene, methods))
+    def give(self, index: int, scene: Description, methods: list[str], without: tuple[str, ...] = ()) -> None:
+        """A scene to judge, without the methods at which workers have been lost."""
+        self.task, self.at = (index, scene, methods, without), ""
+        self.pipe.send((scene, methods, without))
 
     def stop(self) -> int:
         """End the process; its exit code."""
@@ -73,11 +70,15 @@ class _Worker:
 
 
 def answers(
-    scenes: Iterable[tuple[int, Description]], methods: list[str], workers: int, limit: float = CPU_LIMIT
+    scenes: Iterable[tuple[int, Description]],
+    methods: list[str],
+    workers: int,
+    limit: float = CPU_LIMIT,
+    share: float = SHARE,
 ) -> Iterator[Answer]:
     """Verdicts on scenes, in the order in which they are ready."""
     scenes = iter(scenes)
-    pool = [_Worker(limit) for _ in range(workers)]
+    pool = [_Worker(limit, share) for _ in range(workers)]
     lost: dict[int, tuple[dict[str, str], list[Finding]]] = {}
     try:
         for w in pool:
@@ -95,10 +96,33 @@ def answers(
                     )
                     _next(w, scenes, methods)
                 elif answer:
-                    pool[pool.index(w)] = _replaced(w, limit, lost)
+                    pool[pool.index(w)] = _replaced(w, limit, share, lost)
     finally:
         for w in pool:
             w.stop()
+
+
+class Court:
+    """One worker that is asked about one scene after another."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit = limit
+        self.worker = _Worker(limit, 1.0)
+
+    def ask(self, scene: Description, method: str) -> list[Finding]:
+        """What is found about a method on a scene."""
+        self.worker.give(0, scene, [method])
+        lost: dict[int, tuple[dict[str, str], list[Finding]]] = {}
+        while True:
+            answer = _hear(self.worker)
+            if isinstance(answer, Answer):
+                return answer.findings + lost.pop(0, ({}, []))[1]
+            if answer:
+                self.worker = _replaced(self.worker, self.limit, 1.0, lost)
+
+    def close(self) -> None:
+        """End the worker."""
+        self.worker.stop()
 
 
 def _next(w: _Worker, scenes: Iterator[tuple[int, Description]], methods: list[str]) -> None:
@@ -122,9 +146,9 @@ def _hear(w: _Worker) -> Any:
     return Answer(w.task[0], w.task[1], word.endings, word.findings)
 
 
-def _replaced(w: _Worker, limit: float, lost: Any) -> _Worker:
+def _replaced(w: _Worker, limit: float, share: float, lost: Any) -> _Worker:
     """Another worker for the rest of the scene at which one was lost."""
-    index, scene, methods = w.task
+    index, scene, methods, without = w.task
     w.process.join(1.0)
     code = w.stop()
     kind = "hang" if code in (-signal.SIGPROF, -signal.SIGKILL) else "crash"
@@ -134,6 +158,6 @@ def _replaced(w: _Worker, limit: float, lost: Any) -> _Worker:
     endings, findings = lost.setdefault(index, ({}, []))
     endings[w.at] = kind
     findings.append(Finding(w.at, kind, text))
-    new = _Worker(limit)
-    new.give(index, scene, [x for x in methods if x != w.at])
+    new = _Worker(limit, share)
+    new.give(index, scene, methods, (*without, w.at))
     return new

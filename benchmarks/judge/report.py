@@ -1,0 +1,87 @@
+"""Tables of what was judged: how runs ended, by method and class of scene, and what was found."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+
+from benchmarks.judge.pool import Answer
+from benchmarks.judge.runs import WAYS
+
+GOOD = ("DONE", "refused")
+
+
+class Tally:
+    """Counts of endings and findings."""
+
+    def __init__(self) -> None:
+        self.scenes = 0
+        self.ended: Counter[tuple[str, str, str]] = Counter()  # method, class of scene, ending
+        self.found: Counter[tuple[str, str]] = Counter()  # method, kind
+        self.classes: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+
+    def add(self, answer: Answer) -> None:
+        """One scene more; a kind counts once for each method on it."""
+        self.scenes += 1
+        family = answer.scene.family
+        for method, ending in answer.endings.items():
+            self.ended[method, family, ending] += 1
+        for method, kind in {(x.method, x.kind) for x in answer.findings}:
+            self.found[method, kind] += 1
+            self.classes[method, kind][family] += 1
+
+    @property
+    def methods(self) -> list[str]:
+        """Methods that have run, in their usual order."""
+        return [x for x in WAYS if any(method == x for method, _, _ in self.ended)]
+
+    def count(self, method: str, family: str | None = None, ending: str | None = None) -> int:
+        """Runs of a method, of one class of scene or of one ending."""
+        return sum(
+            n
+            for (m, f, e), n in self.ended.items()
+            if m == method and family in (None, f) and ending in (None, e)
+        )
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
+    """A table in Markdown."""
+    lines = [list(map(str, head))]
+    lines += [["---"] * len(lines[0])]
+    lines += [list(map(str, row)) for row in rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def endings(t: Tally) -> str:
+    """By method: how its runs ended."""
+    found = Counter[str]()
+    for (method, _), n in t.found.items():
+        found[method] += n
+    early = sorted({e for _, _, e in t.ended if e not in GOOD})
+    rows = [[m, t.count(m), *(t.count(m, None, e) for e in (*GOOD, *early)), found[m]] for m in t.methods]
+    return table(["method", "runs", *GOOD, *early, "anomalies"], rows)
+
+
+def by_class(t: Tally) -> str:
+    """By class of scene and method: runs that went to the end, of those that were not refused."""
+    families = sorted({f for _, f, _ in t.ended})
+
+    def cell(method: str, family: str) -> str:
+        asked = t.count(method, family) - t.count(method, family, "refused")
+        return f"{t.count(method, family, 'DONE')}/{asked}" if asked else ""
+
+    return table(["scenes", *t.methods], ([f, *(cell(m, f) for m in t.methods)] for f in families))
+
+
+def anomalies(t: Tally) -> str:
+    """By kind and method: in how many scenes, and in which classes most."""
+    rows = [
+        [kind, method, n, ", ".join(f"{f} {k}" for f, k in t.classes[method, kind].most_common(4))]
+        for (method, kind), n in sorted(t.found.items(), key=lambda x: (x[0][1], x[0][0]))
+    ]
+    return table(["anomaly", "method", "scenes", "mostly in"], rows) if rows else "No anomaly."
+
+
+def report(t: Tally) -> str:
+    """All tables."""
+    return "\n\n".join([f"{t.scenes} scenes.", endings(t), by_class(t), anomalies(t)])

@@ -1,0 +1,112 @@
+"""The judge sees what is wrong, and only that."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.judge import agree
+from benchmarks.judge.agree import disturbed
+from benchmarks.judge.case import judged
+from benchmarks.judge.checks import check
+from benchmarks.judge.describe import Description
+from benchmarks.judge.pool import answers
+from benchmarks.judge.report import Tally, report
+from benchmarks.judge.runs import run
+from benchmarks.judge.shrink import shrunk
+from benchmarks.judge.variants import VARIANTS
+from benchmarks.judge.vary import base, same, varied
+
+BALL = Description(
+    M=((2.0,),), q0=(1.0,), v0=(0.3,), t_span=(0.0, 1.5), h=0.01, G=((1.0,),), offset=(0.0,), restitution=0.5,
+    constant=(-19.62,), family="ball",
+)  # fmt: skip
+CORNER = Description(
+    M=((2.0, 0.0), (0.0, 1.0)), q0=(1.0, 0.7), v0=(0.3, 0.1), t_span=(0.0, 1.0), h=0.01, G=((1.0, 0.2), (0.1, 1.0)),
+    offset=(0.0, 0.0), restitution=(0.5, 0.3), constant=(-9.0, -9.81), family="corner",
+)  # fmt: skip
+
+
+def kinds(findings):
+    return {x.kind for x in findings}
+
+
+def tampered(method="event-driven", **changes):
+    """A run of the ball in which something has been changed."""
+    r = run(BALL, method)
+    return replace(r, motion=replace(r.motion, **{k: f(getattr(r.motion, k)) for k, f in changes.items()}))
+
+
+@pytest.mark.parametrize("d", [BALL, CORNER], ids=lambda d: d.family)
+def test_nothing_is_found_where_nothing_is_wrong(d):
+    verdict = judged(d, ("event-driven", "located", "moreau"), share=1.0)
+    assert verdict.findings == []
+    assert set(verdict.endings.values()) == {"DONE"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "changes"),
+    [
+        ("not finite", {"q": lambda q: np.where(q == q[3], np.nan, q)}),
+        ("penetration", {"q": lambda q: q - 1e-3}),
+        ("negative impulse", {"impulse": lambda p: p - 1e-3 * np.max(p)}),
+        ("impulse while open", {"impulse": lambda p: p + 1e-3 * np.max(p)}),
+        ("energy gained", {"v": lambda v: v * np.linspace(1.0, 1.1, len(v))[:, None]}),
+        ("wrong span", {"t": lambda t: t * 0.9}),
+    ],
+)
+def test_what_is_wrong_with_a_run_is_found(kind, changes):
+    assert kind in kinds(check(BALL, tampered(**changes)))
+
+
+def test_a_wrong_restitution_is_found(monkeypatch):
+    """A method that takes another restitution than the scene's breaks the law, and goes another way."""
+    r = run(replace(BALL, restitution=0.6), "located")
+    assert "law of impact" in kinds(check(BALL, r))
+
+    def other(d, name, *rest):
+        return run(replace(d, restitution=0.6) if name == "located" else d, name, *rest)
+
+    monkeypatch.setattr(agree, "run", other)
+    assert kinds(agree.agrees(agree.Reference(BALL, run(BALL, "event-driven")), r)) == {"disagrees"}
+
+
+def test_variants_of_another_scene_are_found():
+    b = base(CORNER, run(CORNER, "event-driven"))
+    for make in VARIANTS.values():
+        v = make(CORNER, np.random.default_rng(1))
+        assert list(same(b, run(v.scene, "event-driven"), v)) == []
+        other = run(replace(v.scene, restitution=(0.5, 0.4)), "event-driven")
+        assert any("other" in x.kind for x in same(b, other, v)), v.name
+
+
+@pytest.mark.parametrize("method", ["event-driven", "located", "moreau"])
+def test_a_corner_is_the_same_in_other_words(method):
+    assert list(varied(CORNER, run(CORNER, method), np.random.default_rng(2), 20)) == []
+
+
+def test_a_disturbed_scene_keeps_what_is_closed():
+    resting = replace(CORNER, q0=(0.0, 0.7), offset=(-0.14, 0.0), v0=(0.0, 0.0))
+    near = disturbed(resting, 1e-6, 1.0, 1)
+    before, after = (x.scene().gap(0.0, x.q0, x.v0)[0] for x in (resting, near))
+    assert after[0] == pytest.approx(0.0, abs=1e-15)
+    assert after[1] == pytest.approx(before[1], rel=1e-5)
+    assert after[1] != before[1]
+
+
+def test_a_run_without_end_is_reported_and_the_rest_goes_on():
+    (answer,) = answers([(7, BALL)], ["event-driven"], 1, limit=1e-4)
+    assert answer.index == 7
+    assert answer.endings == {"event-driven": "hang"}
+    assert kinds(answer.findings) == {"hang"}
+    tally = Tally()
+    tally.add(answer)
+    assert "| hang | event-driven | 1 | ball 1 |" in report(tally)
+
+
+def test_anomalies_are_made_small():
+    """What is wrong with this scene is its second contact."""
+    crowded = replace(CORNER, K=((3.0, 1.0), (1.0, 4.0)), sine=(0.2, 0.3), force_omega=2.0)
+    small = shrunk(crowded, lambda d: 1.0 in [row[-1] for row in d.G], seconds=3.0)
+    assert small.contacts == 1
+    assert (small.n, small.K, small.sine, small.constant) == (1, (), (), ())

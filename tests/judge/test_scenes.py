@@ -1,0 +1,47 @@
+"""Random scenes before the judge, and those that have been wrong once.
+
+What is still open is listed by class, so that nothing new comes in beside it; the list only gets shorter, and
+docs/accuracy.md says how often each happens.
+"""
+
+import pytest
+
+from benchmarks.judge.case import judged
+from benchmarks.judge.draw import draw
+from benchmarks.judge.pool import answers
+from benchmarks.judge.runs import WAYS
+from tests.judge.kept import KEPT
+from tests.judge.open import OPEN
+
+QUICK = ("event-driven", "located", "moreau")
+
+
+def new(findings):
+    """Findings whose class is not known."""
+    return [x for x in findings if x.kind not in OPEN.get(x.method, ())]
+
+
+@pytest.mark.parametrize("name", KEPT)
+def test_what_was_wrong_once_is_right(name):
+    d, methods = KEPT[name]
+    assert judged(d, methods, share=1.0).findings == []
+
+
+def judge(numbers, seed, methods, share):
+    """Findings of new classes, each with its scene."""
+    scenes = ((k, draw(seed, k)) for k in numbers)
+    for answer in answers(scenes, list(methods), workers=2, share=share):
+        yield from [(answer.index, answer.scene, x) for x in new(answer.findings)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+def test_thousands_of_scenes(seed):
+    assert list(judge(range(1500), seed, WAYS, 0.25)) == []
+
+
+def test_some_hundred_scenes():
+    """Short ones, by the methods that are asked for most."""
+    short = [k for k in range(700) if (d := draw(3, k)).length < 300.0 * d.h and d.contacts < 5]
+    assert len(short) > 300
+    assert list(judge(short[:300], 3, QUICK, 0.02)) == []
