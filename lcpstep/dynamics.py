@@ -14,7 +14,11 @@ from lcpstep.compiled import call, inline
 from lcpstep.dense import assign
 from lcpstep.model import ABSENT
 
-DIFFERENCE = 1e-3  # step of the fourth-order differences that stand in for a missing bias
+# Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
+# to the terms of the rate, that they may show, and what a shorter step aims at; how often it is shortened, and beyond
+# what a gap has turned so much that nothing is seen of it
+DIFFERENCE = 1e-3
+BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
 
 
 @inline
@@ -105,21 +109,58 @@ def bias(model: Any, t: float, q: Any, v: Any, shifted: Any, G: Any, rate: Any, 
     if model.bias != ABSENT:
         call(model.bias, t, q, v, model.p, out)
         return
-    size = 1.0
+    d = difference_step(model, t, q, v, shifted, G, rate)
+    for c in range(len(out)):
+        near, far = model.motion_now[c, 0], model.motion_now[c, 1]
+        out[c] = (8.0 * near - far) / (12.0 * d)
+
+
+def difference_step(model: Any, t: float, q: Any, v: Any, shifted: Any, G: Any, rate: Any) -> float:
+    """A step short enough for the differences of the gaps' rates along the motion; it leaves these in `motion_now`.
+
+    Gaps may bend at any scale. A third difference that is too large asks for a shorter step, in proportion to its
+    third root, unless the last one has shown that this does not help: the curvature jumps nearby.
+    """
+    speed = 1.0
     for i in range(len(q)):
-        size = max(size, abs(v[i]))
-    d = DIFFERENCE / size
+        speed = max(speed, abs(v[i]))
+    d, before, shorter = DIFFERENCE / speed, math.inf, 1.0
+    for _ in range(SHORTENINGS):
+        bent = differences(model, t, q, v, shifted, G, rate, d)
+        helped = bent > LOST or bent <= before * shorter
+        if not bent > BENT or not helped:
+            return d
+        change = max((SMOOTH / bent) ** (1.0 / 3.0), DIFFERENCE)
+        before, shorter = bent, change * math.sqrt(change)
+        d *= change
+    differences(model, t, q, v, shifted, G, rate, d)
+    return d
+
+
+def differences(model: Any, t: float, q: Any, v: Any, shifted: Any, G: Any, rate: Any, d: float) -> float:
+    """Differences of G v + g_t between -d and d, and -2 d and 2 d, into `motion_now`; the third one, relative.
+
+    Contacts whose gap is a function have no obstacle that moves, and its place is free.
+    """
+    now = model.motion_now
+    for c in range(len(rate)):
+        now[c, 0] = now[c, 1] = now[c, 2] = 0.0
     for k in range(4):
-        shift, weight = (
-            (d, 8.0)
-            if k == 0
-            else ((-d, -8.0) if k == 1 else ((2.0 * d, -1.0) if k == 2 else (-2.0 * d, 1.0)))
-        )
+        shift = d * (1.0 + k // 2) * (1.0 if k % 2 == 0 else -1.0)
         for i in range(len(q)):
             shifted[i] = q[i] + shift * v[i]
         gap_rates(model, t + shift, shifted, v, G, rate)
-        for c in range(len(out)):
-            out[c] += weight * (product(G, v, c) + rate[c]) / (12.0 * d)
+        for c in range(len(rate)):
+            terms = abs(rate[c])
+            for j in range(len(q)):
+                terms += abs(G[c, j] * v[j])
+            now[c, 2] = max(now[c, 2], terms)
+            now[c, k // 2] += (product(G, v, c) + rate[c]) * (1.0 if k % 2 == 0 else -1.0)
+    bent = 0.0
+    for c in range(len(rate)):
+        if now[c, 2] > 0.0:
+            bent = max(bent, abs(now[c, 1] - 2.0 * now[c, 0]) / now[c, 2])
+    return bent
 
 
 @inline

@@ -10,9 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from lcpstep.compiled import call
-from lcpstep.dense import assign, largest
-from lcpstep.dynamics import DIFFERENCE, gap_rates, gaps, product, total_force
+from lcpstep.dense import assign
+from lcpstep.dynamics import bias, gap_rates, gaps, product, total_force
 from lcpstep.events.acceleration import free_acceleration, inverse_mass
 from lcpstep.events.clock import inside
 from lcpstep.events.several.state import (
@@ -30,7 +29,6 @@ from lcpstep.events.several.state import (
     Q,
     V,
 )
-from lcpstep.model import ABSENT
 
 
 def measure(s: Any, t: float) -> bool:
@@ -99,29 +97,8 @@ def constraint_rows(s: Any, t: float, q: Any, v: Any) -> None:
 
 def biases(s: Any, model: Any, G: Any, now: Any, t: float, q: Any, v: Any) -> None:
     """(dG/dt) v + d(rate)/dt along the motion, for all rows of a model; G is overwritten."""
-    n = len(G)
-    if n == 0:
-        return
-    out = now[BIAS]
-    for i in range(n):
-        out[i] = 0.0
-    if model.flat:
-        if model.motion != ABSENT:
-            call(model.motion, t, q, v, model.p, model.motion_now)
-            for i in range(n):
-                out[i] = -model.motion_now[i, 2]
-    elif model.bias != ABSENT:
-        call(model.bias, t, q, v, model.p, out)
-    else:
-        d = DIFFERENCE / largest(v, 1.0)
-        shifted = s.state[WORK]
-        for step in (-2, -1, 1, 2):
-            for k in range(len(q)):
-                shifted[k] = q[k] + step * d * v[k]
-            gap_rates(model, t + step * d, shifted, v, G, now[SHIFTED])
-            weight = (8.0 if abs(step) == 1 else -1.0) * (1.0 if step > 0 else -1.0) / (12.0 * d)
-            for i in range(n):
-                out[i] += weight * (product(G, v, i) + now[SHIFTED, i])
+    if len(G) > 0:
+        bias(model, t, q, v, s.state[WORK], G, now[SHIFTED], now[BIAS])
 
 
 def bias_of(s: Any, i: int) -> float:

@@ -12,13 +12,12 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from lcpstep.compiled import by_address, call
-from lcpstep.dense import assign, largest, positive_definite, solve_definite
-from lcpstep.dynamics import DIFFERENCE, gap_rates, gaps, mass, product
+from lcpstep.compiled import by_address
+from lcpstep.dense import assign, positive_definite, solve_definite
+from lcpstep.dynamics import bias, gap_rates, gaps, mass, product
 from lcpstep.events.acceleration import free_acceleration
 from lcpstep.events.clock import inside
 from lcpstep.events.contact import CLOSED, MODE, N_CONTACT
-from lcpstep.model import ABSENT
 
 # Places in Piece.x after those of clock and contact: duration of the piece; size of the next step
 LENGTH, NEXT_STEP = range(N_CONTACT, N_CONTACT + 2)
@@ -49,6 +48,7 @@ class Piece(NamedTuple):
     G_shifted: Any  # (1, n_q), of the differences
     g_t_shifted: Any
     q_shifted: Any
+    bias: Any  # (1,)
 
 
 def inverse_mass_times(s: Any, t: float, q: Any, v: Any, x: Any) -> None:
@@ -68,28 +68,8 @@ def contact_response(s: Any, t: float, q: Any, v: Any) -> float:
 
 def gap_bias(s: Any, t: float, q: Any, v: Any) -> float:
     """(dG/dt) v + d(g_t)/dt along the motion."""
-    if s.model.flat:
-        if s.model.motion == ABSENT:
-            return 0.0
-        call(s.model.motion, t, q, v, s.model.p, s.model.motion_now)
-        return -s.model.motion_now[0, 2]
-    if s.model.bias != ABSENT:
-        call(s.model.bias, t, q, v, s.model.p, s.g_t_shifted)
-        return s.g_t_shifted[0]
-    d = DIFFERENCE / largest(v, 1.0)
-    return (
-        8.0 * (gap_speed_along(s, t, q, v, d) - gap_speed_along(s, t, q, v, -d))
-        - gap_speed_along(s, t, q, v, 2.0 * d)
-        + gap_speed_along(s, t, q, v, -2.0 * d)
-    ) / (12.0 * d)
-
-
-def gap_speed_along(s: Any, t: float, q: Any, v: Any, d: float) -> float:
-    """G v + g_t at t + d, q + d v, with the same v."""
-    for i in range(len(q)):
-        s.q_shifted[i] = q[i] + d * v[i]
-    gap_rates(s.model, t + d, s.q_shifted, v, s.G_shifted, s.g_t_shifted)
-    return product(s.G_shifted, v, 0) + s.g_t_shifted[0]
+    bias(s.model, t, q, v, s.q_shifted, s.G_shifted, s.g_t_shifted, s.bias)
+    return s.bias[0]
 
 
 def right_hand_side(s: Any, t: float, y: Any, dy: Any) -> bool:

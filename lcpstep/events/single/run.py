@@ -39,6 +39,7 @@ def piece(scene: Scene, m: Model, p: Plan | None = None) -> Piece:
         q0=q.copy(), v0=v.copy(), q=q, v=v, a=np.zeros(n_q), y=np.zeros(2 * n_q),
         G=np.zeros((n_c, n_q)), g_t=np.zeros(n_c), g=np.zeros(n_c), MG=np.zeros(n_q), M=np.zeros((n_q, n_q)),
         G_shifted=np.zeros((n_c, n_q)), g_t_shifted=np.zeros(n_c), q_shifted=np.zeros(n_q),
+        bias=np.zeros(n_c),
     )  # fmt: skip
 
 

@@ -1,0 +1,68 @@
+"""What stands in for a derivative that a scene does not give: the bias by differences, at any scale."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearSystem, Scene
+from lcpstep.dynamics import bias
+from lcpstep.model import plain_model
+
+
+def circle_gap(t, q, v, p, out):
+    out[0] = p[0] - math.hypot(q[0], q[1])
+
+
+def circle_jacobian(t, q, v, p, out):
+    r = math.hypot(q[0], q[1])
+    out[0, 0], out[0, 1] = -q[0] / r, -q[1] / r
+
+
+def waves_gap(t, q, v, p, out):
+    out[0] = 2.0 * p[0] + q[1] - p[0] * math.sin(q[0] / p[0])
+
+
+def waves_jacobian(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -math.cos(q[0] / p[0]), 1.0
+
+
+def exact_bias(kind, q, v, size):
+    if kind == "circle":
+        return -((q[0] * v[1] - q[1] * v[0]) ** 2) / math.hypot(*q) ** 3
+    return math.sin(q[0] / size) / size * v[0] ** 2
+
+
+GAPS = {"circle": (circle_gap, circle_jacobian), "waves": (waves_gap, waves_jacobian)}
+
+
+@pytest.mark.parametrize("kind", GAPS)
+@pytest.mark.parametrize("size", 10.0 ** np.arange(-7.0, 3.5))
+@pytest.mark.parametrize("rate", [1e-3, 1.0, 1e3], ids="rate {:g}".format)
+def test_differences_find_the_curvature_of_gaps_of_any_size(kind, size, rate):
+    # a body of this size that goes round it `rate` times as fast as in a second
+    q, v = size * np.array([0.3, 0.4]), size * rate * np.array([1.2, -0.7])
+    gap, jacobian = GAPS[kind]
+    contacts = Contacts(n_c=1, gap=gap, jacobian=jacobian)
+    model = plain_model(Scene(LinearSystem(M=np.eye(2)), q, v, (0.0, 1.0), contacts, p=[size]))
+    out, rates, G, shifted = np.zeros(1), np.zeros(1), np.zeros((1, 2)), np.zeros(2)
+    bias(model, 0.0, q, v, shifted, G, rates, out)
+    exact = exact_bias(kind, q, v, size)
+    assert out[0] == pytest.approx(exact, rel=max(1e-10, 1e-12 * size, 1e-12 / rate))
+
+
+def bent_gap(t, q, v, p, out):
+    out[0] = q[1] - 0.5 * q[0] * abs(q[0])
+
+
+def bent_jacobian(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -abs(q[0]), 1.0
+
+
+def test_a_curvature_that_jumps_does_not_drown_in_ever_shorter_steps():
+    contacts = Contacts(n_c=1, gap=bent_gap, jacobian=bent_jacobian)
+    q, v = np.array([1e-9, 1.0]), np.array([1.0, 0.3])
+    model = plain_model(Scene(LinearSystem(M=np.eye(2)), q, v, (0.0, 1.0), contacts))
+    out, rates, G, shifted = np.zeros(1), np.zeros(1), np.zeros((1, 2)), np.zeros(2)
+    bias(model, 0.0, q, v, shifted, G, rates, out)
+    assert -1.0 - 1e-6 < out[0] < 1.0 + 1e-6  # -1 on one side of it and 1 on the other
