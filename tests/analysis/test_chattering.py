@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from lagrangian import scenes
+from lagrangian import LinearContacts, Scene, System, scenes
+from lagrangian.profiles import rotating_cam
 from lcpstep import EventDriven
 from lcpstep.analysis.chattering import corner_crossings, sequences
 from tests.cam_sequences import sequences as exact_sequences
@@ -18,6 +19,20 @@ MEETINGS = [(FLAT, 2), (EDGE, 3), (LAST, 1)]
 
 def resting(rpm):
     return scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0)
+
+
+def spring(t, q, v, p, out):
+    out[0] = -1430.8 * q[0]
+
+
+def general(rpm):
+    """The same follower as a general system, which is integrated by a Runge-Kutta method."""
+    made = scenes.cam_follower(rpm=rpm, q0=0.0, v0=0.0, coordinates="absolute")
+    return Scene(
+        system=System(n_q=1, mass=1.221, force=spring),
+        contacts=LinearContacts(G=1.0, restitution=0.8, motion=rotating_cam),
+        q0=made.q0, v0=made.v0, t_span=made.t_span, p=made.p, corners=made.corners, period=made.period,
+    )  # fmt: skip
 
 
 def assert_sequences_are_exact(rpm, turns, method=None, most=100):
@@ -91,3 +106,12 @@ def test_no_release_is_without_impact(rpm, below):
     for s in sequences(resting(rpm * (1 + below))):
         assert len(s.impacts) > 0
         assert s.accumulation > s.release
+
+
+@pytest.mark.parametrize("rpm", [118.0, 119.7124, 119.71248, 119.7125, 119.713, 136.3, 140.0])
+def test_a_general_system_chatters_as_the_closed_form_does(rpm):
+    closed, integrated = sequences(resting(rpm)), sequences(general(rpm))
+    assert len(closed) == len(integrated) > 0
+    for s, other in zip(closed, integrated, strict=True):
+        assert other.release == pytest.approx(s.release, abs=1e-13)
+        assert other.accumulation == pytest.approx(s.accumulation, abs=1e-11)

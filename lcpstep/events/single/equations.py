@@ -19,9 +19,10 @@ from lcpstep.events.acceleration import free_acceleration
 from lcpstep.events.clock import inside
 from lcpstep.events.contact import CLOSED, MODE, N_CONTACT
 
-# Places in Piece.x after those of clock and contact: duration of the piece; size of the next step
-LENGTH, NEXT_STEP = range(N_CONTACT, N_CONTACT + 2)
-N_PIECE = N_CONTACT + 2
+# Places in Piece.x after those of clock and contact: duration of the piece; size of the next step; gap at the base,
+# where it is known better than by a difference (see `corner`)
+LENGTH, NEXT_STEP, GAP0 = range(N_CONTACT, N_CONTACT + 3)
+N_PIECE = N_CONTACT + 3
 
 
 @by_address

@@ -39,13 +39,13 @@ from lcpstep.events.contact import (
     ON_SURFACE,
     ON_THE_SURFACE,
     finite,
-    hop,
     keep,
 )
-from lcpstep.events.single.equations import N_PIECE, NEXT_STEP, project
+from lcpstep.events.single.corner import fall, is_low, low_hop, reach_end, turn_corner
+from lcpstep.events.single.equations import GAP0, N_PIECE, NEXT_STEP, project
 from lcpstep.events.single.keep import keep_event, keep_times, store_dense
 from lcpstep.events.single.locate import first_contact, first_release, short_hop
-from lcpstep.events.single.modes import impact, release, settle, settle_again, turn_corner
+from lcpstep.events.single.modes import impact, release, settle, settle_again
 from lcpstep.events.single.motion import (
     contact_at,
     contact_impulse,
@@ -142,12 +142,14 @@ def advance(s: Any, count: Any) -> int:
 def seek_contact(s: Any, h: float, guess: float) -> int:
     """The first contact within a step of size h in free flight, into FOUND."""
     x, tau = s.x, NONE
-    if guess < h:
-        tau = short_hop(s, guess, min(LONGER * guess, h))
+    low = is_low(s, h)
+    if guess < h or low:
+        longest = min(LONGER * guess, h)
+        tau = low_hop(s, guess, longest) if x[GAP0] > 0.0 else short_hop(s, guess, longest)
         x[HOP] = 1.0 if tau != NONE else 0.0
     a, at_a = 0.0, (x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA])
     for part in range(1, PARTS + 1):
-        if tau == NONE:
+        if tau == NONE and not low:
             b = h * part / PARTS
             at_b = contact_at(s, b)
             if at_b[0] - at_b[0] != 0.0:
@@ -183,9 +185,10 @@ def rough(s: Any, length: float, at_a: tuple[float, float, float], at_b: tuple[f
 
 def hop_time(s: Any) -> float:
     """Duration of the hop that has just begun, were its acceleration constant; infinite if none has."""
-    if s.x[ON_SURFACE] == 1.0 and s.x[NOW] == s.x[T0] and s.x[EDGE_ALPHA] < 0.0 and s.x[EDGE_U] > 0.0:
-        return hop(s.x[EDGE_U], s.x[EDGE_ALPHA])
-    return math.inf
+    x = s.x
+    if not (x[ON_SURFACE] == 1.0 and x[NOW] == x[T0] and x[EDGE_ALPHA] < 0.0):
+        return math.inf
+    return fall(x[GAP0], x[EDGE_U], x[EDGE_ALPHA]) if x[EDGE_U] > 0.0 or x[GAP0] > 0.0 else math.inf
 
 
 def finish(s: Any, record: Any, count: Any) -> int:
@@ -242,10 +245,12 @@ def pass_end(s: Any, record: Any, count: Any, stop: float, closed: bool) -> int:
         if not finite(0.0, u, alpha):
             return NOT_FINITE
         s.x[EDGE_ALPHA] = min(alpha, 0.0)
-    state_at(s, stop)
     if closed:
+        state_at(s, stop)
         project(s, s.x[NOW])
-    rebase(s, s.x[NOW])
+        rebase(s, s.x[NOW])
+    else:
+        reach_end(s, stop)
     if is_due(record, count):
         keep(s, record, count, s.x[NOW])
     return FINISHED

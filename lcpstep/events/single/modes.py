@@ -32,7 +32,7 @@ from lcpstep.events.contact import (
 )
 from lcpstep.events.single.equations import contact_response, project, surface_acceleration
 from lcpstep.events.single.keep import keep_event
-from lcpstep.events.single.motion import contact_at, gap_acceleration, rebase, state_at
+from lcpstep.events.single.motion import gap_acceleration, rebase, state_at
 
 
 def impact(s: Any, record: Any, count: Any, u: float) -> None:
@@ -115,10 +115,3 @@ def release(s: Any, record: Any, count: Any, alpha: float) -> None:
     log(s, record, count, s.x[NOW], RELEASE, 0.0, 0.0, 0.0)
     s.x[MODE], s.x[ON_SURFACE] = FREE, 1.0
     s.x[EDGE_G], s.x[EDGE_U], s.x[EDGE_ALPHA] = 0.0, 0.0, alpha
-
-
-def turn_corner(s: Any) -> None:
-    """Enter the next smooth interval, with the accelerations of its side."""
-    find_corners(s, s.x[NOW])
-    if s.contact:
-        _, _, s.x[EDGE_ALPHA] = contact_at(s, s.x[NOW] - s.x[T0])

@@ -14,7 +14,7 @@ from lcpstep.events.acceleration import free_acceleration
 from lcpstep.events.clock import RESOLUTION, T0, inside, start_at
 from lcpstep.events.contact import ALPHA0, ON_SURFACE, ON_THE_SURFACE, SPEED0
 from lcpstep.events.dop853 import interpolate
-from lcpstep.events.single.equations import LENGTH, contact_response, gap_bias
+from lcpstep.events.single.equations import GAP0, LENGTH, contact_response, gap_bias
 
 GAUSS = (  # nodes and weights on [0, 1]
     (0.06943184420297371, 0.17392742256872692),
@@ -33,7 +33,7 @@ def rebase(s: Any, t: float) -> None:
     assign(s.v0, s.v)
     join(s.w.y, s.q, s.v)
     start_at(s.x, t)
-    s.x[ON_SURFACE], s.x[SPEED0] = 0.0, 0.0
+    s.x[ON_SURFACE], s.x[SPEED0], s.x[GAP0] = 0.0, 0.0, 0.0
 
 
 def state_at(s: Any, tau: float) -> None:
