@@ -276,7 +276,7 @@ def follow(
             if not force_at(m, plan, w, x, z, now, node * tau, count):
                 return NOT_FINITE
             for c in range(w.num.shape[1]):
-                w.num[IMPULSE, c] += weight * tau * w.num[P, c]
+                w.num[IMPULSE, c] += weight * tau * max(w.num[P, c], 0.0)  # else a zero's rounding
     state_at(m, plan, w, x, z, now, tau)
     assign(w.vec[Q], z.vec[Q])
     assign(w.vec[V], z.vec[V])
