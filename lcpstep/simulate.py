@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 
 from lagrangian import HybridScene, Scene
+from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.faults import fault, forget
 from lcpstep.model import culprit, hybrid_culprit
@@ -61,7 +62,7 @@ def simulate(
     Returns
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
-        end of the span
+        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large
 
     Raises
     ------
@@ -95,7 +96,8 @@ def simulate(
     run = method.run(scene, kept, report)
     if fault() is not None:
         raise _raised(run, culprit(scene, (), run.q, run.v))
-    return run
+    doubt = too_deep(run)
+    return replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
 
 
 def _raised(run: Any, message: str) -> SimulationError:
