@@ -8,7 +8,7 @@ System                        force: force_q and force_v
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,18 +29,19 @@ GOLDEN = 0.6180339887498949
 KNOWN = Known()
 
 
-def check_derivatives(scene: Scene, at: State, run: bool = False) -> None:
+def check_derivatives(scene: Scene, states: Iterable[State], run: bool = False) -> None:
     """Compare every derivative that the scene's functions give; ValueError names the first that is wrong.
 
-    run : whether the state is one of a run, and so another than the one looked at when the scene was made
+    Once for each set of functions near the start of a scene, and once near states of a run.
     """
     functions = [f for f in _functions(scene) if f is not None]
     known, shape = KNOWN.of(functions), (scene.n_q, len(np.asarray(scene.p)), run)
     if not functions or shape in known.shapes:
         return
     with np.errstate(all="ignore"):
-        for relation in _relations(scene, at):
-            compare(relation)
+        for at in states:
+            for relation in _relations(scene, at):
+                compare(relation)
     known.shapes.add(shape)
 
 

@@ -82,7 +82,7 @@ class Scene(Pickled):
             self._check_start(*self.contacts.state(*at))
         if self.joints is not None:
             self._check_joints(*joint_state(self.joints, *at))
-        check_derivatives(self, at[:3])
+        check_derivatives(self, [at[:3]])
         if self.exact is not None and not self._starts_exact():
             object.__setattr__(self, "exact", None)
 

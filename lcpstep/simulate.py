@@ -7,6 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 
 from lagrangian import HybridScene, Scene
+from lagrangian.relations import check_derivatives
+from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.faults import fault, forget
 from lcpstep.model import culprit, hybrid_culprit
@@ -61,7 +63,7 @@ def simulate(
     Returns
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
-        end of the span
+        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large
 
     Raises
     ------
@@ -95,7 +97,18 @@ def simulate(
     run = method.run(scene, kept, report)
     if fault() is not None:
         raise _raised(run, culprit(scene, (), run.q, run.v))
-    return run
+    _compare_derivatives(run)
+    doubt = too_deep(run)
+    return replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
+
+
+def _compare_derivatives(run: Trajectory) -> None:
+    """SimulationError where a derivative of the scene is wrong at states that the start has not shown."""
+    places = sorted({min(1, len(run.t) - 1), len(run.t) // 2, len(run.t) - 1}) if len(run.t) else []
+    try:
+        check_derivatives(run.scene, ((float(run.t[k]), run.q[k], run.v[k]) for k in places), run=True)
+    except ValueError as error:
+        raise SimulationError(str(error), run) from error
 
 
 def _raised(run: Any, message: str) -> SimulationError:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
+from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.callbacks import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
@@ -73,6 +73,25 @@ def test_plain_python_gives_the_same_motion_with_a_notice(scene, method):
 def test_the_notice_names_the_callback():
     with pytest.warns(UncompiledCallback, match=r"^motion of scene 'table'"):
         simulate(plain(ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 0.01)), Moreau(1e-3))
+
+
+def test_joints_run_in_plain_python_where_one_of_several_callbacks_cannot_be_compiled():
+    def weight(t, q, v, p, out):
+        out[0], out[1] = 0.0, -9.81
+
+    def circle(t, q, v, p, out):
+        out[0] = q[0] ** 2 + q[1] ** 2 - 1.0
+
+    def normal(t, q, v, p, out):
+        out[0, 0], out[0, 1] = 2.0 * q[0], 2.0 * q[1]
+
+    system, start = System(2, np.eye(2), weight), ([1.0, 0.0], [0.0, 0.0], (0.0, 0.3))
+    expected = simulate(Scene(system, *start, joints=Joints(1, circle, normal)), EventDriven(1e-9, 1e-9))
+    with pytest.warns(UncompiledCallback, match=r"^joints\.gap of scene"):
+        m = simulate(
+            Scene(system, *start, joints=Joints(1, remembering(circle), normal)), EventDriven(1e-9, 1e-9)
+        )
+    np.testing.assert_allclose(m.q[-1], expected.q[-1], rtol=0, atol=1e-10)
 
 
 def test_callbacks_that_read_variables_around_them_are_compiled():

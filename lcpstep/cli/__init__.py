@@ -1,6 +1,7 @@
 """The command `lcpstep`, one module a command.
 
-Exit status: 0 done; 1 a run ended early, and its status says why; 2 a wrong argument; 130 interrupted.
+Exit status: 0 done; 1 a run ended early, or lies deep inside an obstacle, and says so; 2 a wrong argument; 130
+interrupted.
 """
 
 from __future__ import annotations

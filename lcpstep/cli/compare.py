@@ -83,7 +83,8 @@ def run_compare(options: argparse.Namespace) -> int:
         print(_table(table))
         for picture in pictures:
             print(f"wrote {picture}")
-    ok = all(r.trajectory.status == Status.DONE for _, c in results for r in (c.fast, c.reference))
+    runs = [r.trajectory for _, c in results for r in (c.fast, c.reference)]
+    ok = all(run.status == Status.DONE and not run.doubt for run in runs)
     return DONE if ok else FAILED
 
 
@@ -92,6 +93,7 @@ def _row(title: str, c: Comparison) -> dict[str, Any]:
     return {
         "case": title,
         "status": [fast.status.name, exact.status.name],
+        "doubt": [x for x in (fast.doubt, exact.doubt) if x],
         "steps": [fast.counts.steps, exact.counts.steps],
         "impacts": [len(c.fast.impacts), len(c.reference.impacts)],
         "seconds": [c.fast.seconds, c.reference.seconds],
@@ -119,7 +121,7 @@ def _table(rows: list[dict[str, Any]]) -> str:
             f"{ms[0]:>9.2f} | {ms[1]:<6.2f}   {r['sup_q']:9.1e}{r['l1_q']:9.1e}{r['l1_v']:9.1e}"
             f"   {first:32}{r['agree_until']:>10.4f} s"
         )
-        lines += [f"{'':14}{s}" for s in r["status"] if s != "DONE"]
+        lines += [f"{'':14}{s}" for s in (*r["status"], *r["doubt"]) if s != "DONE"]
     return "\n".join(lines)
 
 

@@ -82,7 +82,7 @@ def run_simulate(options: argparse.Namespace) -> int:
         save_figure(overview(run), options.picture)
     balance = {"energy": _balance(run)} if options.energy else {}
     print(json.dumps(_summary(run) | balance, indent=2) if options.json else _sentence(run, balance))
-    return DONE if run.status == Status.DONE else FAILED
+    return DONE if run.status == Status.DONE and not run.doubt else FAILED
 
 
 def _summary(run: Trajectory) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import pytest
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System
 from lagrangian.profiles import rotating_cam
 from lagrangian.scenes.cam_follower import HALF_TURN, PROFILE
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 
 TWO = LinearSystem(M=np.eye(2))
 
@@ -150,6 +151,21 @@ def test_corners_of_a_gap_and_what_lies_inside_of_it_are_taken(q0):
         out[0, 0], out[0, 1], out[1, 0], out[1, 1] = math.copysign(1.0, q[0]), 1.0, 0.0, 1.0
 
     made(Contacts(2, wedge, jacobian), q0=(q0, 0.0))
+
+
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-2), Located(1e-2), EventDriven()], ids=["moreau", "located", "event"]
+)
+def test_a_derivative_that_is_wrong_later_is_found_by_the_run(method):
+    def slope(t, q, v, p, out):
+        out[0] = q[1] + (max(q[0] - 3.0, 0.0)) ** 2
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0], out[0, 1] = -2.0 * max(q[0] - 3.0, 0.0), 1.0
+
+    with pytest.raises(SimulationError, match=r"^contacts\.jacobian\[0, 0\] is .* give ") as caught:
+        simulate(made(Contacts(1, slope, jacobian), q0=(0.0, 1.0), v0=(5.0, 0.0)), method)
+    assert caught.value.trajectory.t[-1] == 2.0
 
 
 def test_what_has_been_looked_at_is_not_looked_at_again():

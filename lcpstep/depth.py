@@ -1,0 +1,112 @@
+"""Whether a finished run lies deeper inside an obstacle than its steps explain.
+
+    depth > share x size,   depth > steps x h (speed + h acceleration),      size = |G| (how far the coordinates went)
+
+Time-stepping looks at a contact once a step and so lies up to a step's way inside of it, which is no error but its
+order; and what rests moves by rounding only. A run that is through the wall lies inside by a good part of all that it
+has moved. A few of the kept states are looked at: what lasts is not missed.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Harmonic, LinearContacts, Scene, System, checks
+from lcpstep.trajectory import Status, Trajectory
+
+Array = NDArray[np.float64]
+LOOKS = 6  # states that are looked at
+SHARE = 0.1  # of the size of the motion
+STEPS = 2.0  # that an impact may be noticed too late
+ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
+LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
+
+
+def too_deep(run: Trajectory) -> str:
+    """Which contact is penetrated by as much as the motion is large, in words; "" where none is."""
+    scene = run.scene
+    if scene.contacts is None or run.status != Status.DONE or len(run.t) == 0:
+        return ""
+    k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
+    states = [(scene.t_span[0], np.asarray(scene.q0), np.asarray(scene.v0))]
+    states += [(float(run.t[i]), run.q[i], run.v[i]) for i in k]
+    try:
+        g = _gaps(scene, states)
+        row, c = np.unravel_index(int(np.argmin(g)), g.shape)
+        depth = max(0.0, -float(g[row, c]))
+        if depth == 0.0:
+            return ""
+        G = np.abs(_normal(scene, int(c), states[row]))
+        q, v = (np.array([x[i] for x in states]) for i in (1, 2))
+        size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)
+        if depth <= max(SHARE * size, STEPS * h * max(speed, _logged(run, int(c)))):
+            return ""
+        a, span = float(G @ _acceleration(scene)), scene.t_span[1] - scene.t_span[0]
+    except ValueError:  # a callback that fails at a state in between, which the run has not asked it for
+        return ""
+    reach = float(G @ np.max(np.abs(q), axis=0)) + span * (speed + span * a)
+    if depth <= max(ROUNDING * reach, STEPS * h * h * a):
+        return ""
+    return (
+        f"contact {c} lies {depth:.3g} m inside of its obstacle at t = {states[row][0]:.9g} s, in a motion of "
+        f"{size:.3g} m towards it: the run is wrong there"
+    )
+
+
+def _gaps(scene: Scene, states: list[tuple[float, Array, Array]]) -> Array:
+    """Gaps (states, n_c)."""
+    contacts: Any = scene.contacts
+    p, n_c = np.array(scene.p), scene.n_c
+    if not isinstance(contacts, LinearContacts):
+        return np.array([checks.evaluate("contacts.gap", contacts.gap, (*x, p), (n_c,)) for x in states])
+    G: Any = contacts.G
+    g = np.asarray((G @ np.array([q for _, q, _ in states]).T).T + np.asarray(contacts.offset))
+    if contacts.motion is not None:
+        for k, x in enumerate(states):
+            g[k] -= checks.evaluate("contacts.motion", contacts.motion, (*x, p), (n_c, 3))[:, 0]
+    return g
+
+
+def _normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
+    """Row of the Jacobian."""
+    contacts: Any = scene.contacts
+    if isinstance(contacts, LinearContacts):
+        G: Any = contacts.G
+        return np.asarray(G[[c]].toarray() if contacts.sparse else G[c], dtype=float).ravel()
+    shape = (scene.n_c, scene.n_q)
+    return checks.evaluate("contacts.jacobian", contacts.jacobian, (*at, np.array(scene.p)), shape)[c]
+
+
+def _step(run: Trajectory) -> float:
+    """The longest step that the run may have taken; an event-driven one finds its impacts within none."""
+    h = getattr(run.method, "h", 0.0)
+    return min(h, LONGEST * float(run.t[-1] - run.scene.t_span[0]) / max(1, run.counts.steps))
+
+
+def _logged(run: Trajectory, c: int) -> float:
+    """The fastest that the gap was seen to close or open at an event."""
+    own = run.impacts[run.impacts.contact == c]
+    return float(np.max(np.abs(np.concatenate([own.before, own.after])), initial=0.0))
+
+
+def _acceleration(scene: Scene) -> Array:
+    """How fast the coordinates would be accelerated at the start without contacts, roughly."""
+    system, at = scene.system, (scene.t_span[0], np.array(scene.q0), np.array(scene.v0), np.array(scene.p))
+    shape = (scene.n_q,)
+    if isinstance(system, System):
+        f = checks.evaluate("system.force", system.force, at, shape)
+        M: Any = system.mass
+        M = checks.evaluate("system.mass", M, at, 2 * shape) if callable(M) else M
+    else:
+        matrices: Any = system.M, system.C, system.K
+        M, C, K = matrices
+        if isinstance(system.force, Harmonic):
+            f = np.sum(np.abs(system.force.terms(scene.n_q)), axis=0)
+        else:
+            given: Any = system.force
+            f = checks.evaluate("system.force", given, at, shape)
+        f = np.abs(f) + np.abs(C @ at[2]) + np.abs(K @ at[1])
+    return np.abs(f) / np.asarray(M.diagonal())

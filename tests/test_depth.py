@@ -1,0 +1,96 @@
+"""A run that is through the wall says so; the penetration that belongs to time-stepping is none of this."""
+
+import json
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, Located, Moreau, cli, simulate
+from lcpstep.trajectory import Status
+
+FALLING = LinearSystem(M=1.0, force=-9.81)
+FREE = Scene(FALLING, 1.0, 0.0, (0.0, 2.0), name="free fall")
+FLOOR = LinearContacts(1.0)
+
+
+@dataclass(frozen=True)
+class Through:
+    """A method that does not see contacts."""
+
+    method: object
+    h: float = 0.0
+
+    def run(self, scene, kept, progress):
+        method = replace(self.method, h=self.h) if self.h else self.method
+        found = method.run(replace(scene, contacts=None), kept, progress)
+        return replace(found, scene=scene, impulse=np.zeros((len(found.t), scene.n_c)))
+
+
+def height(t, q, v, p, out):
+    out[0] = q[0]
+
+
+def one(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("keep", [1, 100, [2.0], [0.1, 1.0, 2.0]])
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-2), Located(1e-2), EventDriven()], ids=["moreau", "located", "event"]
+)
+@pytest.mark.parametrize("contacts", [FLOOR, Contacts(1, height, one)], ids=["flat", "curved"])
+def test_a_motion_through_the_floor_says_so(contacts, method, keep):
+    m = simulate(replace(FREE, contacts=contacts), Through(method), keep=keep)
+    assert m.status is Status.DONE
+    deep = 0.5 * 9.81 * 4.0 - 1.0  # at the end
+    assert m.doubt.startswith(f"contact 0 lies {deep:.3g} m inside of its obstacle at t = 2 s")
+    assert m.message.endswith(f"the span, but {m.doubt}")
+    assert simulate(FREE, method, keep=keep).doubt == ""
+
+
+@pytest.mark.parametrize("theta", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("steps", [5, 20, 100])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "bouncing-ball",
+        "chattering-table",
+        "jumping-table",
+        "impact-oscillator",
+        "block-on-feet",
+        "heavy-on-light",
+    ],
+)
+def test_what_order_one_lies_inside_of_an_obstacle_is_not_told(name, steps, theta):
+    scene = scenes.CATALOGUE[name].make()
+    for keep in (1, [scene.t_span[1]]):
+        m = simulate(scene, Moreau((scene.t_span[1] - scene.t_span[0]) / steps, theta), keep=keep)
+        assert m.doubt == ""
+        assert "but" not in m.message
+
+
+def test_what_rests_is_not_told():
+    at_rest = Scene(FALLING, 0.0, 0.0, (0.0, 1e3), FLOOR)
+    for method in (Moreau(1.0), Located(1.0), EventDriven()):
+        assert simulate(at_rest, method).doubt == ""
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_the_command_tells_and_exits_with_one(capsys, monkeypatch, form):
+    monkeypatch.setitem(cli.simulate.METHODS, "moreau", lambda options: Through(Moreau(1e-2)))
+    assert cli.main(["simulate", "bouncing-ball", "--t-end", "2", *form]) == 1
+    out = capsys.readouterr().out
+    assert "inside of its obstacle" in (json.loads(out)["message"] if form else out.split("\n")[0])
+    monkeypatch.undo()
+    assert cli.main(["simulate", "bouncing-ball", "--t-end", "2", *form]) == 0
+
+
+def test_the_comparison_tells_too(capsys, monkeypatch):
+    monkeypatch.setattr(cli.compare, "moreau", lambda options: Through(Moreau(1e-2), 1e-2))
+    arguments = ["compare", "bouncing-ball", "--t-end", "2", "--no-pictures"]
+    assert cli.main(arguments) == 1
+    assert "inside of its obstacle" in capsys.readouterr().out
+    monkeypatch.undo()
+    assert cli.main(arguments) == 0
