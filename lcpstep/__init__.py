@@ -4,6 +4,7 @@ Time-stepping by complementarity problems (`Moreau`) and event by event (`EventD
 package `lagrangian`; and `solve_lcp`, the solver underneath. Importing this loads numpy only.
 """
 
+from lcpstep.continued import continued
 from lcpstep.diagnostics import Energy, energy
 from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, SimulationInterrupted, UnknownName
 from lcpstep.events import EventDriven
@@ -28,6 +29,7 @@ __all__ = [
     "Status",
     "Trajectory",
     "UnknownName",
+    "continued",
     "energy",
     "simulate",
     "solve_lcp",
