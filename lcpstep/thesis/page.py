@@ -27,9 +27,9 @@ computed numbers are written with the digits that are known.
 Studies in words, with their commands: [thesis-notes.md](thesis-notes.md).
 """
 CONTRADICTED = {
-    4: "The accumulation points printed as 119.72 and 136.38 rpm are 0.0075 and 0.068 rpm off the speeds at which the "
+    4: "The accumulation points printed as 119.72 and 136.38 rpm are 0.0075 and 0.068 rpm off where the "
     "located event lies on the corner. O(2, 2), born at the flip, ends at once in a corner impact.",
-    5: "1.0052 and 0.4120 are off in their last digit: 1.00515 and 0.41207 follow from the period in closed form, with "
+    5: "1.0052 and 0.4120 are off in their last digit: 1.00515 and 0.41207 follow from the period in closed form, by "
     "40 digits.",
     7: "The thesis prints 0.147, 0.419 and 0.517 s for its cycle. With its thresholds and k = 10 kN m/s the torque "
     "takes 600/10000 = 0.06 s from one threshold to the other in either reading of the model, and no two of these "
