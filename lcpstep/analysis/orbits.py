@@ -118,7 +118,8 @@ def periodic_orbit(
     scene : lagrangian.Scene with a period and one contact
     x : (2 n_q,)   guess of the state (q, v) at the time phase x period
     n : periods of the forcing after which it repeats
-    method : EventDriven() where not given. With Moreau the derivatives are differenced.
+    method : EventDriven() where not given. With Moreau derivatives are made of its impacts where the
+        motion between them is known in closed form, and differenced elsewhere.
     phase : of the section, as a share of the period in [0, 1)
 
     Raises

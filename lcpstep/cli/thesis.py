@@ -10,6 +10,7 @@ from typing import Any
 from lcpstep.cli.common import DONE
 from lcpstep.errors import UnknownName
 from lcpstep.thesis import FIGURES, make
+from lcpstep.thesis.page import write_page
 
 
 def add(commands: Any) -> None:
@@ -29,6 +30,9 @@ def add(commands: Any) -> None:
         "--out", type=Path, default=Path("thesis"), metavar="DIR", help="where the files go (thesis)"
     )
     p.add_argument("--overwrite", action="store_true", help="write over files that exist")
+    p.add_argument(
+        "--page", type=Path, metavar="FILE", help="write the page of all figures and numbers (Markdown)"
+    )
     p.set_defaults(run=run_thesis)
 
 
@@ -37,6 +41,13 @@ def run_thesis(options: argparse.Namespace) -> int:
     if options.list:
         for name, figure in FIGURES.items():
             print(f"{name:12} {figure.about}" + (f"   [{figure.command}]" if figure.command else ""))
+        return DONE
+    if options.page is not None:
+        if options.page.exists() and not options.overwrite:
+            raise FileExistsError(f"--page: {options.page} exists already; --overwrite replaces it")
+        options.page.parent.mkdir(parents=True, exist_ok=True)
+        write_page(options.page, lambda name: print(name, flush=True))
+        print(f"wrote {options.page}")
         return DONE
     wanted = options.figures or list(FIGURES)
     for name in wanted:  # before any work starts

@@ -96,8 +96,16 @@ FIGURES: dict[str, FigureOfThesis] = {
 }  # fmt: skip
 
 
-def make(name: str, out: Path, overwrite: bool = False) -> list[Path]:
+def make(
+    name: str,
+    out: Path,
+    overwrite: bool = False,
+    kinds: tuple[str, ...] = ("png", "svg", "data"),
+    dpi: int = DPI,
+) -> list[Path]:
     """Make one figure into a folder; the files written.
+
+    kinds, dpi : png, svg, data (NetCDF or JSON); resolution of pixels
 
     Raises
     ------
@@ -106,20 +114,21 @@ def make(name: str, out: Path, overwrite: bool = False) -> list[Path]:
     """
     if name not in FIGURES:
         raise UnknownName("figure of the thesis", name, FIGURES)
-    stem = out / f"figure-{name}"
-    files = [stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "svg", "nc", "json")]
-    for file in files:
+    files = {kind: out / f"figure-{name}.{kind}" for kind in ("png", "svg", "nc", "json")}
+    for file in files.values():
         if file.exists() and not overwrite:
             raise FileExistsError(f"--out: {file} exists already; --overwrite replaces it")
     figure, data = FIGURES[name].make()
     out.mkdir(parents=True, exist_ok=True)
-    figure.savefig(files[0], dpi=DPI)
-    figure.savefig(files[1])
-    if isinstance(data, dict):
-        files[3].write_text(json.dumps(data, default=_plain, indent=1) + "\n")
-        return [*files[:2], files[3]]
-    save(data, files[2], overwrite=overwrite)
-    return files[:3]
+    written = [files[kind] for kind in ("png", "svg") if kind in kinds]
+    for file in written:
+        figure.savefig(file, dpi=dpi)
+    if "data" in kinds and isinstance(data, dict):
+        files["json"].write_text(json.dumps(data, default=_plain, indent=1) + "\n")
+        written.append(files["json"])
+    elif "data" in kinds:
+        written.append(save(data, files["nc"], overwrite=overwrite))
+    return written
 
 
 def _plain(value: Any) -> Any:

@@ -9,6 +9,8 @@ from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
 from lcpstep.thesis import FIGURES, cams, maps
 from lcpstep.thesis.maps import SCENARIOS, normal_form
+from lcpstep.thesis.numbers import Number, agreement, numbers
+from lcpstep.thesis.page import chapter_of, table
 
 FAST = ("2", "3.2", "3.3", "4.4", "7.2", "7.5")
 
@@ -73,3 +75,30 @@ def test_scenarios_are_continuous_maps_with_the_matrices_they_name():
         for A, (trace, det) in ((f.A_minus, values[:2]), (f.A_plus, values[2:])):
             assert np.trace(A) == pytest.approx(trace)
             assert np.linalg.det(A) == pytest.approx(det, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("printed", "computed", "said"),
+    [
+        ("114.979", 114.979327, "all 6"),
+        ("~739", 739.3197, "all 3"),
+        ("1.0052", 1.005147405, "4 of 5; printed is +5.3e-05 off"),
+        ("119.72", 119.712482, "4 of 5; printed is +0.0075 off"),
+        ("", 1.0, ""),
+    ],
+)
+def test_digits_that_agree_are_counted(printed, computed, said):
+    assert agreement(printed, computed) == said
+
+
+def test_numbers_are_written_with_the_decimals_that_are_known():
+    n = Number(4, "flip [rpm]", "~739", 739.31978021, 6, "root")
+    assert n.text == "739.319780"
+    assert table([n]).splitlines()[-1] == "| flip [rpm] | ~739 | 739.319780 | all 3 | root |"
+    assert [chapter_of(x) for x in ("2", "4.13", "114-850", "357.5-361.5", "7-overview")] == [2, 4, 4, 4, 7]
+
+
+@pytest.mark.slow
+def test_printed_numbers_are_met_but_for_those_that_are_contradicted():
+    off = {n.printed for n in numbers() if n.printed and not n.agreement.startswith(("all", "yes"))}
+    assert off <= {"119.72", "136.38", "~198", "740.2", "1.0052", "0.4120"}
