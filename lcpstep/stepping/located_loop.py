@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.compiled import inline
+from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, moves, obstacle, product
 from lcpstep.recording import quiet_until
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
@@ -25,6 +26,7 @@ from lcpstep.stepping.located_keep import keep, keep_times
 from lcpstep.stepping.located_piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.located_work import (
     ALPHA,
+    BLIND,
     BUFFER_FULL,
     CLOSE_HITS,
     CLOSED,
@@ -56,14 +58,17 @@ from lcpstep.stepping.located_work import (
     NOBODY,
     NOT_FINITE,
     OPEN,
+    PAUSING,
     Q_TIME,
     RATE,
     ROW,
     SIGMA,
     STATUS,
     STEP,
+    STOPPED,
     TOO_MANY_EVENTS,
     UNDER_WAY,
+    V_STRUCK,
     WHOLE,
     Q,
     V,
@@ -179,7 +184,9 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                 count[CUT] += 1
                 if not settle_rest(model, plan, w, x, record, t + x[SIGMA], count):
                     return LCP_FAILED
-            if not settled:
+            if x[BLIND] > 0.0:
+                tau = min(rest, x[BLIND])
+            elif not settled:
                 c, tau = first_contact(plan, w, rest, t + x[END])
                 if c != NOBODY and not plan.plain:
                     c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
@@ -197,12 +204,23 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                     c, tau = NOBODY, rest
             x[EVENTS] += 1.0 if c == NOBODY and tau < rest else 0.0
             code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
+            if code == FINISHED and x[BLIND] > 0.0:
+                code = STOPPED
             if code != FINISHED:
                 return code
         if c != NOBODY:
-            code = event(model, plan, w, x, record, t, c, count)
+            code = struck(model, plan, w, x, record, t, c, count)
             if code != FINISHED:
                 return code
+
+
+def struck(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
+    """The impact of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
+    pausing = x[PAUSING] == 1.0 and c != CORNER
+    if pausing:
+        assign(w.vec[V_STRUCK], w.vec[V])
+    code = event(m, plan, w, x, record, t, c, count)
+    return STOPPED if pausing and code == FINISHED else code
 
 
 def racing(w: Any, x: Any, record: Any, count: Any, t: float) -> bool:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from lcpstep.compiled import by_address
 
 # Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION = range(7)
+FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION, STOPPED = range(8)
 # Places in the array of counters; the last: events still allowed, steps cut short by one plastic impact, contacts
 # of the last problem of several
 STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS = range(9)
@@ -15,9 +15,10 @@ N_COUNTERS = 9
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
-# that the piece was made with
-SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
-N_NUMBERS = 9
+# that the piece was made with; what steps by a tolerance ask for: 1 to stop after an event, and how far a single
+# piece goes in which events are not looked for (0: they are)
+SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH, PAUSING, BLIND = range(11)
+N_NUMBERS = 11
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
@@ -46,7 +47,8 @@ Q_FROM = 11  # state, acceleration at the base of a piece within which states ar
 V_FROM = 12
 A_FROM = 13
 Q_TIME = 14  # time since the start of the step up to which a coordinate has been moved on
-N_VEC = 15
+V_STRUCK = 15  # velocity just before the event after which the loop stopped
+N_VEC = 16
 # Rows of Work.num, a number per contact
 GAP = 0  # g
 RATE = 1  # u

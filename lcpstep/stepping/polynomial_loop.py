@@ -21,6 +21,7 @@ from lcpstep.stepping.located_piece import penetrates
 from lcpstep.stepping.located_work import (
     ALPHA,
     BIAS,
+    BLIND,
     BUFFER_FULL,
     CHOSEN,
     CLOSED,
@@ -49,14 +50,17 @@ from lcpstep.stepping.located_work import (
     NOT_FINITE,
     OLDER,
     OPEN,
+    PAUSING,
     RATE,
     ROW,
     SAME_TIME,
     SIGMA,
     STATUS,
     STEP,
+    STOPPED,
     TOO_MANY_EVENTS,
     UNDER_WAY,
+    V_STRUCK,
     WHOLE,
     A,
     P,
@@ -150,14 +154,22 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
                 return LCP_FAILED
         if not expand(m, plan, w, x, z, now, length, count):
             return NOT_FINITE
-        opening, stop = first_release(m, plan, w, x, z, now, length, count)
-        landing, tau = first_landing(m, plan, w, x, z, now, stop)
+        if x[BLIND] > 0.0:
+            opening, landing, tau = NOBODY, NOBODY, min(length, x[BLIND])
+        else:
+            opening, stop = first_release(m, plan, w, x, z, now, length, count)
+            landing, tau = first_landing(m, plan, w, x, z, now, stop)
         if landing != NOBODY and at_corner(plan, x, now + tau):
             landing, tau = NOBODY, stop
-        ends = landing == NOBODY and opening == NOBODY and x[SIGMA] + length >= x[END] * (1.0 - EPS)
+        ends = landing == NOBODY and opening == NOBODY and tau == length
+        ends = ends and x[SIGMA] + length >= x[END] * (1.0 - EPS)
         code = follow(m, plan, w, x, z, record, t, tau, ends, count)
+        if code == FINISHED and x[BLIND] > 0.0:
+            code = STOPPED
         if code != FINISHED:
             return code
+        if x[PAUSING] == 1.0:
+            assign(w.vec[V_STRUCK], w.vec[V])
         if landing != NOBODY:
             code = touch(m, plan, w, x, z, record, t + x[SIGMA], landing, count)
             if code != FINISHED:
@@ -166,6 +178,8 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             release(w, record, count, x, opening, t + x[SIGMA], 0.0)
             if record.on_events or record.every == 1:
                 keep(w, record, count, t + x[SIGMA])
+        if x[PAUSING] == 1.0 and (landing != NOBODY or opening != NOBODY):
+            return STOPPED
 
 
 @inline
