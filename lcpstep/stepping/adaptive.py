@@ -6,7 +6,9 @@ magnifies. Steps with events, and those that hold a jump of the forces, are few,
 h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller.
 
 Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are made once, an end of the span that is
-met exactly, and a bisection for whatever asks for short steps. This file decides; the loops of the methods
+met exactly, and a bisection for whatever asks for short steps. A method that stops at an event goes on from there to
+the next multiple. The first step is short and steps grow by doubling, so that no oscillation of the forces is stepped
+over whole: both runs would sample it at equal phases, and agree. This file decides; the loops of the methods
 (`adaptive_moreau`, `adaptive_located`) take the steps and measure their errors. Source: E. Hairer, S. P. Norsett,
 G. Wanner, Solving Ordinary Differential Equations I (1993), section II.4.
 """
@@ -30,12 +32,13 @@ LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
+FIRST = 1e-6  # of the span: the first step
 LOOK = 4096  # steps between two looks at the outside world
 # Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
 POSITION, LEVEL, END, FINEST = range(4)
-# Places in Control.real; the last two: error of the attempt before, if that failed at the same place; the time
-# reached, rounded as that of the state kept there
-START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED = range(9)
+# Places in Control.real; the last three: error of the attempt before, if that failed at the same place; the time
+# reached, rounded as that of the state kept there; how far beyond POSITION an event has cut the step
+START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED, INTO = range(10)
 
 
 @by_address
@@ -43,7 +46,7 @@ class Control(NamedTuple):
     """Where the run is, and what it allows."""
 
     whole: Any  # (4,)
-    real: Any  # (9,)
+    real: Any  # (10,)
 
 
 class Steps(Protocol):
@@ -65,9 +68,11 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
     finest = min(LEVELS, 62 - coarse.bit_length())
     if least > 0.0:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
-    whole = np.array([0, 0, coarse << finest, finest], dtype=np.int64)
+    first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
+    whole = np.array([0, first, coarse << finest, finest], dtype=np.int64)
     enough = PLENTY * 0.5**order
-    return Control(whole, np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, start]))
+    real = np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, start, 0.0])
+    return Control(whole, real)
 
 
 def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
@@ -94,7 +99,14 @@ def step_size(c: Any, level: int) -> float:
 @inline
 def now(c: Any) -> float:
     """Time at which the step begins [s]."""
-    return c.real[START] + c.real[H_MAX] * (c.whole[POSITION] * 0.5 ** c.whole[FINEST])
+    return c.real[START] + c.real[H_MAX] * (c.whole[POSITION] * 0.5 ** c.whole[FINEST]) + c.real[INTO]
+
+
+@inline
+def goal(c: Any) -> float:
+    """Time at which it ends unless an event cuts it [s]."""
+    position = c.whole[POSITION] + (1 << (c.whole[FINEST] - c.whole[LEVEL]))
+    return c.real[START] + c.real[H_MAX] * (position * 0.5 ** c.whole[FINEST])
 
 
 @inline
@@ -109,8 +121,13 @@ def resolved(c: Any, place: int) -> float:
     return LEAST_SHARE * c.real[TOLERANCE] * (1.0 + c.real[place])
 
 
-def judge(c: Any, failed: bool, apart_q: float, apart_v: float, q: Any, v: Any, event: bool) -> int:
-    """Whether a step to q, v whose errors are apart_q, apart_v is accepted; sets the next one's place and level."""
+def judge(
+    c: Any, failed: bool, apart_q: float, apart_v: float, q: Any, v: Any, event: bool, cut: float
+) -> int:
+    """Whether a step to q, v whose errors are apart_q, apart_v is accepted; sets the next one's place and level.
+
+    `cut`: the time since its start after which it stopped, infinite where it went to the next multiple.
+    """
     level, x = c.whole[LEVEL], c.real
     size_q, size_v = max(x[SIZE_Q], largest(q)), max(x[SIZE_V], largest(v))
     noise = min(NOISE, LEAST_SHARE * x[TOLERANCE])
@@ -126,15 +143,31 @@ def judge(c: Any, failed: bool, apart_q: float, apart_v: float, q: Any, v: Any, 
         if level >= c.whole[FINEST]:
             return GIVEN_UP
         c.whole[LEVEL] = level + 1
+        go_on(c, 0.0)
         return AGAIN
     x[SIZE_Q], x[SIZE_V], x[LAST] = size_q, size_v, math.inf
     half = 0.5 * step_size(c, level)
     x[REACHED] = (now(c) + half) + half
-    c.whole[POSITION] += 1 << (c.whole[FINEST] - level)
+    if go_on(c, cut):
+        return ACCEPTED
     fits = level > 0 and c.whole[POSITION] % (1 << (c.whole[FINEST] - level + 1)) == 0
     if fits and error <= x[ENOUGH] * allowed:
         c.whole[LEVEL] = level - 1
     return ACCEPTED
+
+
+@inline
+def go_on(c: Any, time: float) -> bool:
+    """Go on by a time, at most to the next multiple of the step; whether it lies still ahead."""
+    x, level = c.real, c.whole[LEVEL]
+    h = step_size(c, level)
+    rounding = NOISE * (abs(now(c)) + h)
+    x[INTO] += min(time, max(h - x[INTO], 0.0))
+    if x[INTO] < h - rounding:
+        return True
+    c.whole[POSITION] += 1 << (c.whole[FINEST] - level)
+    x[INTO] = x[INTO] - h if x[INTO] - h > rounding else 0.0
+    return False
 
 
 @inline

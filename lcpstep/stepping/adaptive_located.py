@@ -1,81 +1,137 @@
 """Steps of `Located` chosen by a tolerance: what one step and its two halves do.
 
-Velocities count where both runs had the same events: an impact that one of them sees just after the end of the step
-is no error. The kernel of the fixed steps takes each part; what stands between is plain Python.
+A step stops at its first event, and at a corner; what comes after is compared anew. So both runs are smooth: the
+one is a single piece without a look at contacts, up to the time at which the halves have met an event, and
+positions and velocities are compared just before it. What the forces of closed contacts hide from that, see
+`adaptive_forces`. The kernel of the fixed steps takes each part; what stands between is plain Python.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.compiled import compiled
-from lcpstep.recording import Record
+from lcpstep.recording import LEAD, Record
 from lcpstep.stepping.adaptive import (
     ACCEPTED,
     AGAIN,
     GIVEN_UP,
+    INTO,
     LEVEL,
     LOOK,
     PAUSED,
+    REACHED,
     SIZE_Q,
     SIZE_V,
     TOO_SMALL,
     Control,
     distance,
+    goal,
     judge,
     largest,
     now,
     over,
     step_size,
 )
+from lcpstep.stepping.adaptive_forces import hidden, late
+from lcpstep.stepping.corners import find_corners
+from lcpstep.stepping.impulses import COLLAPSE
 from lcpstep.stepping.located_work import (
+    ALPHA,
+    BLIND,
     BUFFER_FULL,
+    CLOSED,
+    CLOSED_NOW,
+    END,
     EVENT,
     FINISHED,
+    FORCE_NOW,
     FORCES,
+    GAP,
+    HALF,
+    IMPULSE,
+    LAST,
     LCP_CALLS,
+    MADE_WITH,
     NEXT_TIME,
+    PAUSING,
+    RATE,
+    RELEASE,
     ROW,
+    SIGMA,
+    STATUS,
+    STOPPED,
+    TURNED,
     UNCHANGED,
+    UNDER_WAY,
+    V_STRUCK,
     Plan,
     Q,
     V,
     Work,
 )
 
-STATE = slice(Q, V + 1)  # rows of Work.vec
+Array = NDArray[np.float64]
 Prepared = tuple[Plan, Work]
 Step = Callable[[Plan, Work, float], int]  # one step from a time; the code of the loop
+EARLY = 1 / 32  # of a step: an event before it leaves nothing to compare
+NEAR = 3.0  # errors of a gap: from where on it may have closed
+GOOD = (FINISHED, STOPPED)
+NOTHING = np.zeros(0)
 
 
-def weigh(control: Any, failed: bool, one: Any, vec: Any, same: bool, happened: bool) -> int:
-    """Kernel: the verdict on a step that led to the rows of `one`, and in two halves to those of vec."""
-    apart_v = distance(one[V], vec[V]) if same else 0.0
-    return judge(control, failed, distance(one[Q], vec[Q]), apart_v, vec[Q], vec[V], happened)
+class Led(NamedTuple):
+    """Where a run led: why it ended, and when; q, v before an event there."""
+
+    code: int
+    time: float
+    q: Array
+    v: Array
+    gap: Array  # gaps, and halves of their accelerations over the piece, where it knows them but roughly
+    half: Array
+    closed: Array  # contacts that are closed; forces over the piece and impulses of all, where some were
+    force: Array
+    impulse: Array
+
+
+def weigh(
+    control: Any, failed: bool, one_q: Any, one_v: Any, q: Any, v: Any, wrong_q: float, wrong_v: float,
+    happened: bool, cut: float,
+) -> int:  # fmt: skip
+    """Kernel: the verdict on a step that led to one_q, one_v in a single piece, and in two halves to q, v."""
+    apart_q, apart_v = max(wrong_q, distance(one_q, q)), max(wrong_v, distance(one_v, v))
+    return judge(control, failed, apart_q, apart_v, q, v, happened, cut)
 
 
 class Attempts:
     """A run of `Located` as `adaptive.advance` wants it.
 
-    `make(h)` gives what steps of size h need, `step` takes one of them.
+    `make(h)` gives what steps of size h need, `step` takes one of them; `second` tells the method of order two.
     """
 
     def __init__(
-        self, make: Callable[[float], Prepared], step: Step, w: Work, x: NDArray[np.float64], record: Record,
-        count: NDArray[np.int64], control: Control, constant: bool, fast: bool,
+        self, make: Callable[[float], Prepared], step: Step, plan: Plan, w: Work, x: Array, record: Record,
+        count: NDArray[np.int64], control: Control, second: bool, fast: bool,
     ) -> None:  # fmt: skip
-        self.make, self.step, self.w, self.x = make, step, w, x
+        self.make, self.step, self.plan, self.w, self.x = make, step, plan, w, x
         self.record, self.count, self.control = record, count, control
+        self.rough = second and not plan.plain  # gaps are no quadratics, as which they are looked at
+        self.means = second and plan.trapezoidal  # forces of closed contacts are means over a piece
+        self.alike = second and not plan.trapezoidal  # a piece moves as a longer one does
+        self.sized = plan.trapezoidal and plan.stiff and not plan.small  # matrices are those of whole steps
         self.prepared: dict[int, Prepared] = {}
+        self.taken = w  # the work space with the responses of the last part
         self.weigh = compiled(weigh) if fast else weigh
-        self.arrays = [w.vec, w.num, w.mark, x, count] + ([] if constant else [w.G, w.MG, w.W, w.M])
+        self.arrays = [w.vec, w.num, w.mark, x, count] + ([] if plan.constant else [w.G, w.MG, w.W, w.M])
         self.saved = [a.copy() for a in self.arrays]
-        self.row, self.under_way = record.rows[0].copy(), False
+        self.row, self.under_way, self.reached = record.rows[0].copy(), False, now(control)
         control.real[SIZE_Q], control.real[SIZE_V] = largest(w.vec[Q]), largest(w.vec[V])
+        x[PAUSING] = 1.0
 
     def attempts(self) -> int:
         """Take steps until the end of the span, full buffers, or a step that cannot be taken."""
@@ -88,44 +144,157 @@ class Attempts:
             self.store()
             code, verdict = self.attempt()
             full = code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0
-            if verdict != ACCEPTED:
+            if verdict == ACCEPTED:
+                self.control.real[REACHED], self.x[UNDER_WAY] = self.reached, 0.0
+            else:
                 self.undo()
             self.under_way = False
             if full:
                 return PAUSED
             if verdict == GIVEN_UP:
-                return TOO_SMALL if code == FINISHED else code
+                return TOO_SMALL if code in GOOD else code
         return PAUSED
 
     def attempt(self) -> tuple[int, int]:
         """One step, then two halves of it: the last code of the loop, and the verdict."""
-        level, t, one, events = int(self.control.whole[LEVEL]), now(self.control), self.w.vec[STATE], []
-        code = self.part(level, t)
-        if code == FINISHED:
-            one, events = one.copy(), self.events()
+        c, start, end = self.control, now(self.control), self.end()
+        until, entire = math.inf, end == goal(c)
+        for _ in range(4):
+            one, half, two = self.compare(start, end, entire and c.real[INTO] == 0.0, until)
+            if two.code != STOPPED or two.time in (until, 0.0):
+                break
             self.undo()
-            code = self.part(level + 1, t)
-        if code == FINISHED:
-            code = self.part(level + 1, t + step_size(self.control, level + 1))
-        if code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0:
-            return code, AGAIN
-        both = self.events()
-        happened = bool(events or both)
-        return code, self.weigh(
-            self.control, code != FINISHED, one, self.w.vec[STATE], events == both, happened
-        )
+            until = two.time
+            early = self.alike or self.saved[3][CLOSED_NOW] > 0.0
+            if early and EARLY * (end - start) < until < 0.5 * (end - start):
+                end, entire, until = start + until, False, math.inf
+        wrong_q = wrong_v = 0.0
+        if two.time == 0.0:  # an event before anything moved
+            one = two
+        elif one.code in GOOD and two.code in GOOD:
+            wrong_q = self.depth(one, half)
+            wrong_v = self.wrong(one, half, two, end - start)
+        if two.code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0:
+            return two.code, AGAIN
+        failed = one.code not in GOOD or two.code not in GOOD
+        happened = two.code == STOPPED or self.count[EVENT] > self.saved[4][EVENT]
+        cut = math.inf if entire and two.code == FINISHED else two.time
+        verdict = self.weigh(c, failed, one.q, one.v, two.q, two.v, wrong_q, wrong_v, happened, cut)
+        return two.code, verdict
 
-    def part(self, level: int, t: float) -> int:
-        """One step of a level."""
+    def compare(self, start: float, end: float, even: bool, until: float) -> tuple[Led, Led, Led]:
+        """A single piece up to a time; from the same start a half, and both halves, at most to an event."""
+        one = self.led(self.part(start, end, even and until == math.inf, until, 0))
+        self.undo()
+        middle = start + 0.5 * (end - start)
+        code = self.part(start, middle, even, 0.0, 1)
+        half = self.led(code)
+        two = half
+        if code == FINISHED:
+            two = self.led(self.part(middle, end, even, 0.0, 1))
+            two = two._replace(time=middle - start + two.time)
+        return one, half, two
+
+    def end(self) -> float:
+        """Where the step ends that begins now: at the next multiple, or at a corner before it."""
+        start, end = now(self.control), goal(self.control)
+        if len(self.plan.corners) == 0:
+            return end
+        corner = find_corners(self.plan, start)[1]
+        return corner if corner < end - self.plan.margin else end
+
+    def part(self, start: float, end: float, even: bool, until: float, halved: int) -> int:
+        """From start to end, in a single piece up to a time if that is not 0; `even` where this is a whole step."""
+        level, x = int(self.control.whole[LEVEL]) + (halved if even else 0), self.x
         if level not in self.prepared:
             self.prepared[level] = self.make(step_size(self.control, level))
-        self.x[UNCHANGED] = 0.0
-        return self.step(*self.prepared[level], t)
+        p, w = self.make(end - start) if self.sized and not even else self.prepared[level]
+        self.taken = w
+        t, x[UNCHANGED], x[BLIND], x[UNDER_WAY] = start, 0.0, until, 0.0
+        before = 0.0
+        if not even:  # the end of a longer step
+            before = max(p.h - (end - start), 0.0)
+            t, x[UNDER_WAY], x[END] = end - p.h, 1.0, 0.0
+            self.carry_on(before, COLLAPSE * p.h)
+        code = self.step(p, w, t)
+        self.elapsed = end - start if code == FINISHED else x[SIGMA] - before
+        self.reached = t + p.h if code == FINISHED else t + x[SIGMA]
+        return code
 
-    def events(self) -> list[tuple[float, float]]:
-        """Contact and kind of each event since the start of the step."""
-        first, last = int(self.saved[4][EVENT]), int(self.count[EVENT])
-        return [(e[1], e[5]) for e in self.record.events[first:last].tolist()] if last > first else []
+    def carry_on(self, sigma: float, close: float) -> None:
+        """Begin a part of a step at sigma: what has just fired has done so now."""
+        last = self.w.num[LAST]
+        just = (last >= 0.0) & (self.x[SIGMA] - last <= close)
+        last[:] = np.where(just, sigma, -1.0)
+        self.w.num[TURNED] += sigma - self.x[SIGMA]
+        self.x[SIGMA] = sigma
+
+    def led(self, code: int) -> Led:
+        """Where the part that has just been taken led."""
+        w = self.w
+        gap = half = force = impulse = NOTHING
+        if self.rough:
+            gap, half = w.num[GAP].copy(), w.num[HALF].copy()
+        if self.saved[3][CLOSED_NOW] > 0.0 and code in GOOD:
+            force, impulse = self.forces(), self.impulses()
+        v = w.vec[V_STRUCK if code == STOPPED and self.x[BLIND] == 0.0 else V]
+        closed = w.mark[STATUS] == CLOSED
+        return Led(code, self.elapsed, w.vec[Q].copy(), v.copy(), gap, half, closed, force, impulse)
+
+    def depth(self, one: Led, half: Led) -> float:
+        """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""
+        deepest, num, t = 0.0, self.saved[1], half.time
+        for c in np.flatnonzero(np.logical_not(one.closed))[: len(one.gap)]:
+            g, u, a = num[GAP, c], num[RATE, c], one.half[c]
+            error = abs(g + t * (u + t * a) - half.gap[c])
+            lowest = min(g, one.gap[c], half.gap[c])
+            if a > 0.0 > u:
+                lowest = min(lowest, g - 0.25 * u * u / a)
+            if lowest < NEAR * error:
+                deepest = max(deepest, error)
+        return deepest
+
+    def forces(self) -> Array:
+        """Mean forces that would keep each contact closed over the last piece; unknown where it opened at its end."""
+        w, W = self.w, self.mobilities()
+        closed = w.mark[STATUS] == CLOSED
+        pressing = np.where(closed, w.num[FORCE_NOW], 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            force = np.where(closed, pressing, -(w.num[ALPHA] + W @ pressing) / np.diag(W))
+        force[self.opened_at_end()] = math.nan
+        return force
+
+    def opened_at_end(self) -> list[int]:
+        """Contacts that have opened at the end of a piece, with a velocity, and not at its beginning."""
+        log = self.record.events[int(self.saved[4][EVENT]) : int(self.count[EVENT])]
+        return [int(e[1]) for e in log if e[5] == RELEASE and e[3] > 0.0]
+
+    def mobilities(self) -> Array:
+        """How the contacts' accelerations answer their forces, over the last piece."""
+        return self.taken.WA[int(self.x[MADE_WITH])] if self.means and self.plan.constant else self.w.W
+
+    def impulses(self) -> Array:
+        """Of the contacts, since the start of the step."""
+        first, last, n_c = max(int(self.saved[4][ROW]) - 1, 0), int(self.count[ROW]), self.w.num.shape[1]
+        place = slice(LEAD + 2 * self.w.vec.shape[1], LEAD + 2 * self.w.vec.shape[1] + n_c)
+        kept = self.record.rows[first:last, place].sum(axis=0) - (self.row[place] if last > first else 0.0)
+        return np.asarray(self.w.num[IMPULSE] - self.saved[1][IMPULSE] + kept)
+
+    def wrong(self, one: Led, half: Led, two: Led, length: float) -> float:
+        """Error of the velocity by contacts that were closed, see `adaptive_forces`."""
+        if self.saved[3][CLOSED_NOW] == 0.0:
+            return 0.0
+        worst = 0.0
+        for c in np.flatnonzero(self.saved[2][STATUS] == CLOSED):
+            p = 0.0
+            if self.means:
+                end = two.time
+                opened = 0.0 if not half.closed[c] else (end if two.closed[c] else min(0.5 * length, end))
+                p = late(one.force[c], half.force[c], two.force[c], length, opened, end)
+            if one.closed[c] and two.closed[c] and two.code == FINISHED:
+                p = max(p, hidden(one.impulse[c], two.impulse[c]))
+            worst = max(worst, p * largest(self.w.MG[c]))
+        return worst
 
     def store(self) -> None:
         """Keep the state at the start of a step, and the last row, which an event at its time changes."""

@@ -148,6 +148,7 @@ def run(
                 motion.q,
                 motion.v,
                 done[HAPPENED] > 0.0,
+                np.inf,
             )
         if verdict != ACCEPTED:
             restore(motion, count, saved)

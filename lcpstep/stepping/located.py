@@ -254,7 +254,11 @@ class _Run:
             code = begin(self.model, self.plan, self.work, self.x, self.recorder.buffers, self.count, t_start)
             status = STATUS[code]
             if status == Status.DONE:
-                status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
+                exact = self.plan.plain and self.plan.steady
+                if tolerance is None or (exact and tolerance >= adaptive.NOISE):
+                    status = self.even(progress)
+                else:
+                    status = self.adapted(tolerance, progress)
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
@@ -281,8 +285,8 @@ class _Run:
         """The whole run in steps that meet the tolerance."""
         control = adaptive.control(self.scene.t_span, self.method.h, tolerance, int(self.method.order))
         steps = adaptive_located.Attempts(
-            self.made, self.one, self.work, self.x, self.recorder.buffers, self.count, control,
-            self.plan.constant, self.fast,
+            self.made, self.one, self.plan, self.work, self.x, self.recorder.buffers, self.count, control,
+            self.method.order == 2, self.fast,
         )  # fmt: skip
 
         def arrive() -> None:
@@ -300,7 +304,7 @@ class _Run:
     def made(self, h: float) -> tuple[work.Plan, work.Work]:
         """Constants of steps of size h, and the work space with the responses of these."""
         w = self.work._replace(AG=self.work.AG.copy(), WA=self.work.WA.copy())
-        p = plan(self.scene, self.model, self.method, h)._replace(slack=self.plan.slack)
+        p = plan(self.scene, self.model, self.method, h)._replace(slack=self.plan.slack, many=MANY_EXACTLY)
         respond(self.model, p, w)
         return p, w
 

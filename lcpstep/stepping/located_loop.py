@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.compiled import inline
+from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, moves, obstacle, product
 from lcpstep.recording import quiet_until
 from lcpstep.stepping.contact_forces import idle
@@ -25,6 +26,7 @@ from lcpstep.stepping.located_keep import keep, keep_times
 from lcpstep.stepping.located_piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.located_work import (
     ALPHA,
+    BLIND,
     BUFFER_FULL,
     CLOSE_HITS,
     CLOSED,
@@ -57,6 +59,7 @@ from lcpstep.stepping.located_work import (
     NOBODY,
     NOT_FINITE,
     OPEN,
+    PAUSING,
     Q_TIME,
     RATE,
     ROW,
@@ -65,10 +68,12 @@ from lcpstep.stepping.located_work import (
     STALLED,
     STATUS,
     STEP,
+    STOPPED,
     SWING,
     TOO_MANY_EVENTS,
     TURNED,
     UNDER_WAY,
+    V_STRUCK,
     WHOLE,
     Q,
     V,
@@ -187,30 +192,45 @@ def step(model: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: floa
                     return code
                 continue
             rest = x[END] - x[SIGMA]
-            c, tau = first_contact(plan, w, rest, t + x[END])
-            if c != NOBODY and not plan.plain:
-                c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
-            if c != NOBODY and plan.plain and plan.steady and racing(w, x, record, count, t):
-                most = min(count[EVENTS_LEFT] - count[EVENT], plan.per_step - int(x[EVENTS])) + 1
-                most = min(
-                    most, len(record.events) - count[EVENT] - 4 * n_c, len(record.rows) - count[ROW] - 4
-                )
-                done = race(model, plan, w, record, count, t, x[SIGMA], x[END], most)
-                if done > 0:
-                    x[SIGMA] = w.vec[Q_TIME, 0]
-                    x[EVENTS] += done
-                    continue
-            if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
-                c, tau = NOBODY, rest
-            if c == NOBODY and tau < rest:
-                idle(x, count)
+            tau = rest
+            if x[BLIND] > 0.0:
+                tau = min(rest, x[BLIND])
+            else:
+                c, tau = first_contact(plan, w, rest, t + x[END])
+                if c != NOBODY and not plan.plain:
+                    c, tau = polish(model, plan, w, c, t + x[SIGMA], tau, rest)
+                if c != NOBODY and plan.plain and plan.steady and racing(w, x, record, count, t):
+                    most = min(count[EVENTS_LEFT] - count[EVENT], plan.per_step - int(x[EVENTS])) + 1
+                    most = min(
+                        most, len(record.events) - count[EVENT] - 4 * n_c, len(record.rows) - count[ROW] - 4
+                    )
+                    done = race(model, plan, w, record, count, t, x[SIGMA], x[END], most)
+                    if done > 0:
+                        x[SIGMA] = w.vec[Q_TIME, 0]
+                        x[EVENTS] += done
+                        continue
+                if c != NOBODY and at_corner(plan, x, t + x[SIGMA] + tau):
+                    c, tau = NOBODY, rest
+                if c == NOBODY and tau < rest:
+                    idle(x, count)
             code = move(model, plan, w, x, record, t, tau, c == NOBODY and tau == rest, count)
+            if code == FINISHED and x[BLIND] > 0.0:
+                code = STOPPED
             if code != FINISHED:
                 return code
         if c != NOBODY:
-            code = event(model, plan, w, x, record, t, c, count)
+            code = struck(model, plan, w, x, record, t, c, count)
             if code != FINISHED:
                 return code
+
+
+def struck(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:
+    """The impact of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
+    pausing = x[PAUSING] == 1.0 and c != CORNER
+    if pausing:
+        assign(w.vec[V_STRUCK], w.vec[V])
+    code = event(m, plan, w, x, record, t, c, count)
+    return STOPPED if pausing and code == FINISHED else code
 
 
 def racing(w: Any, x: Any, record: Any, count: Any, t: float) -> bool:

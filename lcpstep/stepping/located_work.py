@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from lcpstep.compiled import by_address
 
 # Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION = range(7)
+FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION, STOPPED = range(8)
 # Places in the array of counters; the last: events still allowed, stretches of motion cut short by one plastic
 # impact, contacts of the last problem of several, rounds of the loop that found no event
 STEP, ROW, EVENT, LCP_CALLS, FORCES, NEXT_TIME, EVENTS_LEFT, CUT, MEMBERS, IDLE = range(10)
@@ -16,10 +16,12 @@ N_COUNTERS = 10
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
 # that the piece was made with, whether an open contact may touch at rest, whether events go on at one instant, how
-# often that has been settled in this step, the time from the base of a piece at which its contact forces were decided
+# often that has been settled in this step, the time from the base of a piece at which its contact forces were decided;
+# what steps by a tolerance ask for: 1 to stop after an event, and how far a single piece goes in which events are not
+# looked for (0: they are)
 SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
-TOUCHING, STALLED, SETTLED, AHEAD = range(9, 13)
-N_NUMBERS = 13
+TOUCHING, STALLED, SETTLED, AHEAD, PAUSING, BLIND = range(9, 15)
+N_NUMBERS = 15
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
@@ -53,7 +55,8 @@ V_FROM = 12
 A_FROM = 13
 Q_TIME = 14  # time since the start of the step up to which a coordinate has been moved on
 SWING = 15  # largest sum of the terms of a velocity at the impacts of this step
-N_VEC = 16
+V_STRUCK = 16  # velocity just before the event after which the loop stopped
+N_VEC = 17
 # Rows of Work.num, a number per contact
 GAP = 0  # g
 RATE = 1  # u

@@ -22,6 +22,7 @@ from lcpstep.stepping.located_work import (
     AHEAD,
     ALPHA,
     BIAS,
+    BLIND,
     BUFFER_FULL,
     CHOSEN,
     CLOSED,
@@ -51,6 +52,7 @@ from lcpstep.stepping.located_work import (
     NOT_FINITE,
     OLDER,
     OPEN,
+    PAUSING,
     Q_STAGE,
     RATE,
     ROUNDING,
@@ -59,10 +61,12 @@ from lcpstep.stepping.located_work import (
     SIGMA,
     STATUS,
     STEP,
+    STOPPED,
     TOO_MANY_EVENTS,
     TOUCHING,
     UNDER_WAY,
     V_STAGE,
+    V_STRUCK,
     WHOLE,
     A,
     P,
@@ -158,22 +162,32 @@ def step(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, count: Any, t: 
             continue
         if not expand(m, plan, w, x, z, now, length, count):
             return NOT_FINITE
-        opening, stop = first_release(m, plan, w, x, z, now, length, count)
-        landing, tau = first_landing(m, plan, w, x, z, now, stop)
-        if landing == NOWHERE:
-            return NOT_FINITE
+        if x[BLIND] > 0.0:
+            opening, landing, tau = NOBODY, NOBODY, min(length, x[BLIND])
+        else:
+            opening, stop = first_release(m, plan, w, x, z, now, length, count)
+            landing, tau = first_landing(m, plan, w, x, z, now, stop)
+            if landing == NOWHERE:
+                return NOT_FINITE
         if landing != NOBODY and at_corner(plan, x, now + tau):
             landing, tau = NOBODY, stop
-        ends = landing == NOBODY and opening == NOBODY and x[SIGMA] + length >= x[END] * (1.0 - EPS)
+        ends = landing == NOBODY and opening == NOBODY and tau == length
+        ends = ends and x[SIGMA] + length >= x[END] * (1.0 - EPS)
         code = follow(m, plan, w, x, z, record, t, tau, ends, count)
+        if code == FINISHED and x[BLIND] > 0.0:
+            code = STOPPED
         if code != FINISHED:
             return code
+        if x[PAUSING] == 1.0:
+            assign(w.vec[V_STRUCK], w.vec[V])
         if landing != NOBODY:
             code = touch(m, plan, w, x, z, record, t + x[SIGMA], landing, count)
             if code != FINISHED:
                 return code
         elif opening != NOBODY:
             lose_force(m, plan, w, x, record, t + x[SIGMA], opening, count)
+        if x[PAUSING] == 1.0 and (landing != NOBODY or opening != NOBODY):
+            return STOPPED
 
 
 def lose_force(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> None:

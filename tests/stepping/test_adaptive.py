@@ -76,6 +76,39 @@ def test_a_tolerance_that_cannot_be_met_ends_the_run():
     assert m.t[-1] < 10.0
 
 
+def error(scene, method, n=1601):
+    """Largest error of the position at even times, relative to 1 + its size."""
+    at = np.linspace(*scene.t_span, n)
+    true = scene.exact(at)[0]
+    m = simulate(scene, method, keep=at)
+    assert m.status == Status.DONE
+    return np.max(np.abs(m.q - true)) / (1.0 + np.max(np.abs(true)))
+
+
+@pytest.mark.parametrize("h", [0.628, 2.0, 60.0])
+@pytest.mark.parametrize(("order", "tolerances"), [(2, (1e-3, 1e-5)), (4, (1e-5, 1e-8))])
+def test_errors_after_releases_are_seen(h, order, tolerances):
+    """What both halves share after an event, and a contact that both let go at one wrong time."""
+    scene = dataclasses.replace(scenes.sticking_oscillator(), t_span=(0.0, 60.0))
+    for tolerance in tolerances:
+        assert error(scene, Located(h, order=order, tolerance=tolerance)) <= tolerance
+
+
+@pytest.mark.parametrize("h", [0.02, 0.1, 0.5])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+def test_a_table_throws_its_ball_off_in_time(h, tolerance):
+    """Motion in flight has no error, so steps get as long as the table's period: all errors are the contact's."""
+    assert error(scenes.chattering_table(), Located(h, tolerance=tolerance)) <= tolerance
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_forces_faster_than_the_longest_step_are_not_stepped_over(order):
+    """Whole periods in every step and half step: two runs that begin with them agree on a force that stands still."""
+    scene = scenes.impact_oscillator(omega=2.0, t_end=16.0 * np.pi)
+    for periods in (2.0, 4.0):
+        assert error(scene, Located(periods * np.pi, order=order, tolerance=1e-4)) <= 1e-3
+
+
 def test_bad_input_is_named():
     for bad in (0.0, -1.0, np.nan):
         with pytest.raises(ValueError, match="tolerance"):
