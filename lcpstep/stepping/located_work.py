@@ -16,9 +16,9 @@ N_COUNTERS = 10
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
 # that the piece was made with, whether an open contact may touch at rest, whether events go on at one instant, how
-# often that has been settled in this step, the time from the base of a piece at which its contact forces were decided;
-# what steps by a tolerance ask for: 1 to stop after an event, and how far a single piece goes in which events are not
-# looked for (0: they are)
+# often that has been settled in this step, the time from the base of a piece at which its contact forces were
+# decided; what steps by a tolerance ask for: 1 to stop after an event, and how far a single piece goes in which
+# events are not looked for (0: they are)
 SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
 TOUCHING, STALLED, SETTLED, AHEAD, PAUSING, BLIND = range(9, 15)
 N_NUMBERS = 15
