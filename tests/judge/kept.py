@@ -24,7 +24,7 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
             M=((1.0,),), q0=(0.0,), v0=(0.4,), t_span=(0.0, 2.0), h=0.0137, G=((1.0,), (-1.0,)), offset=(0.0, 0.0),
             K=((33.5,),), C=((0.8,),), sine=(0.36,), force_omega=3.05,
         ),
-        ("event-driven", "located", "moreau"),
+        ("event-driven", "moreau"),
     ),
     "contact force that starts at zero": (
         Description(
