@@ -19,6 +19,7 @@ from lcpstep.dynamics import external_force, obstacle
 from lcpstep.maps.follow import INSIDE, Task
 from lcpstep.model import model
 from lcpstep.stepping.moreau import Moreau, plan
+from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided
 from lcpstep.stepping.theta import Plan
 from lcpstep.trajectory import Status
@@ -47,13 +48,18 @@ class Lanes(NamedTuple):
     force: Any  # (1,)
 
 
-def advance(m: Any, plan: Any, lanes: Any, task: Any, t0: float, first: int, last: int, k: int) -> None:
-    """Kernel: steps first .. last - 1 of all runs; their impacts are noted in the k-th kept period if k >= 0."""
+def advance(
+    m: Any, plan: Any, lanes: Any, task: Any, t0: float, side: float, first: int, last: int, k: int
+) -> None:
+    """Kernel: steps first .. last - 1 of all runs; their impacts are noted in the k-th kept period if k >= 0.
+
+    side : t0, or just after it where that is a corner
+    """
     h, theta = plan.h, plan.theta
     A_f, A_q, A_v, A_g, W = plan.A_f[0, 0], plan.A_q[0, 0], plan.A_v[0, 0], plan.A_g[0, 0], plan.W[0, 0]
     G, offset, r = m.G[0, 0], m.offset[0], m.restitution[0]
     q, v, g, u, p, before = lanes.q, lanes.v, lanes.g, lanes.u, lanes.p, lanes.before
-    external_force(m, t0, lanes.q0, lanes.q0, lanes.force)
+    external_force(m, side, lanes.q0, lanes.q0, lanes.force)
     f = lanes.force[0]
     for step in range(first, last):
         t_next = t0 + h * (step + 1 - first)
@@ -136,7 +142,7 @@ class Lockstep:
             k = period - task.drop
             self.measure(lanes, task.t_start)
             for p, t0, first, last in stretches:
-                kernel(m, p, lanes, task, t0, first, last, k)
+                kernel(m, p, lanes, task, t0, start_side(self.scene, t0), first, last, k)
             if k >= 0:
                 task.states[:, k, 0], task.states[:, k, 1] = lanes.q, lanes.v
         task.final[:, 0], task.final[:, 1] = lanes.q, lanes.v
@@ -150,7 +156,8 @@ class Lockstep:
         m = self.model
         s = np.zeros((1, 3))
         if self.scene.contacts.motion is not None:  # type: ignore[union-attr]
-            self.scene.contacts.motion(t, lanes.q0, lanes.q0, m.p, s)  # type: ignore[union-attr]
+            side = start_side(self.scene, t)
+            self.scene.contacts.motion(side, lanes.q0, lanes.q0, m.p, s)  # type: ignore[union-attr]
         G, offset = m.G[0, 0], m.offset[0]
         lanes.g[:] = offset - s[0, 0] + G * lanes.q
         lanes.u[:] = G * lanes.v - s[0, 1]

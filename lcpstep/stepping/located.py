@@ -6,6 +6,7 @@ words how a run ended.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -152,6 +153,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
         A_inverse[:] = np.linalg.inv(m.M + 0.5 * implicit * m.C + 0.25 * implicit**2 * m.K)
     size = max(np.max(np.abs(x), initial=0.0) for x in (scene.q0, m.offset, h * np.asarray(scene.v0)))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
+    if math.isfinite(scene.period):  # a callback may know the time no better than its phase
+        t_scale = max(t_scale, scene.period)
     return work.Plan(
         h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
         plain=bool(trapezoidal and m.flat and not moves(m)), constant=bool(trapezoidal and m.flat),

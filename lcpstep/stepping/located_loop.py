@@ -93,7 +93,7 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
     x[LOW], x[HIGH] = find_corners(plan, t)
     if plan.trapezoidal:
         external_force(m, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FORCE])
-    elif not free_acceleration(m, w, t, w.vec[Q], w.vec[V], w.vec[FREE]):
+    elif not free_acceleration(m, w, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FREE]):
         return NOT_FINITE
     count[FORCES] += 1
     if plan.steady:

@@ -24,6 +24,7 @@ from lcpstep.stepping import theta as loop
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
+from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, WHOLE, check_steps, divided
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -187,7 +188,8 @@ class _Run:
         """Run to the end of the span, or to where it cannot go on."""
         t_start, tolerance = self.scene.t_span[0], self.method.tolerance
         try:
-            self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start)
+            side = start_side(self.scene, t_start)
+            self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start, side)
             status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
         except KeyboardInterrupt:
             raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None

@@ -298,7 +298,8 @@ def advance(m: Any, plan: Any, w: Any, x: Any, t: float, tau: float, count: Any)
         for i in range(n):
             w.vec[V, i] += 0.5 * tau * (w.vec[FREE, i] + w.vec[A, i])
     else:
-        if not free_acceleration(m, w, t_next, w.vec[Q], w.vec[V_TRY], w.vec[A_TRY]):
+        end = within(plan, x, t_next)
+        if not free_acceleration(m, w, end, w.vec[Q], w.vec[V_TRY], w.vec[A_TRY]):
             return False
         count[FORCES] += 1
         for i in range(n):

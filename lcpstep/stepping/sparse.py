@@ -28,6 +28,7 @@ from lcpstep.lcp.saddle import Point, Problem, Saddle
 from lcpstep.model import culprit, with_addresses
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
+from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, WHOLE, divided
 from lcpstep.stepping.theta import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
@@ -181,9 +182,10 @@ class Run:
 
     def begin(self) -> None:
         """Forces and gaps of the initial state, which is kept where states are."""
-        self.F = self.equations.force(self.t, self.q, self.v)
+        side = start_side(self.scene, self.t)
+        self.F = self.equations.force(side, self.q, self.v)
         self.forces += 1
-        self.g, self.u = self.gaps(self.t, self.q, self.v)
+        self.g, self.u = self.gaps(side, self.q, self.v)
         times = self.kept.times
         if len(times) == 0 or times[0] == self.t:
             self.keep(self.t, self.q, self.v)

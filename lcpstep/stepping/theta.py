@@ -87,14 +87,14 @@ def solve_single(W: Any, b: Any, z: Any, work: Any) -> int:
     return SOLVED if residual <= TOLERANCE else FAILED
 
 
-def begin(m: Any, state: Any, record: Any, count: Any, t: float) -> None:
-    """Forces and gaps of the initial state, which is kept where states are."""
+def begin(m: Any, state: Any, record: Any, count: Any, t: float, side: float) -> None:
+    """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
     if m.linear:
-        external_force(m, t, state.q, state.v, state.force)
+        external_force(m, side, state.q, state.v, state.force)
     else:
-        total_force(m, t, state.q, state.v, state.force)
+        total_force(m, side, state.q, state.v, state.force)
     count[FORCES] += 1
-    measure(m, state, t)
+    measure(m, state, side)
     if len(record.times) == 0:
         keep(state, record, count, t)
     elif record.times[0] == t:
