@@ -135,41 +135,65 @@ def looks(d: Description, end: float) -> Any:
 
 
 def finer_by(r: Run) -> float:
-    """By how much the step or the tolerance is made smaller."""
-    return 0.25 if r.tolerance == 0.0 else 0.0625
+    """By how much the step or the tolerance is made smaller; the grids of `Moreau` must not lie within each other."""
+    if r.tolerance > 0.0:
+        return 0.0625
+    return 0.23 if r.method == "moreau" else 0.25
 
 
 def agrees(reference: Reference, r: Run) -> list[Finding]:
-    """A finding where the method has converged to another motion than the reference."""
+    """Findings where the method has converged to another motion, misses its tolerance, or does not converge."""
     if not r.usable or r.method == reference.run.method:
         return []
     ref, d = reference, reference.d
     finer = run(d, r.method, finer_by(r))
     if not finer.usable:
         return []
-    own, distance = apart(r, finer, ref.looks), ref.apart(finer)
-    spread = 1e-9 * d.length + 1e-6 * d.h if r.method[0] != "m" else 2.0 * d.h
-    until = min([ref.until, *(told_until(d, x.motion.impacts, spread) for x in (r, finer))])
-    told = (own < CONVERGED * ref.size) & (ref.noise < TOLD * ref.size) & (ref.looks < until)
-    floor = 1e-7 * ref.size + 10.0 * r.tolerance * (1.0 + ref.size) + 1e3 * EPS * float(np.max(np.abs(ref.q)))
-    limit = FACTOR * own + NOISE * ref.noise + floor
-    bad = np.flatnonzero(told & (distance > limit))
-    if not len(bad):
-        return []
-    k = int(bad[0])
-    return _confirmed(ref, r, finer, k, float(own[k]), float(distance[k]))
+    until = min([ref.until, *(told_until(d, x.motion.impacts, _together(d, x)) for x in (r, finer))])
+    own, distances = apart(r, finer, ref.looks) + _scatter(d, r), [ref.apart(x) for x in (r, finer)]
+    rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
+    promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
+    told = (ref.noise < TOLD * ref.size) & (ref.looks < until)
+    converged = told & (own < CONVERGED * ref.size)
+    settled = converged & (own > 1e-5 * ref.size) & (ref.noise < 1e3 * SMALL * ref.size)
+    tests = {
+        "disagrees": converged & (distances[1] > FACTOR * own + rounding + promised),
+        "tolerance missed": told & (r.tolerance > 0.0) & (distances[0] > promised + rounding),
+        "no order": settled
+        & (r.tolerance == 0.0)
+        & (distances[1] > 0.7 * distances[0] + rounding + _scatter(d, r)),
+    }
+    for kind, bad in tests.items():
+        where = np.flatnonzero(bad)
+        if len(where):
+            return _confirmed(ref, r, kind, int(where[0]), float(own[where[0]]), distances)
+    return []
 
 
-def _confirmed(ref: Reference, r: Run, finer: Run, k: int, own: float, distance: float) -> list[Finding]:
-    finest = run(ref.d, r.method, finer_by(r) ** 2)
-    if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
-        return []
-    share = max(3.0 * own / ref.size, 1e-8)
+def _together(d: Description, r: Run) -> float:
+    """How near impacts are that a method may take as one."""
+    return 2.0 * d.h if r.method.startswith("moreau") else 1e-9 * d.length + 1e-6 * d.h
+
+
+def _scatter(d: Description, r: Run) -> float:
+    """What rounding impacts to a grid does to places, whichever way it happens to fall."""
+    return 0.25 * d.h * float(np.max(np.abs(r.motion.v))) if r.method == "moreau" else 0.0
+
+
+def _confirmed(ref: Reference, r: Run, kind: str, k: int, own: float, distances: list[Any]) -> list[Finding]:
+    """The finding, unless a still finer step comes nearer, or a disturbed companion goes as far."""
+    which = 0 if kind == "tolerance missed" else 1
+    distance = float(distances[which][k])
+    if which:
+        finest = run(ref.d, r.method, finer_by(r) ** 2)
+        if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
+            return []
+    share = max(3.0 * own / ref.size, 1e-8, r.tolerance)
     for i in range(COMPANIONS):
-        if ref.companion(share, 10 + i)[k] > 0.3 * distance:
+        if ref.companion(share, 10 + i)[k] > 0.1 * distance:
             return []
     text = (
-        f"{distance:.3g} from {ref.run.method} at t = {ref.looks[k]:.6g} in a motion of size {ref.size:.3g}, though "
-        f"within {own:.3g} of itself with a finer step"
+        f"{distance:.3g} from {ref.run.method} at t = {ref.looks[k]:.9g} in a motion of size {ref.size:.3g}, "
+        f"{own:.3g} from itself with a finer step or tolerance"
     )
-    return [Finding(r.method, "disagrees", text)]
+    return [Finding(r.method, kind, text)]

@@ -21,7 +21,7 @@ class Scales:
 
     time : its shortest time, or the span; force (n,): the largest sum of the terms of the forces
     travel : how far it goes; reach : how far its speeds and forces would carry it in that time
-    place (contacts,) : how large the numbers are that gaps are made of
+    place (contacts,) : how large the numbers are that gaps are made of, times among them
     energy : its kinetic energy and the range of its potential; energies : the terms of these
     impulse : of forces during that time, and of momenta
     """
@@ -53,7 +53,9 @@ def scales(d: Description, q: Any, v: Any) -> Scales:
     reach = float(np.max(fast) * time + np.max(inverse @ force) * time**2)
     bent = np.abs(d.row("bend", d.contacts)) * np.max(far) * max(1.0, float(np.max(far)))
     place = np.abs(np.array(d.G).reshape(-1, d.n)) @ far + np.abs(d.row("offset", d.contacts)) + bent
-    place = place + np.abs(d.row("amplitude", d.contacts))
+    moved = np.abs(np.array(d.G).reshape(-1, d.n)) @ (fast + d.omega * np.abs(d.row("frame")))
+    moved = moved + d.omega * np.abs(d.row("amplitude", d.contacts))
+    place = place + np.abs(d.row("amplitude", d.contacts)) + moved * max(map(abs, d.t_span))
     kinetic, potential = physics.energy(d, q, v)
     terms = 0.5 * far @ np.abs(d.matrix("K")) @ far + far @ np.abs(d.row("constant")) + abs(d.pendulum)
     mass = np.abs(physics.masses(d, q[0]))
