@@ -60,7 +60,7 @@ def check_unloaded(k, restitution):
     runs = [simulate(scene, Located(0.01, order)) for order in ORDERS]
     for m in runs:
         coupled.check_bodies(scene, m)
-        assert len(m.impacts) < 200
+        assert len(m.impacts) < 1000  # true sequences of ever shorter hops have hundreds
     stepped = simulate(scene, Moreau(2e-5), keep=[scene.t_span[1]])
     np.testing.assert_allclose(runs[2].q[-1], stepped.q[-1], rtol=0, atol=2e-4)
     for m, atol in zip(runs, (2e-3, 2e-6), strict=False):
