@@ -18,6 +18,7 @@ from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
 from lcpstep import callbacks, compiled
 from lcpstep.callbacks import NotCompiled
+from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
 from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault, plain
