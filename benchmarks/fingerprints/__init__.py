@@ -1,0 +1,1 @@
+"""Fingerprints of all motions of the catalogue: what a change of code alone must leave as it is."""
