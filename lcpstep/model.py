@@ -18,6 +18,7 @@ from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
 from lcpstep import callbacks, compiled
 from lcpstep.callbacks import NotCompiled
+from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
 from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault, plain
@@ -84,7 +85,7 @@ class Model(NamedTuple):
 
 def model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model, and whether every callback of it could be compiled."""
-    (m,), fast = _models(scene, contacts=_contacts(scene, scene.contacts))
+    (m,), fast = _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))
     return m, fast
 
 
@@ -95,13 +96,13 @@ def plain_model(scene: Scene) -> Model:
 
 def joint_model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    (m,), fast = _models(scene, joints=_joints(scene))
+    (m,), fast = _models(scene, _system(scene), joints=_joints(scene))
     return m, fast
 
 
 def tangent_model(scene: Scene) -> tuple[Model, bool]:
     """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    (m,), fast = _models(scene, friction=_tangents(scene))
+    (m,), fast = _models(scene, _system(scene), friction=_tangents(scene))
     return m, fast
 
 
@@ -110,6 +111,7 @@ def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
     friction = scene.contacts is not None and scene.contacts.friction is not None
     (normal, joint, tangent), fast = _models(
         scene,
+        _system(scene),
         contacts=_contacts(scene, scene.contacts),
         joints=_joints(scene),
         friction=_tangents(scene) if friction else _contacts(scene, None),
@@ -117,9 +119,9 @@ def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
     return (normal, joint, tangent), fast
 
 
-def _models(scene: Scene, **constraints: dict[str, Any]) -> tuple[list[Model], bool]:
+def _models(scene: Scene, own: dict[str, Any], **constraints: dict[str, Any]) -> tuple[list[Model], bool]:
     """A model for each kind of constraints; where one callback of any cannot be compiled, all are plain."""
-    (system, *rows), fast = with_addresses(scene, system=_system(scene), **constraints)
+    (system, *rows), fast = with_addresses(scene, system=own, **constraints)
     return [Model(**(system | row)) for row in rows], fast
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from lagrangian import Guard, HybridScene, HybridSystem, Mode, Scene, System
 from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
-from lcpstep.callbacks import UncompiledCallback
 from lcpstep.compiled import jit_disabled
+from lcpstep.model import UncompiledCallback
 from lcpstep.trajectory import Status
 from tests.processes import python
 

@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.callbacks import UncompiledCallback
+from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
 

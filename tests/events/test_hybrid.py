@@ -19,7 +19,7 @@ from lcpstep import (
     Status,
     simulate,
 )
-from lcpstep.callbacks import UncompiledCallback
+from lcpstep.model import UncompiledCallback
 
 METHOD = EventDriven()
 KNOWN = [
