@@ -66,3 +66,32 @@ def test_impacts_never_create_kinetic_energy(r):
     T = 0.5 * np.einsum("ti,ij,tj->t", m.v, M, m.v)
     assert len(m.impacts) >= 3
     assert np.all(np.diff(T) <= 1e-15 * T[0])
+
+
+def struck(seed):
+    """Random M, K and fixed walls with one restitution."""
+    rng = np.random.default_rng([11, seed])
+    n, n_c = int(rng.integers(2, 5)), int(rng.integers(1, 4))
+    B, D, G = rng.normal(size=(n, n)), rng.normal(size=(n, n)), rng.normal(size=(n_c, n))
+    system = LinearSystem(M=B @ B.T + 0.3 * n * np.eye(n), K=10.0 ** rng.uniform(0.0, 2.0) * D @ D.T)
+    contacts = LinearContacts(G, offset=rng.uniform(0.0, 0.3, n_c), restitution=rng.uniform())
+    scene = Scene(system, np.zeros(n), rng.normal(size=n), (0.0, 5.0), contacts)
+    return scene, 5.0 / round(5.0 / 10.0 ** rng.uniform(-2.5, -1.3))
+
+
+def test_contacts_gain_no_more_energy_in_a_step_than_the_bound_says():
+    """(1 - r) / (8 (1 + r)) d^T W^-1 d, d: what the forces change the gap velocities by; the bound is reached."""
+    closest = 0.0
+    for seed in range(60):
+        scene, h = struck(seed)
+        m = simulate(scene, Moreau(h))
+        M, K, G, r = scene.system.M, scene.system.K, scene.contacts.G, scene.contacts.restitution[0]
+        E = 0.5 * np.einsum("ti,ij,tj->t", m.v, M, m.v) + 0.5 * np.einsum("ti,ij,tj->t", m.q, K, m.q)
+        A = M + 0.25 * h**2 * K
+        for k in np.flatnonzero(np.diff(E) > 1e-12 * E[0]):
+            a = m.impulse[k + 1] > 0.0
+            d = G[a] @ np.linalg.solve(A, -h * K @ (m.q[k] + 0.5 * h * m.v[k]))
+            W = G[a] @ np.linalg.solve(A, G[a].T)
+            bound = (1.0 - r) / (1.0 + r) / 8.0 * d @ np.linalg.pinv(W) @ d
+            closest = max(closest, (E[k + 1] - E[k]) / bound)
+    assert 0.5 < closest <= 1.0 + 1e-6
