@@ -15,6 +15,7 @@ from benchmarks.judge.runs import REFERENCE, WAYS, Finding, run
 from benchmarks.judge.vary import varied
 
 SHARE, SEVERAL = 0.25, 2
+LONG = 20_000  # steps beyond which a run is looked at for itself only: finer ones would take minutes
 
 
 class Verdict(NamedTuple):
@@ -37,6 +38,7 @@ def judged(
     `without`: methods that are left out, the reference too.
     """
     endings, findings, reference = {}, [], None
+    compared = d.length < LONG * d.h
     methods = [x for x in methods if share == 1.0 or chance(d, x, 0).random() < WAYS[x].share]
     with np.errstate(all="ignore"):
         for name in dict.fromkeys([REFERENCE, *methods]):
@@ -48,10 +50,10 @@ def judged(
                 endings[name] = r.status
                 findings += check(d, r)
                 rng = chance(d, name, 1)
-                if rng.random() < share:
+                if compared and rng.random() < share:
                     findings += varied(d, r, rng, SEVERAL)
             if name == REFERENCE:
-                if r.usable:
+                if r.usable and compared:
                     reference = Reference(d, r)
             elif reference is not None and r.status != "NOT_FINITE":
                 findings += agrees(reference, r)

@@ -66,7 +66,7 @@ def anything(rng: Any) -> Shape:
 def redundant(rng: Any) -> Shape:
     """Rows that depend on others: copies, multiples, sums."""
     n = int(rng.integers(1, 5))
-    rows = list(rng.normal(size=(int(rng.integers(1, 4)), n)))
+    rows = list(np.round(rng.normal(size=(int(rng.integers(1, 4)), n)), 1) + np.eye(n)[0])
     for _ in range(int(rng.integers(1, 4))):
         weights = rng.choice([0.0, 1.0, 1.0, 2.0], len(rows))
         total = weights @ np.array(rows)
@@ -124,7 +124,7 @@ def jointed(rng: Any) -> Shape:
     m = int(rng.integers(1, 4))
     pendulum = rng.random() < 0.4
     j = 1 if pendulum else int(rng.integers(1, min(n, 3)))
-    J = np.zeros((j, n)) if pendulum else rng.normal(size=(j, n))
+    J = np.zeros((j, n)) if pendulum else np.round(rng.normal(size=(j, n)), 1) + np.eye(n)[:j]
     shape = {
         "G": rng.normal(size=(m, n)),
         "J": J,

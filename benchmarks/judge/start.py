@@ -14,7 +14,7 @@ from benchmarks.judge.shapes import digits
 
 PER_TIME = (1.5, 2.5)  # decades: steps in the shortest time of the motion
 DECADES = 3.3  # of steps in a span
-LONG, LONG_DECADES = 0.02, (3.3, 6.0)
+LONG, LONG_DECADES = 0.01, (3.3, 6.0)
 
 
 def started(rng: Any, d: Description, shape: dict[str, Any]) -> Description:

@@ -6,6 +6,7 @@ Beside the difference of the two runs these count as errors, for both may agree 
     |v_free - v|     velocity, in these steps: what the forces do from the start of the step to the impact
     depth            by which a contact without impulse has gone below its obstacle, or has been below in between
 
+and what releases and friction hide (`adaptive_switches`).
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
 step before an impact is halved until it is short, which costs the logarithm of its length. A contact that closes
 slower than the tolerance resolves is closed without rebound, so that chattering ends.
@@ -43,6 +44,7 @@ from lcpstep.stepping.adaptive import (
     resolved,
     step_size,
 )
+from lcpstep.stepping.adaptive_switches import Switches, begin, note, unseen
 from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.constrained import run as run_constrained
 from lcpstep.stepping.newton import linearise
@@ -114,6 +116,7 @@ class Saved(NamedTuple):
     count: Any
     done: Any  # (5,)
     times: Any  # (n,) states asked for
+    switches: Any  # `adaptive_switches.Switches`
 
 
 def run(
@@ -175,6 +178,7 @@ def attempt(
     """One step, then two halves of it; the errors in saved.done. The halves are left out where they cannot help."""
     store(motion, count, saved)
     done, slow = saved.done, resolved(control, SIZE_V)
+    begin(saved.switches, motion.closed, motion.u, slow)
     t, h = now(control), step_size(control, control.whole[LEVEL])
     for part in range(3):
         if part == 1:
@@ -198,6 +202,7 @@ def attempt(
         if code != FINISHED:
             return code
         after(motion, saved, plan.h, slow)
+        note(saved.switches, part, plan.h, plan, state, saved.num[PART_RATE], slow, c)
         if part > 0:
             keep_times(levels.theta, motion, record.rows, count, saved, start, start + plan.h)
     if count[EVENT] > saved.count[EVENT]:
@@ -205,6 +210,7 @@ def attempt(
     done[APART_Q] = max(done[APART_Q], distance(saved.vec[ONE_Q], motion.q))
     if done[STRUCK] == 0.0:
         done[APART_V] = max(done[APART_V], distance(saved.vec[ONE_V], motion.v))
+        done[APART_V] = max(done[APART_V], unseen(saved.switches, h, levels.theta == 0.5))
     return FINISHED
 
 
@@ -329,7 +335,7 @@ class Attempts:
         self.saved = Saved(
             vec=np.zeros((BETWEEN_V + 1, len(state.q))), num=np.zeros((RESTITUTION + 1, len(state.u))),
             closed=state.closed.copy(), impulse=state.impulse.copy(), count=count.copy(),
-            done=np.zeros(UNDER_WAY + 1), times=record.times,
+            done=np.zeros(UNDER_WAY + 1), times=record.times, switches=switches(len(state.u), constraints),
         )  # fmt: skip
         self.saved.num[RESTITUTION] = model.restitution
         own = model._replace(restitution=model.restitution.copy())
@@ -372,3 +378,12 @@ def room(first: Plan, constant: bool) -> Levels:
     n = LEVELS + 2
     arrays = {name: np.zeros((n if constant else 1, *getattr(first, name).shape)) for name in MATRICES}
     return Levels(first.theta, first.slack, constant, np.zeros(n, dtype=np.int64), **arrays)
+
+
+def switches(n_c: int, constraints: Constraints | None) -> Switches:
+    """For the rows of all contacts."""
+    rows = n_c + (0 if constraints is None else len(constraints.T_t))
+    return Switches(
+        force=np.zeros((3, rows)), impulse=np.zeros((3, rows)), holds=np.zeros((3, rows), dtype=np.int64),
+        held=np.zeros(rows, dtype=np.int64), mobility=np.zeros(rows), response=np.zeros(rows), turned=np.zeros(rows),
+    )  # fmt: skip
