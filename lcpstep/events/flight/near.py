@@ -67,10 +67,9 @@ def is_low(x: Any, a: float) -> bool:
 
 
 @inline
-def fit(s: Any, h: float) -> None:
-    """The cubic of the acceleration over the first h of the flight, into x[C1 .. C3]."""
-    x = s.x
-    alpha0 = x[ALPHA0]
+def fit(s: Any, h: float) -> tuple[float, float, float]:
+    """The cubic of the acceleration over the first h of the flight: c1, c2, c3."""
+    alpha0 = s.x[ALPHA0]
     n1, n2, n3 = GAUSS
     _, _, f1 = free(s, n1 * h)
     _, _, f2 = free(s, n2 * h)
@@ -78,13 +77,13 @@ def fit(s: Any, h: float) -> None:
     # Newton's divided differences of (alpha - alpha0) / sigma
     d1, d2, d3 = (f1 - alpha0) / n1, (f2 - alpha0) / n2, (f3 - alpha0) / n3
     d12, d23 = (d2 - d1) / (n2 - n1), (d3 - d2) / (n3 - n2)
-    x[C3] = (d23 - d12) / (n3 - n1)
-    x[C2] = d12 - x[C3] * (n1 + n2)
-    x[C1] = d1 - n1 * (x[C2] + n1 * x[C3])
+    c3 = (d23 - d12) / (n3 - n1)
+    c2 = d12 - c3 * (n1 + n2)
+    return d1 - n1 * (c2 + n1 * c3), c2, c3
 
 
 def along(x: Any, level: int, h: float, sigma: float) -> float:
-    """Gap (level 0), its velocity (1) or acceleration (2) at sigma of the stretch h that `fit` has seen."""
+    """Gap (level 0), its velocity (1) or acceleration (2) at sigma of the stretch h, by the cubic x[C1 .. C3]."""
     c1, c2, c3 = x[C1], x[C2], x[C3]
     if level == 2:
         return float(x[ALPHA0] + sigma * (c1 + sigma * (c2 + sigma * c3)))
@@ -128,17 +127,15 @@ def first_fall(x: Any, h: float) -> float:
 
 def low_end(s: Any, h: float) -> tuple[float, float]:
     """End of a low flight within its first h, and the gap velocity there; NONE if it is longer."""
-    fit(s, h)
     x = s.x
+    x[C1], x[C2], x[C3] = fit(s, h)
     sigma = first_fall(x, h)
     if sigma == NONE or sigma == 0.0:
         return sigma, 0.0
     u = along(x, 1, h, sigma)
     tau, u_hop = short_hop(s, sigma * h, h)
-    if tau == NONE:  # hardly a touch: it is not known better than the stretch tells
-        fit(s, h)
-        return sigma * h, u
-    return tau, u_hop
+    # Hardly a touch is not known better than the stretch tells
+    return (sigma * h, u) if tau == NONE else (tau, u_hop)
 
 
 def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
@@ -149,8 +146,7 @@ def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
     for _ in range(PASSES):
         if not 0.0 < tau <= longest:
             return NONE, 0.0
-        fit(s, tau)
-        c1, c2, c3 = x[C1], x[C2], x[C3]
+        c1, c2, c3 = fit(s, tau)
         r = 1.0
         for _ in range(PASSES):
             F = u0 + tau * r * (0.5 * alpha0 + r * (c1 / 6.0 + r * (c2 / 12.0 + r * c3 / 20.0)))
