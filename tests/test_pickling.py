@@ -149,9 +149,9 @@ def fall(t, q, v, p, out):
     out[0] = -9.81
 
 
-def local(value=-9.81):
+def local(value=-9.81, slope=0.0):
     def inside(t, q, v, p, out):
-        out[0] = value
+        out[0] = value + slope * q[0]
 
     return inside
 
@@ -169,7 +169,7 @@ UNNAMED = {
     r"LinearSystem\.force: .*<lambda>": lambda: Scene(
         LinearSystem(1.0, force=lambda t, q, v, p, out: out.fill(0.0)), 1.0, 0.0, (0.0, 1.0)
     ),
-    r"Contacts\.gap: 'local\.<locals>\.inside'": lambda: scene(contacts=Contacts(1, local(5.0), unit)),
+    r"Contacts\.gap: 'local\.<locals>\.inside'": lambda: scene(contacts=Contacts(1, local(0.0, 1.0), unit)),
     r"LinearContacts\.motion: .*<lambda>": lambda: scene(
         contacts=LinearContacts(1.0, motion=lambda t, q, v, p, out: out.fill(0.0))
     ),

@@ -67,6 +67,7 @@ def redundant(rng: Any) -> Shape:
     """Rows that depend on others: copies, multiples, sums."""
     n = int(rng.integers(1, 5))
     rows = list(np.round(rng.normal(size=(int(rng.integers(1, 4)), n)), 1) + np.eye(n)[0])
+    rows = [row if np.any(row) else np.eye(n)[0] for row in rows]
     for _ in range(int(rng.integers(1, 4))):
         weights = rng.choice([0.0, 1.0, 1.0, 2.0], len(rows))
         total = weights @ np.array(rows)

@@ -6,6 +6,7 @@ import functools
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any, ParamSpec
 
 from lagrangian import checks
@@ -35,7 +36,7 @@ def checked(make: Callable[P, Scene]) -> Callable[P, Scene]:
             elif isinstance(default, int) and (isinstance(value, bool) or not hasattr(value, "__index__")):
                 raise ValueError(f"{name}: expected a whole number, got {value!r}")
         scene = make(*arguments, **named)
-        if scene.exact is not None and not isinstance(scene.exact, Exact):
+        if isinstance(scene.exact, FunctionType):  # made in `make`, so that pickle does not find it
             exact = Exact(made, arguments, named, scene.exact)
             object.__setattr__(scene, "exact", exact)  # new a moment ago, and checked with the same motion
         return scene

@@ -56,10 +56,10 @@ def test_a_force_that_sets_in_at_the_start_is_there_from_the_start(system, metho
     assert run.q[-1, 0] == pytest.approx(0.5 * PUSH * t * t, abs=1e-11)
 
 
-@pytest.mark.parametrize("method", [EventDriven(), Located(0.04), Moreau(0.04)])
+@pytest.mark.parametrize("method", [lambda h: EventDriven(), Located, Moreau])
 @pytest.mark.parametrize("span", [0.4, 1e-3])
 def test_a_frame_that_sets_out_at_the_start_pushes_from_the_start(method, span):
-    run = simulate(scene(LinearSystem(M=1.0, force=0.0, frame=shaken), 0, span=span), method)
+    run = simulate(scene(LinearSystem(M=1.0, force=0.0, frame=shaken), 0, span=span), method(min(0.04, span)))
     assert run.q[-1, 0] == pytest.approx(-0.5 * PUSH * span**2, abs=1e-14)
     assert run.v[-1, 0] == pytest.approx(-PUSH * span, abs=1e-14)
 
