@@ -12,6 +12,7 @@ the wrong time.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -105,7 +106,7 @@ def chattering_table(
         free,
         restitution,
         (0.0, h0, 0.0),
-        lambda t: _table(sine_table, t, p),
+        partial(_table, sine_table, p=p),
         scan=2.0 * math.pi / omega / 128.0,
     )
     return Scene(
@@ -148,7 +149,7 @@ def jumping_table(
     if falling:
         q0, v0 = 0.5 * g * at**2, 0.0
     motion = Piecewise(
-        Free(f0=-g), restitution, (0.0, q0, v0), lambda t: _table(kinked_table, t, p), [at], scan=0.05
+        Free(f0=-g), restitution, (0.0, q0, v0), partial(_table, kinked_table, p=p), [at], scan=0.05
     )
     return Scene(
         system=LinearSystem(M=1.0, force=Harmonic(constant=-g)),
@@ -173,7 +174,7 @@ def _check(amplitude: float, omega: float, restitution: float, g: float) -> None
     checks.positive("g", g)
 
 
-def _table(callback: Any, t: float, p: Array) -> tuple[float, float, float]:
+def _table(callback: Any, t: float, *, p: Array) -> tuple[float, float, float]:
     out = np.zeros((1, 3))
     callback(t, p, p, p, out)
     return float(out[0, 0]), float(out[0, 1]), float(out[0, 2])

@@ -1,4 +1,4 @@
-"""Forces of the closed contacts of `Located`, as kernels, and how contacts close and open without an impact.
+"""Forces of the closed contacts of `Located`, as kernels: who needs none opens.
 
     0 <= alpha       complementary to  lambda >= 0       on all closed contacts, alpha the gap accelerations
 
@@ -11,73 +11,42 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import product
-from lcpstep.model import ABSENT
-from lcpstep.recording import write_event
 from lcpstep.stepping.joint_tasks import PIECE
 from lcpstep.stepping.located_joints import pass_on
 from lcpstep.stepping.located_work import (
     A_TRY,
     ALPHA,
-    BIAS,
     CHOSEN,
     CLOSED,
-    CLOSED_NOW,
     END,
-    EVENT,
-    EVENTS,
-    FIRST_COORDINATE,
-    FORCE,
     FORCE_NOW,
     FREE,
-    GAP,
     GAP_T,
     GROUND,
     GROUNDED,
-    IDLE,
     IMPULSE,
     INERTIA,
-    JOLT,
-    LAST_COORDINATE,
     LEFT,
     MADE_WITH,
     OLDER,
     OLDER_TIME,
     OPEN,
     RATE,
-    RELEASE,
     ROUNDING,
     SIGMA,
-    STALLED,
     STATUS,
-    STICK,
-    SWING,
     TOUCHING,
-    TURNED,
-    TURNS,
     A,
     B,
     P,
-    Q,
     V,
     Z,
 )
+from lcpstep.stepping.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.refine import keep_closed, solve_chosen
-
-COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
-FAINT = 1e-10  # of the velocities that have acted in a step: the end of a sequence of events at one instant
-AT_ONCE = 16  # events of one contact at one instant after which faint ones are settled,
-AT_ONCE_FAST = 1000  # all but strikes of elastic contacts,
-AT_ONCE_ELASTIC = 100_000  # and all
-
-
-@inline
-def log(record: Any, count: Any, t: float, c: int, before: float, after: float, p: float, kind: int) -> None:
-    """Note an event."""
-    write_event(record.events[count[EVENT]], t, c, before, after, p, kind)
-    count[EVENT] += 1
+from lcpstep.stepping.switches import release, release_time, stick, turn
 
 
 def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, count: Any) -> bool:
@@ -160,36 +129,6 @@ def pulls(m: Any, w: Any, c: int) -> bool:
     return -w.W[c, c] * w.num[P, c] > ROUNDING * (size + acceleration_terms(m, w, c))
 
 
-def acceleration_terms(m: Any, w: Any, c: int) -> float:
-    """What the acceleration of a gap without contact forces is made of, signs left aside."""
-    acting(m, w)
-    size = abs(w.num[BIAS, c])
-    for i in range(w.vec.shape[1]):
-        size += abs(w.G[c, i]) * w.vec[A_TRY, i]
-    return size
-
-
-def acting(m: Any, w: Any) -> None:
-    """What the terms of the accelerations without contact add up to, their signs left aside, into w.vec[A_TRY].
-
-    Their sum may be zero where a spring carries a weight; what rounds is each of them. Of a force that the scene
-    gives as a whole nothing finer is known.
-    """
-    n = w.vec.shape[1]
-    for i in range(n):
-        w.vec[JOLT, i] = 0.0 if m.mass != ABSENT else abs(w.vec[FORCE, i])
-        if m.linear:
-            if m.force == ABSENT:
-                w.vec[JOLT, i] += abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
-            for j in range(n):
-                w.vec[JOLT, i] += abs(m.C[i, j] * w.vec[V, j]) + abs(m.K[i, j] * w.vec[Q, j])
-    for i in range(n):
-        w.vec[A_TRY, i] = abs(w.vec[FREE, i])
-        if m.mass == ABSENT:
-            for j in range(n):
-                w.vec[A_TRY, i] += abs(m.M_inverse[i, j]) * w.vec[JOLT, j]
-
-
 def zero_rounding(plan: Any, w: Any) -> None:
     """What is but rounding of the sums in w.vec[A_TRY] is zero: accelerations, and velocities that they made."""
     for i in range(w.vec.shape[1]):
@@ -197,73 +136,6 @@ def zero_rounding(plan: Any, w: Any) -> None:
             w.vec[A, i] = 0.0
             if plan.plain and abs(w.vec[V, i]) <= ROUNDING * w.vec[A_TRY, i] * plan.h:
                 w.vec[V, i] = 0.0
-
-
-@inline
-def idle(x: Any, count: Any) -> None:
-    """Count a round of the loop in which nothing was noted: these have an end too."""
-    x[EVENTS] += 1.0
-    count[IDLE] += 1
-
-
-def turn(m: Any, plan: Any, w: Any, x: Any, c: int, u: float, struck: bool) -> None:
-    """Note that contact c strikes, closes or opens at speed u; where that goes on for ever, the motion is settled.
-
-    What goes on at one instant has no end if its speeds are faint. An elastic contact may be struck as often as
-    masses are unlike, and is counted at one and the same time only.
-    """
-    elastic = struck and m.restitution[c] == 1.0
-    if x[SIGMA] - w.num[TURNED, c] > (0.0 if elastic else COLLAPSE * plan.h):
-        w.num[TURNS, c] = 0.0
-    w.num[TURNED, c] = x[SIGMA]
-    w.num[TURNS, c] += 1.0
-    if w.num[TURNS, c] < AT_ONCE:
-        return
-    if elastic:
-        most = AT_ONCE_ELASTIC
-    else:
-        most = AT_ONCE if faint(plan, w, c, u) else AT_ONCE_FAST
-    if w.num[TURNS, c] >= most:
-        x[STALLED] = 1.0
-
-
-@inline
-def faint(plan: Any, w: Any, c: int, u: float) -> bool:
-    """Whether a gap velocity is next to nothing beside what has acted in this step."""
-    return abs(u) <= FAINT * speed_terms(plan, w, c)
-
-
-def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:
-    """A contact stays closed from here on."""
-    w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
-    x[CLOSED_NOW] += 1
-    w.num[OLDER, c] = w.num[FORCE_NOW, c] = 0.0
-    log(record, count, t, c, 0.0, 0.0, 0.0, STICK)
-
-
-@inline
-def release_time(w: Any, c: int, t: float, rest: float, deficit: float) -> float:
-    """When the contact force vanished, between its last positive mean and the first that would be negative."""
-    if not w.num[OLDER, c] > 0.0:
-        return t
-    middle = t + 0.5 * rest
-    found = w.num[OLDER_TIME, c] + (middle - w.num[OLDER_TIME, c]) * w.num[OLDER, c] / (
-        w.num[OLDER, c] + deficit
-    )
-    return min(max(found, w.num[OLDER_TIME, c]), t + rest)
-
-
-def release(
-    m: Any, plan: Any, w: Any, record: Any, count: Any, x: Any, c: int, t: float, after: float
-) -> None:
-    """A closed contact opens."""
-    w.mark[STATUS, c], w.mark[GROUNDED, c] = OPEN, GROUND
-    x[CLOSED_NOW] -= 1
-    w.num[FORCE_NOW, c] = w.num[OLDER, c] = 0.0
-    w.num[GAP, c], w.num[RATE, c] = 0.0, after
-    log(record, count, t, c, 0.0, after, 0.0, RELEASE)
-    turn(m, plan, w, x, c, after, False)
-    x[EVENTS] += 1
 
 
 def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, count: Any) -> bool:
@@ -301,16 +173,3 @@ def land(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, tau: float, c
                 share = force / (force + lost) if force > 0.0 else 0.0
                 release(m, plan, w, record, count, x, c, t - tau + tau * share, u)
     return True
-
-
-@inline
-def speed_terms(plan: Any, w: Any, c: int) -> float:
-    """What a gap velocity is made of in this step, signs left aside: velocities, impulses, accelerations.
-
-    Its rounding is measured against that: a speed that falls from impact to impact would never be found small
-    beside itself.
-    """
-    size = abs(w.num[GAP_T, c])
-    for i in range(w.mark[FIRST_COORDINATE, c], w.mark[LAST_COORDINATE, c] + 1):
-        size += abs(w.G[c, i]) * (w.vec[SWING, i] + abs(w.vec[V, i]) + plan.h * abs(w.vec[FREE, i]))
-    return size

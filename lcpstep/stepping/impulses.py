@@ -13,16 +13,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.stepping.contact_forces import (
-    AT_ONCE_FAST,
-    COLLAPSE,
-    faint,
-    log,
-    release,
-    speed_terms,
-    stick,
-    turn,
-)
 from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import pass_on
@@ -60,7 +50,9 @@ from lcpstep.stepping.located_work import (
     V,
     Z,
 )
+from lcpstep.stepping.magnitudes import faint, speed_terms
 from lcpstep.stepping.refine import solve_chosen
+from lcpstep.stepping.switches import AT_ONCE_FAST, COLLAPSE, log, release, stick, turn
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part

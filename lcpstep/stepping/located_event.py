@@ -6,7 +6,6 @@ from typing import Any
 
 from lcpstep.compiled import inline
 from lcpstep.dynamics import external_force, product
-from lcpstep.stepping.contact_forces import idle, speed_terms, stick, turn
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
@@ -29,6 +28,7 @@ from lcpstep.stepping.located_work import (
     Q,
     V,
 )
+from lcpstep.stepping.magnitudes import speed_terms
 from lcpstep.stepping.smooth import (
     free_acceleration,
     lift,
@@ -36,6 +36,7 @@ from lcpstep.stepping.smooth import (
     respond,
     within,
 )
+from lcpstep.stepping.switches import idle, stick, turn
 
 
 def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, count: Any) -> int:

@@ -14,7 +14,6 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, moves, obstacle, product
 from lcpstep.recording import quiet_until
-from lcpstep.stepping.contact_forces import idle
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.located_event import event
 from lcpstep.stepping.located_glide import glide
@@ -86,6 +85,7 @@ from lcpstep.stepping.smooth import (
     respond,
     within,
 )
+from lcpstep.stepping.switches import idle
 
 
 def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) -> int:

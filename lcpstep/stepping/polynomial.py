@@ -111,7 +111,6 @@ def factor_closed(w: Any) -> None:
     w.pivots[n_c] = n_k
 
 
-@inline
 def press(w: Any, out: Any, share: float) -> None:
     """Forces that cancel w.num[ALPHA] of the closed contacts, into w.num[P]; what they do to the acceleration `out`.
 
@@ -132,7 +131,6 @@ def press(w: Any, out: Any, share: float) -> None:
             add_forces(w, out, n_k)
 
 
-@inline
 def add_forces(w: Any, out: Any, n_k: int) -> None:
     """Add to w.num[P] and to the acceleration what cancels w.num[ALPHA]."""
     n_c = w.num.shape[1]

@@ -12,7 +12,6 @@ from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
-from lcpstep.stepping.contact_forces import hold, idle, release, speed_terms, stick, turn
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import strike
 from lcpstep.stepping.located_keep import keep
@@ -20,7 +19,6 @@ from lcpstep.stepping.located_loop import begin_step, finite
 from lcpstep.stepping.located_piece import penetrates
 from lcpstep.stepping.located_work import (
     AHEAD,
-    ALPHA,
     BIAS,
     BLIND,
     BUFFER_FULL,
@@ -33,7 +31,6 @@ from lcpstep.stepping.located_work import (
     EVENT,
     EVENTS_LEFT,
     FINISHED,
-    FREE,
     GAP,
     GAP_T,
     GAP_TRY,
@@ -50,10 +47,7 @@ from lcpstep.stepping.located_work import (
     LOW,
     NEXT_TIME,
     NOT_FINITE,
-    OLDER,
-    OPEN,
     PAUSING,
-    Q_STAGE,
     RATE,
     ROUNDING,
     ROW,
@@ -63,16 +57,14 @@ from lcpstep.stepping.located_work import (
     STEP,
     STOPPED,
     TOO_MANY_EVENTS,
-    TOUCHING,
     UNDER_WAY,
-    V_STAGE,
     V_STRUCK,
-    WHOLE,
     A,
     P,
     Q,
     V,
 )
+from lcpstep.stepping.magnitudes import speed_terms
 from lcpstep.stepping.polynomial import (
     NODES,
     acceleration,
@@ -82,10 +74,10 @@ from lcpstep.stepping.polynomial import (
     on_surface,
     state_at,
 )
-from lcpstep.stepping.scan import NOBODY, NOWHERE, SOON, first_landing, first_release
+from lcpstep.stepping.polynomial_forces import UNDECIDED, load
+from lcpstep.stepping.scan import NOBODY, NOWHERE, first_landing, first_release
 from lcpstep.stepping.settle import endless, settle
 from lcpstep.stepping.smooth import (
-    free_acceleration,
     measure,
     newton_step,
     put_on_surface,
@@ -94,9 +86,9 @@ from lcpstep.stepping.smooth import (
     settle_state,
     within,
 )
+from lcpstep.stepping.switches import idle, release, stick, turn
 
 SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
-UNDECIDED = -1.0  # in place of a time ahead
 
 
 def run(
@@ -200,74 +192,6 @@ def lose_force(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int,
     w.mark[GROUNDED, c] = LEFT
     if record.on_events or record.every == 1:
         keep(w, record, count, t)
-
-
-@inline
-def load(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, length: float, count: Any) -> bool:
-    """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
-    n_c = w.num.shape[1]
-    if n_c == 0:
-        return True
-    undecided = x[AHEAD] == UNDECIDED
-    x[AHEAD] = 0.0
-    if undecided:
-        x[AHEAD] = SOON * length
-        return look_ahead(m, plan, w, x, z, record, t, x[AHEAD], count)
-    if not free_acceleration(m, w, within(plan, x, t), w.vec[Q], w.vec[V], w.vec[FREE]):
-        return False
-    needed = x[CLOSED_NOW] > 0 or x[TOUCHING] > 0.0
-    for c in range(n_c):
-        needed = needed or w.mark[GROUNDED, c] != 0
-        w.num[OLDER, c] = 0.0
-    if not needed:
-        return True
-    return decide(m, plan, w, x, record, t, w.vec[Q], w.vec[V], t, count)
-
-
-def look_ahead(
-    m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, ahead: float, count: Any
-) -> bool:
-    """The same where a contact force vanishes: which contacts are closed from now on shows a little later.
-
-    There forces are as their first derivative that does not vanish says. The way there is that of the forces now.
-    """
-    if not acceleration(m, plan, w, x, t, w.vec[Q], w.vec[V], w.vec[A], count):
-        return False
-    q, v = z.vec[Q_STAGE], z.vec[V_STAGE]
-    for i in range(len(q)):
-        q[i] = w.vec[Q, i] + ahead * (w.vec[V, i] + 0.5 * ahead * w.vec[A, i])
-        v[i] = w.vec[V, i] + ahead * w.vec[A, i]
-    later = t + ahead
-    if not free_acceleration(m, w, within(plan, x, later), q, v, w.vec[FREE]):
-        return False
-    x[TOUCHING] = 1.0
-    for c in range(w.num.shape[1]):
-        w.num[OLDER, c] = 0.0
-        if w.mark[GROUNDED, c] == LEFT:
-            w.mark[GROUNDED, c] = GROUND
-    return decide(m, plan, w, x, record, later, q, v, t, count)
-
-
-def decide(
-    m: Any, plan: Any, w: Any, x: Any, record: Any, at: float, q: Any, v: Any, t: float, count: Any
-) -> bool:
-    """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
-    n_c, before = w.num.shape[1], count[EVENT]
-    gap_rates(m, at, q, v, w.G, w.num[GAP_T])
-    biases(m, plan, w, x, at, q, v)
-    for c in range(n_c):
-        w.num[ALPHA, c] = product(w.G, w.vec[FREE], c) + w.num[BIAS, c]
-    if (x[CLOSED_NOW] > 0 or x[TOUCHING] > 0.0) and not plan.constant:
-        respond(m, w)
-    if not hold(m, plan, w, x, record, WHOLE, t, count):
-        return False
-    for c in range(n_c):
-        w.num[HALF, c] = (
-            0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c]) if w.mark[STATUS, c] == OPEN else 0.0
-        )
-    if count[EVENT] > before and (record.on_events or record.every == 1):
-        keep(w, record, count, t)
-    return True
 
 
 @inline

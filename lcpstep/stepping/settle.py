@@ -17,7 +17,6 @@ from typing import Any
 
 from lcpstep.dynamics import external_force, gap_rates, product
 from lcpstep.recording import write_row
-from lcpstep.stepping.contact_forces import log, release, speed_terms, stick
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import hold_joints, pass_on, turn_with_joints, write_joints
 from lcpstep.stepping.located_keep import keep
@@ -60,6 +59,7 @@ from lcpstep.stepping.located_work import (
     V,
     Z,
 )
+from lcpstep.stepping.magnitudes import speed_terms
 from lcpstep.stepping.refine import solve_chosen
 from lcpstep.stepping.smooth import (
     free_acceleration,
@@ -70,6 +70,7 @@ from lcpstep.stepping.smooth import (
     respond,
     within,
 )
+from lcpstep.stepping.switches import log, release, stick
 
 FIRST = 1e-7  # of a step: the first stretch that is settled in it
 UNTOLD = 1e-4  # of a step: contacts whose hops are shorter are closed anyhow

@@ -56,13 +56,16 @@ def lift(s: Any, c: int) -> None:
 
 
 def gap_tolerance(s: Any, c: int) -> float:
-    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance."""
+    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance.
+
+    Zero where it depends on no coordinate, as in the middle of a bowl.
+    """
     i, least = len(s.J) + c, math.inf
     for j in range(s.state.shape[1]):
         moved = abs(s.MR[i, j])
         if moved > 0.0:
             least = min(least, (s.plan.atol + s.plan.rtol * abs(s.state[Q, j])) * s.D[i, i] / moved)
-    return least
+    return least if least < math.inf else 0.0
 
 
 def press(s: Any, tau: float) -> None:
