@@ -21,6 +21,7 @@ from lagrangian.checks import Array
 
 TWO_PI = 2.0 * math.pi
 SAMPLES = 65  # angles at which an arc is checked
+AHEAD = 1.0 + 2.0**-52  # times an angle: the next one
 HEAD = 5  # numbers before the arcs in a packed profile: omega, phase, offset, fold, number of arcs
 
 
@@ -107,14 +108,15 @@ def rotating_cam(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
     omega, fold = p[0], p[3]
     beta = omega * t + p[1]
     beta -= TWO_PI * math.floor(beta / TWO_PI)  # faster than the remainder
-    if beta == 0.0 and omega < 0.0:
+    if omega < 0.0 and beta == 0.0:
         beta = TWO_PI
     direction = omega
     if beta > fold:
         beta, direction = TWO_PI - beta, -omega
+    ahead = beta * AHEAD if direction > 0.0 else beta
     at = HEAD
     last = HEAD + 4 * (int(p[4]) - 1)
-    while at < last and (beta > p[at] or (beta == p[at] and direction > 0.0)):
+    while at < last and ahead > p[at]:
         at += 4
     kappa, rho = p[at + 1], p[at + 3]
     if kappa == 0.0:
