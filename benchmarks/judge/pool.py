@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from benchmarks.judge.case import SHARE, judged
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import Clock, Finding
+from benchmarks.judge.warm import warm
 
 CPU_LIMIT = 10.0  # seconds of one run
 WALL_LIMIT = 600.0  # without a word from a worker
@@ -40,6 +41,8 @@ def _work(pipe: Any, limit: float, share: float) -> None:
         scene, methods, without = task
         try:
             pipe.send(judged(scene, methods, pipe.send, share, without))
+        except BrokenPipeError:  # nobody is listening any more
+            return
         except Exception as error:  # of the judge itself: raised where everybody sees it
             pipe.send(RuntimeError(f"{error!r} in {scene!r}\n{traceback.format_exc()}"))
 
@@ -78,6 +81,7 @@ def answers(
 ) -> Iterator[Answer]:
     """Verdicts on scenes, in the order in which they are ready."""
     scenes = iter(scenes)
+    warm(methods)
     pool = [_Worker(limit, share) for _ in range(workers)]
     lost: dict[int, tuple[dict[str, str], list[Finding]]] = {}
     try:
