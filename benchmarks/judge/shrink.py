@@ -107,6 +107,7 @@ def shrunk(d: Description, wrong: Callable[[Description], bool], seconds: float)
 
     settings = hypothesis.settings(
         max_examples=EXAMPLES,
+        derandomize=True,
         deadline=None,
         database=None,
         suppress_health_check=list(hypothesis.HealthCheck),
