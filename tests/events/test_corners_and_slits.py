@@ -180,3 +180,12 @@ def test_bundles_of_planes_end_and_hold(seed):
 @pytest.mark.parametrize("seed", range(60, 1000))
 def test_many_more_bundles_of_planes_end_and_hold(seed):
     check_bundle(seed)
+
+
+@pytest.mark.parametrize("tolerance", [1e-8, 1e-10, 1e-12])
+def test_hops_in_a_narrow_wedge_are_not_fed_by_the_closing_of_gaps(tolerance):
+    # two planes nearly opposite: a body put onto one of them is lifted off the other; the fewer the better
+    scene = bundle(15)
+    long = Scene(scene.system, scene.q0, scene.v0, (0.0, 20.0), scene.contacts)
+    m = simulate(long, EventDriven(tolerance, tolerance, max_events=20_000))
+    assert m.status is Status.DONE, m.message

@@ -96,7 +96,9 @@ def approaches(s: Any) -> bool:
         if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] <= touching(s, c):
             noise = speed_noise(s, c)
             if u <= noise:
-                if not s.constant:
+                if (
+                    not s.constant and s.contact[GAP, c] < 0.0
+                ):  # lowering one would lift others, and feed their hops
                     lift(s, c)
                 s.contact[GAP, c] = 0.0
                 if u >= -noise:
@@ -130,13 +132,13 @@ def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:
 def settle(s: Any, record: Any, count: Any) -> int:
     """After a jump: contact forces, contacts that open, chattering that is over."""
     n_c, t = len(s.G), s.x[T0]
-    for _ in range(n_c + 1):
+    for turn in range(n_c + 1):
         if not s.constant and not measure_again(s, t):
             return NOT_FINITE
         code = forces(s, t)
         if code != FINISHED:
             return code
-        if not close_chatter(s, record, count):
+        if turn == n_c or not close_chatter(s, record, count):
             break
     if tell_modes(s, record, count, t) and s.constant:
         polish(s)
