@@ -42,6 +42,11 @@ def numbers(results):
     return [[part["squares"].tolist() for part in chain] for chain in results]
 
 
+def words(caplog):
+    """What sweeps and studies said; kernels may tell that they are being compiled."""
+    return [x.getMessage() for x in caplog.records if x.name in ("lcpstep.sweep", "lcpstep.study")]
+
+
 def spoil(file, damage):
     file.write_bytes(damage(file.read_bytes()))
 
@@ -54,7 +59,7 @@ def test_a_damaged_part_is_made_again(tmp_path, caplog, name, damage):
     for said in (1, 0):  # the second time all is whole again
         caplog.clear()
         assert numbers(sweep(squares, CHAINS, {"a": 1}, out=tmp_path / "s")) == whole
-        assert [name in x.message for x in caplog.records] == said * [True]
+        assert [name in x for x in words(caplog)] == said * [True]
 
 
 def test_no_flipped_bit_of_a_part_changes_the_result(tmp_path):
@@ -75,7 +80,7 @@ def test_parts_of_another_sweep_under_a_damaged_manifest_are_not_taken(tmp_path,
     doubled = [[[2 * x for x in part] for part in chain] for chain in CHAINS]
     found = numbers(sweep(squares, doubled, {"a": 2}, out=tmp_path / "s"))
     assert found == numbers(sweep(squares, doubled, {"a": 2}))
-    assert len(caplog.records) == 5
+    assert len(words(caplog)) == 5
 
 
 def test_a_manifest_without_a_digest_is_another_sweep(tmp_path):
@@ -107,7 +112,7 @@ def test_a_damaged_study_is_put_aside_and_starts_anew(tmp_path, caplog, damage):
     spoil(file, damage)
     again = small_study(file)
     assert [x.errors for x in again.levels] == [x.errors for x in whole.levels]
-    assert ["study.json.damaged" in x.message for x in caplog.records] == [True]
+    assert ["study.json.damaged" in x for x in words(caplog)] == [True]
     assert (tmp_path / "study.json.damaged").exists()
     assert Study.load(file).finished
 

@@ -36,8 +36,9 @@ def judge(numbers, seed, methods, share):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
-def test_thousands_of_scenes(seed):
-    assert list(judge(range(1500), seed, WAYS, 0.25)) == []
+def test_many_more_scenes(seed):
+    """By every method; thousands are the command's, which takes as long as they ask for."""
+    assert list(judge(range(250), seed, WAYS, 0.25)) == []
 
 
 def test_some_hundred_scenes():
