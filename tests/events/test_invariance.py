@@ -46,8 +46,19 @@ def assert_same(m, other, until=SPAN, t0=0.0, unit=1.0):
     np.testing.assert_allclose(positions, m.at(t)[0], rtol=0, atol=1e-6)
 
 
+def each_plane_once(scene):
+    """Where a plane is given twice, rounding decides which contact is told, and whose restitution is the law's."""
+    contacts = scene.contacts
+    planes = np.column_stack([contacts.G, contacts.offset])
+    planes /= np.linalg.norm(contacts.G, axis=1)[:, None]
+    first = [c for c in range(scene.n_c) if not np.any(np.all(np.abs(planes[:c] - planes[c]) < 1e-9, axis=1))]
+    r = np.broadcast_to(contacts.restitution, scene.n_c)[first]
+    kept = LinearContacts(G=contacts.G[first], offset=contacts.offset[first], restitution=r)
+    return Scene(scene.system, scene.q0, scene.v0, scene.t_span, kept, name=scene.name)
+
+
 def check(seed):
-    scene = bundle(seed)
+    scene = each_plane_once(bundle(seed))
     m = simulate(same(scene), METHOD)
     assert m.status is Status.DONE, m.message
     for span in (0.47 * SPAN, 3.0 * SPAN):
