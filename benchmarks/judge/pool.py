@@ -40,6 +40,8 @@ def _work(pipe: Any, limit: float, share: float) -> None:
         scene, methods, without = task
         try:
             pipe.send(judged(scene, methods, pipe.send, share, without))
+        except BrokenPipeError:  # nobody is listening any more
+            return
         except Exception as error:  # of the judge itself: raised where everybody sees it
             pipe.send(RuntimeError(f"{error!r} in {scene!r}\n{traceback.format_exc()}"))
 
