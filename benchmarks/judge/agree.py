@@ -159,6 +159,9 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     tests = {
         "disagrees": converged & (distances[1] > FACTOR * own + rounding + promised),
         "tolerance missed": told & (r.tolerance > 0.0) & (distances[0] > promised + rounding),
+        "finer tolerance missed": told
+        & (r.tolerance > 0.0)
+        & (distances[1] > finer_by(r) * promised + rounding),
         "no order": settled
         & (r.tolerance == 0.0)
         & (distances[1] > 0.7 * distances[0] + rounding + _scatter(d, r)),
@@ -182,13 +185,15 @@ def _scatter(d: Description, r: Run) -> float:
 
 def _confirmed(ref: Reference, r: Run, kind: str, k: int, own: float, distances: list[Any]) -> list[Finding]:
     """The finding, unless a still finer step comes nearer, or a disturbed companion goes as far."""
+    if "tolerance" in kind:
+        own = r.tolerance * ref.size * (1.0 if kind == "tolerance missed" else finer_by(r))
     which = 0 if kind == "tolerance missed" else 1
     distance = float(distances[which][k])
     if which:
         finest = run(ref.d, r.method, finer_by(r) ** 2)
         if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
             return []
-    share = max(3.0 * own / ref.size, 1e-8, r.tolerance)
+    share = max(3.0 * own / ref.size, 1e-8)
     for i in range(COMPANIONS):
         if ref.companion(share, 10 + i)[k] > 0.1 * distance:
             return []
