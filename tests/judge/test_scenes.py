@@ -9,7 +9,6 @@ import pytest
 from benchmarks.judge.case import judged
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
-from benchmarks.judge.runs import WAYS
 from tests.judge.kept import KEPT
 from tests.judge.open import OPEN
 
@@ -32,13 +31,6 @@ def judge(numbers, seed, methods, share):
     scenes = ((k, draw(seed, k)) for k in numbers)
     for answer in answers(scenes, list(methods), workers=2, share=share):
         yield from [(answer.index, answer.scene, x) for x in new(answer.findings)]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2])
-def test_many_more_scenes(seed):
-    """By every method; thousands are the command's, which takes as long as they ask for."""
-    assert list(judge(range(250), seed, WAYS, 0.25)) == []
 
 
 def test_some_hundred_scenes():
