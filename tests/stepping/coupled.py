@@ -58,7 +58,8 @@ def unloaded(rng, restitution):
     if m > 1 and rng.random() < 0.4:
         rows[1] = rng.choice([-1.0, 1.0]) * rows[0]
     if m > 2 and rng.random() < 0.4:
-        rows[2] = 0.5 * rows[0] + 0.25 * rows[1]
+        total = rows[0] + rows[1]
+        rows[2] = 0.5 * (total if np.any(total) else rows[0])
     K = B @ B.T * rng.choice([0.0, 1.0, 30.0])
     loads = np.where(rng.random(m) < 0.5, 0.0, rng.uniform(0.1, 2.0, m))
     balance, turning = K @ q0 - rows.T @ loads, 2.0 * rng.normal(size=n)
