@@ -7,6 +7,7 @@ python3 start.py test     the checks: lint, types, import rules, tests
 import hashlib
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -47,11 +48,15 @@ def main(arguments: list[str]) -> int:
 
 def set_up(what: str) -> None:
     """Make the virtual environment and install the project into it, unless that has been done."""
-    wanted = hashlib.sha256((ROOT / "pyproject.toml").read_bytes()).hexdigest()
+    wanted = hashlib.sha256(
+        b"".join((ROOT / f).read_bytes() for f in ("pyproject.toml", "setup.py"))
+    ).hexdigest()
     done = ENVIRONMENT / f"installed{what.strip('.')}"
     if done.exists() and done.read_text() == wanted:
         return
     print("setting up .venv; this takes a minute", flush=True)
+    if os.name != "nt" and "CC" not in os.environ and not any(map(shutil.which, ("cc", "gcc", "clang"))):
+        print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
     install("--quiet", "--editable", what)

@@ -30,7 +30,7 @@ C = TypeVar("C", bound=type[Any])
 # Kernels allocate nothing, so nothing in them is reference-counted; that is several times faster.
 OPTIONS = {"error_model": "numpy", "_nrt": False}
 ALL_ONES = 0xFF  # the bytes of a not-a-number
-SOLVERS: dict[Any, int] = {}  # addresses by kernel and kinds of its work space
+TASKS: dict[Any, int] = {}  # addresses by kernel and kinds of its work space
 FINGERPRINT = 12  # digits of it in a name
 UNKNOWN = "<unknown>"  # a value of which nobody can tell whether it has changed
 
@@ -45,8 +45,16 @@ def call(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
 
 
 def call_solver(f: Any, W: Any, b: Any, z: Any, work: Any) -> int:
-    """Call a complementarity solver from within a kernel; f is a function here, an address once compiled."""
+    """Call a complementarity solver from within a kernel; f is a function here, an address once compiled.
+
+    W, b and z must be contiguous: what is built ahead of time gets but where they begin, and their length.
+    """
     return int(f(W, b, z, work))
+
+
+def call_task(f: Any, M: Any, q: Any, v: Any, own: Any) -> int:
+    """Call a kernel that was compiled by itself; f is a function here, an address once compiled."""
+    return int(f(M, q, v, own))
 
 
 def call_first_order(f: Any, t: float, x: Any, p: Any, out: Any) -> None:
@@ -59,6 +67,10 @@ class ByAddress(abc.ABC):  # noqa: B024  (numba asks by this class which tuples 
     """All classes marked with `by_address`."""
 
 
+class Handle(abc.ABC):  # noqa: B024  (as above)
+    """Objects of which kernels see but the address: the work spaces of what is built ahead of time."""
+
+
 def by_address(cls: C) -> C:
     """Mark a class of named tuples to be handed from kernel to kernel as one pointer, not field by field."""
     ByAddress.register(cls)
@@ -68,12 +80,6 @@ def by_address(cls: C) -> C:
 def inline(f: F) -> F:
     """Mark a kernel to be merged into its callers, so that the tuples it takes are not copied at every call."""
     f.inline = True  # type: ignore[attr-defined]
-    return f
-
-
-def brief(f: F) -> F:
-    """Mark a kernel that ends sooner than the interpreter's lock is released and taken again: it keeps the lock."""
-    f.brief = True  # type: ignore[attr-defined]
     return f
 
 
@@ -92,27 +98,15 @@ def compiled(f: Callable[..., Any], without: Iterable[Callable[..., Any]] = ()) 
     return _entry(cast(FunctionType, f), frozenset(cast(Iterable[FunctionType], without)))
 
 
-def entry_point(f: Callable[..., Any], *arguments: Any) -> Callable[..., Any]:
-    """Machine code of kernel f for arguments of these types; those of a call are not compared with them.
+def task_address(f: Callable[..., int], work: Any) -> int:
+    """Address of a kernel f(M, q, v, work) compiled by itself, for `call_task`.
 
-    That takes longer than solving for two unknowns. But arrays of another dtype, dimension or layout would be
-    misread: only for callers that have checked theirs.
-    """
-    if jit_disabled():
-        return f
-    dispatcher: Any = compiled(f)
-    return cast(Callable[..., Any], dispatcher.compile(_types(arguments)))
-
-
-def solver_address(f: Callable[..., int], work: Any) -> int:
-    """Address of a complementarity solver f(W, b, z, work) -> status compiled to machine code.
-
-    Looked up by the kinds of the arrays in `work`: the solvers are the library's own, and do not change in a process.
+    Looked up by the kinds of the arrays in `work`: they are the library's own, and do not change in a process.
     """
     kinds = (f, *((a.dtype, a.ndim) if isinstance(a, np.ndarray) else type(a) for a in work))
-    if kinds not in SOLVERS:
-        SOLVERS[kinds] = _address(f, 0, np.zeros((1, 1)), np.zeros(1), np.zeros(1), work)
-    return SOLVERS[kinds]
+    if kinds not in TASKS:
+        TASKS[kinds] = _address(f, 0, np.zeros((1, 1)), np.zeros(1), np.zeros(1), work)
+    return TASKS[kinds]
 
 
 def _address(f: Callable[..., Any], returned: Any, *arguments: Any) -> int:
@@ -142,7 +136,7 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     from lcpstep import addresses  # noqa: F401  (it tells numba of tuples by address)
 
     copy = _with_compiled_callees(f, without)
-    dispatcher = numba.njit(nogil=not hasattr(f, "brief"), **OPTIONS)(copy)
+    dispatcher = numba.njit(nogil=True, **OPTIONS)(copy)
     _keep_on_disk(dispatcher, f, copy, "kernel")
     return dispatcher
 
@@ -150,7 +144,7 @@ def _entry(f: FunctionType, without: frozenset[FunctionType]) -> Any:
 @functools.cache
 def _callee(f: FunctionType, without: frozenset[FunctionType]) -> Any:
     """F as other kernels call it: never from Python, so without the wrappers that take most of the compiling."""
-    if f in (call, call_solver, call_first_order):
+    if f in (call, call_solver, call_task, call_first_order):
         return _intrinsics()[f]
     import numba
 
@@ -280,7 +274,7 @@ def _reached(f: FunctionType) -> frozenset[FunctionType]:
 def _code_text(f: FunctionType) -> str:
     read = [f"{name}={_value_text(value)}" for name, value in [*_values_read(f), *_cells(f)]]
     defaults = [_value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
-    marks = [name for name in ("inline", "brief") if hasattr(f, name)]
+    marks = ["inline"] if hasattr(f, "inline") else []
     codes = []
     for code in _codes(f.__code__):
         literals = [c for c in code.co_consts if not isinstance(c, CodeType)]
@@ -359,11 +353,28 @@ def _intrinsics() -> dict[FunctionType, Any]:
         return types.void(types.int64, types.float64, x, p, out), codegen
 
     @intrinsic
+    def call_task_address(typingctx: Any, f: Any, M: Any, q: Any, v: Any, own: Any) -> Any:
+        return types.int64(types.int64, M, q, v, own), jump
+
+    @intrinsic
     def call_solver_address(typingctx: Any, f: Any, W: Any, b: Any, z: Any, work: Any) -> Any:
-        return types.int64(types.int64, W, b, z, work), jump
+        if any(x.layout != "C" for x in (W, b, z)):
+            return None
+
+        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            arrays = [
+                make_array(kind)(context, builder, x)
+                for kind, x in zip(signature.args[1:4], args[1:4], strict=True)
+            ]
+            values = [*(a.data for a in arrays), arrays[1].nitems, args[4]]
+            c_function = ir.FunctionType(ir.IntType(64), [value.type for value in values])
+            return builder.call(builder.inttoptr(args[0], c_function.as_pointer()), values)
+
+        return types.int64(types.int64, W, b, z, work), codegen
 
     return {
         cast(FunctionType, call): call_address,
         cast(FunctionType, call_solver): call_solver_address,
+        cast(FunctionType, call_task): call_task_address,
         cast(FunctionType, call_first_order): call_first_order_address,
     }

@@ -6,7 +6,7 @@ numpy only.
 """
 
 from lcpstep.lcp.batch import BatchSolution, solve_lcp_batch
-from lcpstep.lcp.judge import residual
+from lcpstep.lcp.judged import residual
 from lcpstep.lcp.problem import LCP, Ray, Solution
 from lcpstep.lcp.solve import check_method, solve_lcp
 from lcpstep.lcp.status import Status

@@ -13,58 +13,61 @@ computed afresh. So errors do not grow along the path, as they do in a tableau.
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.lcp.elimination import copy, dot, invert, subtract
-from lcpstep.lcp.workspace import BASIC, DSLACK, DX, LEFT, SCALED_B, SLACK, TIGHT, W_PLACE, Z_PLACE, X
+if not cython.compiled:
+    from lcpstep.lcp.elimination import invert
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles, abs, after, max
+    from lcpstep.rows import copy, dot, subtract
 
 DRIFT = 1e-12  # error of a direction, relative to its size, above which it is refined
 
 
-def set_direction(entering: int, m: int, n: int, work: Any) -> None:
+def set_direction(entering: int, m: int, n: int, work: Workspace) -> None:
     """Fill dx and dw, the change of the basic variables with the entering one: z_j is j, w_i is n + 1 + i."""
     solve_direction(entering, m, n, work)
     for _ in range(2):
         if drift(m, work) <= DRIFT:
             return
-        refine(work.vectors[DX], work.vectors[DSLACK], m, work)
+        refine(work.dx, work.dslack, m, n, work)
         follow(entering, m, n, work)
     if not drift(m, work) <= DRIFT and refactorise(m, n, work):
         solve_direction(entering, m, n, work)
 
 
-def solve_direction(entering: int, m: int, n: int, work: Any) -> None:
+def solve_direction(entering: int, m: int, n: int, work: Workspace) -> None:
     """K dx = -A_s on the tight rows for an entering z_s, a unit vector for an entering w."""
-    V, dx = work.inverse, work.vectors[DX]
+    V, dx = work.inverse, work.dx
     if entering > n:
-        place = work.indices[W_PLACE, entering - n - 1]
+        place = work.w_place[entering - n - 1]
         for q in range(m):
-            dx[q] = V[q, place]
+            dx[q] = V[q * n + place]
     else:
-        column, right, tight = work.columns[entering], work.vectors[LEFT], work.indices[TIGHT]
+        column, right, tight = after(work.columns, entering * n), work.left, work.tight
         for p in range(m):
             right[p] = column[tight[p]]
         for q in range(m):
-            dx[q] = -dot(V[q], right, m)
+            dx[q] = -dot(after(V, q * n), right, m)
     follow(entering, m, n, work)
 
 
-def follow(entering: int, m: int, n: int, work: Any) -> None:
+def follow(entering: int, m: int, n: int, work: Workspace) -> None:
     """Dw = A dx plus the entering column, over all rows; on the tight rows this is the error of dx."""
-    columns, basic, dx, dw = work.columns, work.indices[BASIC], work.vectors[DX], work.vectors[DSLACK]
+    columns, basic, dx, dw = work.columns, work.basic, work.dx, work.dslack
     if entering > n:
         for i in range(n):
             dw[i] = 0.0
         dw[entering - n - 1] = -1.0
     else:
-        copy(dw, columns[entering], n)
+        copy(dw, after(columns, entering * n), n)
     for q in range(m):
-        subtract(dw, columns[basic[q]], -dx[q], n)
+        subtract(dw, after(columns, basic[q] * n), -dx[q], n)
 
 
-def drift(m: int, work: Any) -> float:
+def drift(m: int, work: Workspace) -> float:
     """Largest error of the direction on the tight rows, relative to its largest component."""
-    tight, dx, dw = work.indices[TIGHT], work.vectors[DX], work.vectors[DSLACK]
+    tight, dx, dw = work.tight, work.dx, work.dslack
     error, size = 0.0, 1.0
     for p in range(m):
         error = max(error, abs(dw[tight[p]]))
@@ -72,113 +75,113 @@ def drift(m: int, work: Any) -> float:
     return error / size
 
 
-def refine(x: Any, w: Any, m: int, work: Any) -> None:
+def refine(x: Doubles, w: Doubles, m: int, n: int, work: Workspace) -> None:
     """Correct x by K^-1 times what w leaves on the tight rows."""
-    V, error, tight = work.inverse, work.vectors[LEFT], work.indices[TIGHT]
+    V, error, tight = work.inverse, work.left, work.tight
     for p in range(m):
         error[p] = w[tight[p]]
     for q in range(m):
-        x[q] -= dot(V[q], error, m)
+        x[q] -= dot(after(V, q * n), error, m)
 
 
-def refactorise(m: int, n: int, work: Any) -> bool:
+def refactorise(m: int, n: int, work: Workspace) -> bool:
     """Compute the inverse and the basic values from A and b; False if K is singular."""
-    V, columns, basic, tight = work.inverse, work.columns, work.indices[BASIC], work.indices[TIGHT]
-    x, w = work.vectors[X], work.vectors[SLACK]
+    V, columns, basic, tight = work.inverse, work.columns, work.basic, work.tight
+    x, w = work.x, work.slack
     for p in range(m):
         for q in range(m):
-            V[p, q] = columns[basic[q], tight[p]]
-    if not invert(V, m, work.indices):
+            V[p * n + q] = columns[basic[q] * n + tight[p]]
+    if not invert(V, m, n, work):
         return False
     for q in range(m):
         x[q] = 0.0
     for _ in range(2):
-        copy(w, work.vectors[SCALED_B], n)
+        copy(w, work.scaled_b, n)
         for q in range(m):
-            subtract(w, columns[basic[q]], -x[q], n)
-        refine(x, w, m, work)
+            subtract(w, after(columns, basic[q] * n), -x[q], n)
+        refine(x, w, m, n, work)
     return True
 
 
-def pivot(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
+def pivot(entering: int, leaving: int, m: int, n: int, work: Workspace) -> int:
     """Exchange two variables in the basis and in the inverse; returns the new size of K."""
-    z_place, w_place = work.indices[Z_PLACE], work.indices[W_PLACE]
+    z_place, w_place = work.z_place, work.w_place
     if entering <= n:
         if leaving <= n:
-            return replace_column(entering, z_place[leaving], m, work)
-        return add_row_and_column(entering, leaving - n - 1, m, work)
+            return replace_column(entering, z_place[leaving], m, n, work)
+        return add_row_and_column(entering, leaving - n - 1, m, n, work)
     if leaving <= n:
-        return drop_row_and_column(w_place[entering - n - 1], z_place[leaving], m, work)
-    return replace_row(w_place[entering - n - 1], leaving - n - 1, m, work)
+        return drop_row_and_column(w_place[entering - n - 1], z_place[leaving], m, n, work)
+    return replace_row(w_place[entering - n - 1], leaving - n - 1, m, n, work)
 
 
-def replace_column(j: int, q: int, m: int, work: Any) -> int:
+def replace_column(j: int, q: int, m: int, n: int, work: Workspace) -> int:
     """z_j takes the place q of another z; dx is -K^-1 A_j."""
-    V, dx, basic, z_place = work.inverse, work.vectors[DX], work.indices[BASIC], work.indices[Z_PLACE]
+    V, dx, basic, z_place = work.inverse, work.dx, work.basic, work.z_place
     for p in range(m):
-        V[q, p] /= -dx[q]
+        V[q * n + p] /= -dx[q]
     for i in range(m):
         if i != q:
-            subtract(V[i], V[q], -dx[i], m)
+            subtract(after(V, i * n), after(V, q * n), -dx[i], m)
     z_place[basic[q]], z_place[j], basic[q] = -1, q, j
     return m
 
 
-def replace_row(p: int, i: int, m: int, work: Any) -> int:
+def replace_row(p: int, i: int, m: int, n: int, work: Workspace) -> int:
     """w_i becomes tight at the place p of another w."""
-    V, left, tight, w_place = work.inverse, work.vectors[LEFT], work.indices[TIGHT], work.indices[W_PLACE]
-    left_product(i, m, work)
+    V, left, tight, w_place = work.inverse, work.left, work.tight, work.w_place
+    left_product(i, m, n, work)
     for q in range(m):
-        factor = V[q, p] / left[p]
-        subtract(V[q], left, factor, m)
-        V[q, p] = factor
+        factor = V[q * n + p] / left[p]
+        subtract(after(V, q * n), left, factor, m)
+        V[q * n + p] = factor
     w_place[tight[p]], w_place[i], tight[p] = -1, p, i
     return m
 
 
-def add_row_and_column(j: int, i: int, m: int, work: Any) -> int:
+def add_row_and_column(j: int, i: int, m: int, n: int, work: Workspace) -> int:
     """z_j becomes basic and w_i tight; the pivot is dw_i."""
-    V, dx, left = work.inverse, work.vectors[DX], work.vectors[LEFT]
-    reciprocal = 1.0 / work.vectors[DSLACK, i]
-    left_product(i, m, work)
+    V, dx, left = work.inverse, work.dx, work.left
+    reciprocal = 1.0 / work.dslack[i]
+    left_product(i, m, n, work)
     for q in range(m):
         factor = dx[q] * reciprocal
-        subtract(V[q], left, factor, m)
-        V[q, m] = factor
+        subtract(after(V, q * n), left, factor, m)
+        V[q * n + m] = factor
     for p in range(m):
-        V[m, p] = -left[p] * reciprocal
-    V[m, m] = reciprocal
-    work.indices[BASIC, m], work.indices[Z_PLACE, j] = j, m
-    work.indices[TIGHT, m], work.indices[W_PLACE, i] = i, m
+        V[m * n + p] = -left[p] * reciprocal
+    V[m * n + m] = reciprocal
+    work.basic[m], work.z_place[j] = j, m
+    work.tight[m], work.w_place[i] = i, m
     return m + 1
 
 
-def left_product(i: int, m: int, work: Any) -> None:
+def left_product(i: int, m: int, n: int, work: Workspace) -> None:
     """Row i of the basic columns, times K^-1."""
-    V, columns, left, basic = work.inverse, work.columns, work.vectors[LEFT], work.indices[BASIC]
+    V, columns, left, basic = work.inverse, work.columns, work.left, work.basic
     for p in range(m):
         left[p] = 0.0
     for q in range(m):
-        subtract(left, V[q], -columns[basic[q], i], m)
+        subtract(left, after(V, q * n), -columns[basic[q] * n + i], m)
 
 
-def drop_row_and_column(p: int, q: int, m: int, work: Any) -> int:
+def drop_row_and_column(p: int, q: int, m: int, n: int, work: Workspace) -> int:
     """The tight w at place p becomes basic, the basic z at place q zero; the last ones take their places."""
-    V, x, last = work.inverse, work.vectors[X], m - 1
-    basic, tight = work.indices[BASIC], work.indices[TIGHT]
-    reciprocal = 1.0 / V[q, p]
+    V, x, last = work.inverse, work.x, m - 1
+    basic, tight = work.basic, work.tight
+    reciprocal = 1.0 / V[q * n + p]
     for i in range(m):
         if i != q:
-            subtract(V[i], V[q], V[i, p] * reciprocal, m)
+            subtract(after(V, i * n), after(V, q * n), V[i * n + p] * reciprocal, m)
     for i in range(m):
-        V[q, i] = V[last, i]
+        V[q * n + i] = V[last * n + i]
     for i in range(last):
-        V[i, p] = V[i, last]
-    work.indices[Z_PLACE, basic[q]], work.indices[W_PLACE, tight[p]] = -1, -1
+        V[i * n + p] = V[i * n + last]
+    work.z_place[basic[q]], work.w_place[tight[p]] = -1, -1
     if q < last:
         basic[q], x[q] = basic[last], x[last]
-        work.indices[Z_PLACE, basic[q]] = q
+        work.z_place[basic[q]] = q
     if p < last:
         tight[p] = tight[last]
-        work.indices[W_PLACE, tight[p]] = p
+        work.w_place[tight[p]] = p
     return last

@@ -7,13 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.compiled import compiled
-from lcpstep.lcp.dense import NOT_FINITE
-from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_dense
+from lcpstep.lcp.dense import many
 from lcpstep.lcp.problem import as_array, check_finite
-from lcpstep.lcp.scaling import all_finite
-from lcpstep.lcp.status import SOLVED, TOLERANCE
-from lcpstep.lcp.workspace import ITERATIONS, RESIDUAL, SLACK, workspace
+from lcpstep.lcp.status import ENOUGH, NOT_FINITE, PER_UNKNOWN, SOLVED, TOLERANCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,36 +65,11 @@ def solve_lcp_batch(
     if z.shape != b.shape:
         raise ValueError(f"guess must have the shape of b, {b.shape}, not {z.shape}")
     w, residual = np.empty((m, n)), np.zeros(m)
-    status, iterations = np.zeros(m, dtype=np.int64), np.zeros(m, dtype=np.int64)
+    status, iterations = np.zeros(m, dtype=np.intp), np.zeros(m, dtype=np.intp)
     limit = ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
-    if n > 0:
+    if m > 0 and n > 0:
         matrices = W if W.ndim == 3 else W[None]
-        compiled(solve_all)(matrices, b, z, w, status, iterations, residual, tol, limit, workspace(n))
+        many(matrices, b, z, w, status, iterations, residual, tol, limit)
     if (status == NOT_FINITE).any():
         check_finite(W, b)
     return BatchSolution(z, w, status, iterations, residual)
-
-
-def solve_all(
-    matrices: Any,
-    b: Any,
-    z: Any,
-    w: Any,
-    status: Any,
-    iterations: Any,
-    residual: Any,
-    tolerance: float,
-    max_pivots: int,
-    work: Any,
-) -> None:
-    """One problem after the other; a single matrix serves all."""
-    shared = matrices.shape[0] == 1
-    for i in range(b.shape[0]):
-        W = matrices[0 if shared else i]
-        if not all_finite(W, b[i]):
-            status[i] = NOT_FINITE
-            continue
-        status[i] = solve_dense(W, b[i], z[i], tolerance, max_pivots, work)
-        iterations[i], residual[i] = int(work.report[ITERATIONS]), work.report[RESIDUAL]
-        for j in range(b.shape[1]):
-            w[i, j] = work.vectors[SLACK, j]

@@ -1,161 +1,182 @@
-"""Pivoting and enumeration on a dense W, called from Python: one call into compiled code a problem."""
+"""Pivoting and enumeration on a dense W, called from Python: checked arrays in, a Solution out."""
 
 from __future__ import annotations
 
-import functools
 import threading
-from collections.abc import Callable
 from typing import Any
 
+import cython
 import numpy as np
 
-from lcpstep.compiled import brief, compiled, entry_point
-from lcpstep.lcp.enumeration import enumerate_bases
 from lcpstep.lcp.infeasible import explained, farkas
-from lcpstep.lcp.judge import judge
-from lcpstep.lcp.kernel import ENOUGH, PER_UNKNOWN, solve_closed, solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
-from lcpstep.lcp.scaling import all_finite
-from lcpstep.lcp.status import FAILED, INFEASIBLE, RAY, SOLVED, Status
-from lcpstep.lcp.workspace import (
-    BEST_RESIDUAL,
-    ITERATIONS,
-    RAY_DIRECTION,
-    RAY_DZ0,
-    RAY_START,
-    RAY_Z0,
-    RESIDUAL,
-    ROW_SCALE,
-    SIZE,
-    SLACK,
-    carve,
-    length_needed,
-)
+from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, NOT_FINITE, PER_UNKNOWN, RAY, SOLVED, Status
 
-NOT_FINITE = -1
-STATUS = tuple(Status)
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.lcp.enumeration import enumerate_bases
+    from lcpstep.lcp.judge import judge
+    from lcpstep.lcp.kernel import solve_dense
+    from lcpstep.lcp.scaling import all_finite
+    from lcpstep.lcp.small import solve_closed
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles, Indices, after, max
+    from lcpstep.rows import copy
+
+NAMES = tuple(Status)
 NAME_OF_SOLVED = Status.SOLVED
 new = tuple.__new__  # naming the fields of a Solution takes as long as solving for two unknowns
-LARGEST_KEPT = 100  # unknowns up to which work arrays are kept: 250 kB at most
+LARGEST_KEPT = 100  # unknowns up to which work spaces are kept: 250 kB at most
 LARGEST_ENUMERATION = 20  # unknowns; a million bases
 
 
 class _Kept(threading.local):
-    """Work arrays by number of unknowns, kept from call to call; every thread has its own."""
+    """Work spaces by number of unknowns, kept from call to call; every thread has its own."""
 
     def __init__(self) -> None:
-        self.blocks: dict[int, Any] = {}
+        self.spaces: dict[int, Workspace] = {}
 
 
 _kept = _Kept()
 
 
-def block_for(n: int) -> Any:
-    """A block for the work arrays of n unknowns."""
-    block = np.zeros(length_needed(n))
-    if n <= LARGEST_KEPT:
-        _kept.blocks[n] = block
-    return block
-
-
-@functools.cache
-def machine_code() -> tuple[Callable[..., Any], Callable[..., Any]]:
-    """The compiled `close_once` and `pivot_once`."""
-    vector, matrix = np.zeros(1), np.zeros((1, 1))
-    arrays = matrix, vector, vector, vector, vector
-    return entry_point(close_once, *arrays, 0.0), entry_point(pivot_once, *arrays, 0.0, 0)
-
-
-@brief
-def close_once(W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float) -> float:
-    """Residual of the closed form for one or two unknowns, infinite for one that is not finite; fills z and w."""
-    return solve_closed(W, b, z, w, block, tolerance)
-
-
-def pivot_once(
-    W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float, max_pivots: int
-) -> tuple[int, int, float]:
-    """`solve_dense` on work arrays carved from a block: status, iterations, residual; fills z and w."""
-    if not all_finite(W, b):
-        return NOT_FINITE, 0, np.inf
-    work = carve(block, b.shape[0])
-    return finish(solve_dense(W, b, z, tolerance, max_pivots, work), w, work)
-
-
-def enumerate_once(
-    W: Any, b: Any, z: Any, w: Any, block: Any, tolerance: float, limit: int
-) -> tuple[int, int, float]:
-    """`enumerate_bases` in the same way."""
-    if not all_finite(W, b):
-        return NOT_FINITE, 0, np.inf
-    work = carve(block, b.shape[0])
-    work.report[ITERATIONS], work.report[BEST_RESIDUAL] = 0.0, tolerance
-    status = enumerate_bases(W, b, z, tolerance, limit, work)
-    if status != SOLVED:
-        for i in range(b.shape[0]):
-            z[i] = max(z[i], 0.0)
-        work.report[RESIDUAL] = judge(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return finish(status, w, work)
-
-
-def finish(status: int, w: Any, work: Any) -> tuple[int, int, float]:
-    """Copy w out and report."""
-    for i in range(w.shape[0]):
-        w[i] = work.vectors[SLACK, i]
-    return status, int(work.report[ITERATIONS]), work.report[RESIDUAL]
+def space_for(n: int) -> Workspace:
+    """A work space for n unknowns."""
+    spaces = _kept.spaces
+    work = spaces.get(n)
+    if work is None:
+        work = Workspace(n)
+        if n <= LARGEST_KEPT:
+            spaces[n] = work
+    return work
 
 
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Principal and Lemke's pivoting; where they end in a ray, the search for a proof of infeasibility."""
-    n = len(b)
-    block = _kept.blocks.get(n)
-    if block is None:
-        block = block_for(n)
-    close, pivot = machine_code()
-    w = np.empty(n)
+    n, w = len(b), np.empty(len(b))
+    work = space_for(n)
     if n <= 2:
-        residual = close(W, b, z, w, block, tol)
+        residual = solve_closed(doubles(W), doubles(b), doubles(z), n, doubles(w), work.size, tol)
         if residual <= tol:
             return new(Solution, (z, w, NAME_OF_SOLVED, 0, residual, "lemke", None))
     limit = ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations
-    status, iterations, residual = pivot(W, b, z, w, block, tol, limit)
+    status = pivot_once(doubles(W), doubles(b), doubles(z), n, doubles(w), tol, limit, work)
     if status == SOLVED:
-        return new(Solution, (z, w, NAME_OF_SOLVED, iterations, residual, "lemke", None))
+        return new(Solution, (z, w, NAME_OF_SOLVED, work.iterations, work.residual, "lemke", None))
     if status == NOT_FINITE:
         check_finite(W, b)
     certificate: Any = None
+    iterations, residual = work.iterations, work.residual
     if status == INFEASIBLE:
-        certificate = carve(block, n).vectors[RAY_DIRECTION, :n].copy()
+        certificate = array_of(work.ray_direction, n)
     elif status == RAY:
         certificate = farkas(W, b)
         if certificate is not None:
             status = INFEASIBLE
         else:
-            certificate = ray(carve(block, n), n)
-    return Solution(z, w, STATUS[status], iterations, residual, "lemke", certificate)
+            certificate = ray(work, n)
+    return Solution(z, w, NAMES[status], iterations, residual, "lemke", certificate)
 
 
 def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Every complementary basis in turn."""
-    n = b.shape[0]
+    n, w = len(b), np.empty(len(b))
     if n > LARGEST_ENUMERATION:
         raise ValueError(f"W is too large to enumerate: 2^{n} bases; at most {LARGEST_ENUMERATION} unknowns")
-    limit = 2**n if max_iterations is None else max_iterations
-    w, block = np.empty(n), np.zeros(length_needed(n))
-    status, iterations, residual = compiled(enumerate_once)(W, b, z, w, block, tol, limit)
+    limit, work = (1 << n) if max_iterations is None else max_iterations, space_for(n)
+    status = enumerate_all(doubles(W), doubles(b), doubles(z), n, doubles(w), tol, limit, work)
     if status == NOT_FINITE:
         check_finite(W, b)
-    found = Solution(z, w, STATUS[status], iterations, residual, "enumeration")
+    found = Solution(z, w, NAMES[status], work.iterations, work.residual, "enumeration")
     return explained(W, b, found) if status == FAILED else found
 
 
-def ray(work: Any, n: int) -> Ray:
-    """The ray that the work arrays hold."""
-    vectors, report = work.vectors, work.report
-    return Ray(
-        vectors[RAY_START, :n].copy(),
-        vectors[RAY_DIRECTION, :n].copy(),
-        float(report[RAY_Z0]),
-        float(report[RAY_DZ0]),
-        1.0 / vectors[ROW_SCALE, :n],
-    )
+def many(
+    matrices: Any, b: Any, z: Any, w: Any, status: Any, iterations: Any, residual: Any, tol: float, limit: int
+) -> None:
+    """Pivoting on one problem after the other; a single matrix serves all. For `batch`, which has the arrays."""
+    size = len(b[0])
+    solve_all(
+        doubles(matrices), len(matrices) == 1, doubles(b), doubles(z), doubles(w), indices(status),
+        indices(iterations), doubles(residual), len(b), size, tol, limit, space_for(size),
+    )  # fmt: skip
+
+
+def pivot_once(
+    W: Doubles,
+    b: Doubles,
+    z: Doubles,
+    n: int,
+    w: Doubles,
+    tolerance: float,
+    limit: int,
+    work: Workspace,
+) -> int:
+    """`solve_dense` while other threads may run; NOT_FINITE for a problem that is not; fills z and w."""
+    with cython.nogil:
+        if not all_finite(W, b, n):
+            return NOT_FINITE
+        status = solve_dense(W, b, z, n, tolerance, limit, work)
+        copy(w, work.slack, n)
+        return status
+
+
+def enumerate_all(
+    W: Doubles,
+    b: Doubles,
+    z: Doubles,
+    n: int,
+    w: Doubles,
+    tolerance: float,
+    limit: int,
+    work: Workspace,
+) -> int:
+    """`enumerate_bases` in the same way."""
+    with cython.nogil:
+        if not all_finite(W, b, n):
+            return NOT_FINITE
+        work.iterations, work.best_residual = 0, tolerance
+        status = enumerate_bases(W, b, z, n, tolerance, limit, work)
+        if status != SOLVED:
+            for i in range(n):
+                z[i] = max(z[i], 0.0)
+            work.residual = judge(W, b, z, n, work.slack, work.size)
+        copy(w, work.slack, n)
+        return status
+
+
+def solve_all(
+    matrices: Doubles,
+    shared: bool,
+    b: Doubles,
+    z: Doubles,
+    w: Doubles,
+    status: Indices,
+    iterations: Indices,
+    residual: Doubles,
+    m: int,
+    n: int,
+    tolerance: float,
+    limit: int,
+    work: Workspace,
+) -> None:
+    """`pivot_once` for m problems."""
+    for i in range(m):
+        W = matrices if shared else after(matrices, i * n * n)
+        x, y = after(z, i * n), after(w, i * n)
+        status[i] = pivot_once(W, after(b, i * n), x, n, y, tolerance, limit, work)
+        if status[i] != NOT_FINITE:
+            iterations[i], residual[i] = work.iterations, work.residual
+
+
+def ray(work: Workspace, n: int) -> Ray:
+    """The ray that the work space holds."""
+    direction, start = array_of(work.ray_direction, n), array_of(work.ray_start, n)
+    return Ray(start, direction, work.ray_z_0, work.ray_dz_0, 1.0 / array_of(work.row_scale, n))
+
+
+def array_of(x: Doubles, n: int) -> Any:
+    """An array with these numbers."""
+    array = np.empty(n)
+    copy(doubles(array), x, n)
+    return array

@@ -5,28 +5,32 @@ The 2^n sets of positive z are tried in the order of binary counting; each answe
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.lcp.principal import clip, solve_chosen
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-from lcpstep.lcp.workspace import CHOSEN, ITERATIONS, RESIDUAL, TRIAL
+
+if not cython.compiled:
+    from lcpstep.lcp.principal import clip, solve_chosen
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles
 
 
-def enumerate_bases(W: Any, b: Any, z: Any, tolerance: float, limit: int, work: Any) -> int:
+def enumerate_bases(
+    W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, limit: int, work: Workspace
+) -> int:
     """Try at most `limit` bases: SOLVED by one of them, FAILED by all, or MAX_ITERATIONS."""
-    n = b.shape[0]
     for i in range(n):
-        work.vectors[TRIAL, i] = 0.0
-    for subset in range(2**n):
+        work.trial[i] = 0.0
+    for subset in range(1 << n):
         if subset >= limit:
             return MAX_ITERATIONS
         for i in range(n):
-            work.indices[CHOSEN, i] = (subset >> i) & 1
-        work.report[ITERATIONS] += 1.0
+            work.chosen[i] = (subset >> i) & 1
+        work.iterations += 1
         if (
-            solve_chosen(W, b, z, tolerance, work)
-            and work.report[RESIDUAL] <= tolerance
-            and clip(W, b, z, work) <= tolerance
+            solve_chosen(W, b, z, n, tolerance, work)
+            and work.residual <= tolerance
+            and clip(W, b, z, n, work) <= tolerance
         ):
             return SOLVED
     return FAILED

@@ -13,15 +13,20 @@ from __future__ import annotations
 
 from typing import Any
 
+import cython
 import numpy as np
 
-from lcpstep.compiled import compiled
-from lcpstep.lcp.judge import proves_infeasible
-from lcpstep.lcp.lemke import lemke
 from lcpstep.lcp.problem import Solution, is_sparse
-from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.status import RAY, Status
-from lcpstep.lcp.workspace import CHOSEN, RAY_DIRECTION, workspace
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.lcp.judge import proves_infeasible
+    from lcpstep.lcp.lemke import lemke
+    from lcpstep.lcp.scaling import equilibrate
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import after
+    from lcpstep.rows import copy
 
 PIVOTS = 50  # per unknown
 LARGEST = 200  # unknowns up to which the proof is looked for where the method itself gives no ray
@@ -38,13 +43,15 @@ def explained(W: Any, b: Any, solution: Solution) -> Solution:
 
 def farkas(W: Any, b: Any) -> Any:
     """The vector y for a dense W, or None if there is no proof up to rounding."""
-    n = b.shape[0]
+    n = len(b)
     M, q = np.zeros((2 * n, 2 * n)), np.concatenate((np.zeros(n), b))
     M[:n, n:], M[n:, :n] = -W.T, W
-    work = workspace(2 * n)
-    compiled(equilibrate)(M, q, work)
-    work.indices[CHOSEN] = 0
-    if compiled(lemke)(2 * n, 2 * PIVOTS * n, SMALLEST_PIVOT, True, work) != RAY:
+    work = Workspace(2 * n)
+    equilibrate(doubles(M), doubles(q), 2 * n, work)
+    for i in range(2 * n):
+        work.chosen[i] = 0
+    if lemke(2 * n, 2 * PIVOTS * n, SMALLEST_PIVOT, True, work) != RAY:
         return None
-    y = work.vectors[RAY_DIRECTION, n : 2 * n].copy()
-    return y if compiled(proves_infeasible)(W, b, y) else None
+    y = np.empty(n)
+    copy(doubles(y), after(work.ray_direction, n), n)
+    return y if proves_infeasible(doubles(W), doubles(b), doubles(y), n) else None

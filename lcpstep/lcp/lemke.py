@@ -16,39 +16,22 @@ Variables are numbered z_0..z_(n-1) = 0..n-1, the covering variable n, w_i = n +
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-import numpy as np
-
-from lcpstep.lcp.basis import pivot, refactorise, set_direction
-from lcpstep.lcp.elimination import subtract
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, RAY, SOLVED
-from lcpstep.lcp.workspace import (
-    BASIC,
-    CHOSEN,
-    COLUMN_SCALE,
-    DSLACK,
-    DX,
-    ITERATIONS,
-    RAY_DIRECTION,
-    RAY_DZ0,
-    RAY_START,
-    RAY_Z0,
-    SLACK,
-    SMALLEST,
-    TIED,
-    TIGHT,
-    W_PLACE,
-    Z_PLACE,
-    X,
-)
+
+if not cython.compiled:
+    from lcpstep.lcp.basis import pivot, refactorise, set_direction
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import abs, after, inf, max, min
+    from lcpstep.rows import subtract
 
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 NOTHING = -1
 
 
-def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Any) -> int:
-    """Pivot from the basis marked in CHOSEN to a complementary one, which is marked there; returns a status.
+def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Workspace) -> int:
+    """Pivot from the basis marked in `chosen` to a complementary one, which is marked there; returns a status.
 
     No pivot is smaller than `smallest`, relative to the largest entry of its direction. If `keep`, a ray is
     stored in the work arrays.
@@ -58,7 +41,7 @@ def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Any) -> in
         return FAILED
     for _ in range(max_pivots):
         set_direction(entering, m, n, work)
-        if work.indices[Z_PLACE, n] < 0:
+        if work.z_place[n] < 0:
             leaving = first_leaving(m, n, work)
         else:
             leaving = ratio_test(m, n, smallest, work)
@@ -67,106 +50,106 @@ def lemke(n: int, max_pivots: int, smallest: float, keep: bool, work: Any) -> in
                 keep_ray(entering, m, n, work)
             return RAY
         m = advance(entering, leaving, m, n, work)
-        work.report[ITERATIONS] += 1.0
+        work.iterations += 1
         if leaving == n:
             for j in range(n):
-                work.indices[CHOSEN, j] = 1 if work.indices[Z_PLACE, j] >= 0 else 0
+                work.chosen[j] = 1 if work.z_place[j] >= 0 else 0
             return SOLVED
         entering = leaving + n + 1 if leaving < n else leaving - n - 1
     return MAX_ITERATIONS
 
 
-def start(n: int, work: Any) -> int:
+def start(n: int, work: Workspace) -> int:
     """The basis of the chosen z and the other w; returns the number of z, -1 if the basis is singular.
 
     The covering vector is such that every basic variable grows by one with z_0: all ones for the basis of w.
     """
-    m, basic, d = 0, work.indices[BASIC], work.columns[n]
+    m, basic, d = 0, work.basic, after(work.columns, n * n)
     for i in range(n):
-        work.indices[Z_PLACE, i] = work.indices[W_PLACE, i] = -1
-        if work.indices[CHOSEN, i]:
-            work.indices[Z_PLACE, i] = work.indices[W_PLACE, i] = m
-            basic[m] = work.indices[TIGHT, m] = i
+        work.z_place[i], work.w_place[i] = NOTHING, NOTHING
+        if work.chosen[i]:
+            work.z_place[i], work.w_place[i] = m, m
+            basic[m], work.tight[m] = i, i
             m += 1
-    work.indices[Z_PLACE, n] = -1
+    work.z_place[n] = -1
     if not refactorise(m, n, work):
         return -1
     for i in range(n):
-        d[i] = 0.0 if work.indices[CHOSEN, i] else 1.0
+        d[i] = 0.0 if work.chosen[i] else 1.0
     for q in range(m):
-        subtract(d, work.columns[basic[q]], 1.0, n)
+        subtract(d, after(work.columns, basic[q] * n), 1.0, n)
     return m
 
 
-def first_leaving(m: int, n: int, work: Any) -> int:
+def first_leaving(m: int, n: int, work: Workspace) -> int:
     """The variable that the covering one, falling from infinity, reaches first; the last of equal ones."""
-    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
-    lowest, leaving = np.inf, NOTHING
+    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
+    lowest, leaving = inf, NOTHING
     for q in range(m):
         if x[q] / dx[q] <= lowest:
-            lowest, leaving = x[q] / dx[q], work.indices[BASIC, q]
+            lowest, leaving = x[q] / dx[q], work.basic[q]
     for i in range(n):
-        if work.indices[W_PLACE, i] < 0 and w[i] / dw[i] <= lowest:
+        if work.w_place[i] < 0 and w[i] / dw[i] <= lowest:
             lowest, leaving = w[i] / dw[i], n + 1 + i
     return leaving
 
 
-def ratio_test(m: int, n: int, smallest: float, work: Any) -> int:
+def ratio_test(m: int, n: int, smallest: float, work: Workspace) -> int:
     """The basic variable that bounds the entering one, lexicographically; the covering variable if it can."""
     bound = first_zero(m, n, smallest, work)
-    if bound == np.inf:
+    if bound == inf:
         return NOTHING
     tied = list_ties(bound, m, n, work)
     for t in range(tied):
-        if work.indices[TIED, t] == n:
+        if work.tied[t] == n:
             return n
     j = 0
     while tied > 1 and j < n:
         tied = keep_lowest(j, tied, m, n, work)
         j += 1
-    return work.indices[TIED, 0]
+    return work.tied[0]
 
 
-def first_zero(m: int, n: int, smallest: float, work: Any) -> float:
+def first_zero(m: int, n: int, smallest: float, work: Workspace) -> float:
     """Growth of the entering variable at which a basic one is surely zero; infinite if none falls.
 
-    Leaves in report[SMALLEST] the size above which a component of the direction counts.
+    Leaves in `smallest` the size above which a component of the direction counts.
     """
-    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
     steepest, largest = 1.0, 0.0
     for q in range(m):
         steepest, largest = max(steepest, abs(dx[q])), max(largest, abs(x[q]))
     for i in range(n):
         steepest, largest = max(steepest, abs(dw[i])), max(largest, abs(w[i]))
-    smallest, slack, bound = smallest * steepest, TIE * largest, np.inf
+    smallest, slack, bound = smallest * steepest, TIE * largest, inf
     for q in range(m):
         if dx[q] < -smallest:
             bound = min(bound, (max(x[q], 0.0) + slack) / -dx[q])
     for i in range(n):
-        if dw[i] < -smallest and work.indices[W_PLACE, i] < 0:
+        if dw[i] < -smallest and work.w_place[i] < 0:
             bound = min(bound, (max(w[i], 0.0) + slack) / -dw[i])
-    work.report[SMALLEST] = smallest
+    work.smallest = smallest
     return bound
 
 
-def list_ties(bound: float, m: int, n: int, work: Any) -> int:
-    """List in TIED the variables that reach zero within the bound; returns how many."""
-    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
-    listed, smallest, tied = work.indices[TIED], work.report[SMALLEST], 0
+def list_ties(bound: float, m: int, n: int, work: Workspace) -> int:
+    """List in `tied` the variables that reach zero within the bound; returns how many."""
+    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
+    listed, smallest, tied = work.tied, work.smallest, 0
     for q in range(m):
         if dx[q] < -smallest and x[q] <= -bound * dx[q]:
-            listed[tied] = work.indices[BASIC, q]
+            listed[tied] = work.basic[q]
             tied += 1
     for i in range(n):
-        if dw[i] < -smallest and w[i] <= -bound * dw[i] and work.indices[W_PLACE, i] < 0:
+        if dw[i] < -smallest and w[i] <= -bound * dw[i] and work.w_place[i] < 0:
             listed[tied] = n + 1 + i
             tied += 1
     return tied
 
 
-def keep_lowest(j: int, tied: int, m: int, n: int, work: Any) -> int:
+def keep_lowest(j: int, tied: int, m: int, n: int, work: Workspace) -> int:
     """Of the tied variables keep those whose coefficient of e^(j+1), over the pivot, is lowest."""
-    listed, lowest, kept = work.indices[TIED], np.inf, 0
+    listed, lowest, kept = work.tied, inf, 0
     for t in range(tied):
         lowest = min(lowest, perturbation(listed[t], j, m, n, work))
     for t in range(tied):
@@ -176,26 +159,26 @@ def keep_lowest(j: int, tied: int, m: int, n: int, work: Any) -> int:
     return kept
 
 
-def perturbation(variable: int, j: int, m: int, n: int, work: Any) -> float:
+def perturbation(variable: int, j: int, m: int, n: int, work: Workspace) -> float:
     """Coefficient of e^(j+1) in the ratio of a basic variable: how b_j moves it, over its pivot."""
-    place = work.indices[W_PLACE, j]
+    place = work.w_place[j]
     if variable <= n:
-        q = work.indices[Z_PLACE, variable]
-        return work.inverse[q, place] / work.vectors[DX, q] if place >= 0 else 0.0
+        q = work.z_place[variable]
+        return work.inverse[q * n + place] / work.dx[q] if place >= 0 else 0.0
     i = variable - n - 1
     if place < 0:
-        return -1.0 / work.vectors[DSLACK, i] if i == j else 0.0
+        return -1.0 / work.dslack[i] if i == j else 0.0
     moved = 0.0
     for q in range(m):
-        moved += work.columns[work.indices[BASIC, q], i] * work.inverse[q, place]
-    return moved / work.vectors[DSLACK, i]
+        moved += work.columns[work.basic[q] * n + i] * work.inverse[q * n + place]
+    return moved / work.dslack[i]
 
 
-def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
+def advance(entering: int, leaving: int, m: int, n: int, work: Workspace) -> int:
     """Let the entering variable grow until the leaving one is zero, and exchange them."""
-    x, dx, w, dw = work.vectors[X], work.vectors[DX], work.vectors[SLACK], work.vectors[DSLACK]
+    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
     if leaving <= n:
-        theta = -x[work.indices[Z_PLACE, leaving]] / dx[work.indices[Z_PLACE, leaving]]
+        theta = -x[work.z_place[leaving]] / dx[work.z_place[leaving]]
     else:
         theta = -w[leaving - n - 1] / dw[leaving - n - 1]
     theta = max(theta, 0.0)
@@ -205,7 +188,7 @@ def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
         w[i] += theta * dw[i]
     m = pivot(entering, leaving, m, n, work)
     if entering <= n:
-        x[work.indices[Z_PLACE, entering]] = theta
+        x[work.z_place[entering]] = theta
     else:
         w[entering - n - 1] = theta
     if leaving > n:
@@ -213,17 +196,17 @@ def advance(entering: int, leaving: int, m: int, n: int, work: Any) -> int:
     return m
 
 
-def keep_ray(entering: int, m: int, n: int, work: Any) -> None:
+def keep_ray(entering: int, m: int, n: int, work: Workspace) -> None:
     """Store the ray, in the units of W and b: z + t dz and z_0 + t dz_0 for t >= 0."""
-    direction, begin = work.vectors[RAY_DIRECTION], work.vectors[RAY_START]
+    direction, begin = work.ray_direction, work.ray_start
     for i in range(n):
-        direction[i] = begin[i] = 0.0
-    work.report[RAY_DZ0] = work.report[RAY_Z0] = 0.0
+        direction[i], begin[i] = 0.0, 0.0
+    work.ray_dz_0, work.ray_z_0 = 0.0, 0.0
     for q in range(m):
-        j, dx, x = work.indices[BASIC, q], max(work.vectors[DX, q], 0.0), max(work.vectors[X, q], 0.0)
+        j, dx, x = work.basic[q], max(work.dx[q], 0.0), max(work.x[q], 0.0)
         if j < n:
-            direction[j], begin[j] = dx * work.vectors[COLUMN_SCALE, j], x * work.vectors[COLUMN_SCALE, j]
+            direction[j], begin[j] = dx * work.column_scale[j], x * work.column_scale[j]
         else:
-            work.report[RAY_DZ0], work.report[RAY_Z0] = dx, x
+            work.ray_dz_0, work.ray_z_0 = dx, x
     if entering < n:
-        direction[entering] = work.vectors[COLUMN_SCALE, entering]
+        direction[entering] = work.column_scale[entering]

@@ -17,7 +17,7 @@ import numpy as np
 from lcpstep.lcp.factor import Factoriser, Singular, factoriser
 from lcpstep.lcp.infeasible import explained
 from lcpstep.lcp.interior import interior_point
-from lcpstep.lcp.judge import residual, shares
+from lcpstep.lcp.judged import residual, shares
 from lcpstep.lcp.problem import Solution, check_finite
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED, Status
 

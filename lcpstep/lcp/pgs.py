@@ -11,12 +11,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import cython
 import numpy as np
 
-from lcpstep.compiled import compiled
-from lcpstep.lcp.judge import residual
+from lcpstep.lcp.judged import residual
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import MAX_ITERATIONS, SOLVED, Status
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.pointers import Doubles, Indices, max
 
 SWEEPS = 1000
 BETWEEN = 10  # sweeps between two visits of the judge
@@ -30,12 +34,13 @@ def pgs(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solut
         i = int(np.argmin(diagonal))
         raise ValueError(f"W must have a positive diagonal for Gauss-Seidel; W[{i}, {i}] = {diagonal[i]:g}")
     matrix = W if is_sparse(W) else _csr(W)
+    starts, columns = matrix.indptr.astype(np.intp), matrix.indices.astype(np.intp)
     done, limit = 0, SWEEPS if max_iterations is None else max_iterations
     z = np.maximum(z, 0.0)
     error = residual(matrix, b, z)
     while error > tol and done < limit:
         count = min(BETWEEN, limit - done)
-        compiled(sweep)(matrix.indptr, matrix.indices, matrix.data, b, z, count)
+        sweep(indices(starts), indices(columns), doubles(matrix.data), doubles(b), doubles(z), len(b), count)
         done += count
         error = residual(matrix, b, z)
     status = SOLVED if error <= tol else MAX_ITERATIONS
@@ -48,13 +53,13 @@ def _csr(W: Any) -> Any:
     return csr_array(W)
 
 
-def sweep(indptr: Any, indices: Any, data: Any, b: Any, z: Any, count: int) -> None:
+def sweep(starts: Indices, columns: Indices, W: Doubles, b: Doubles, z: Doubles, n: int, count: int) -> None:
     """Pass `count` times over all unknowns; the matrix is in CSR form."""
     for _ in range(count):
-        for i in range(b.shape[0]):
+        for i in range(n):
             w, pivot = b[i], 1.0
-            for p in range(indptr[i], indptr[i + 1]):
-                w += data[p] * z[indices[p]]
-                if indices[p] == i:
-                    pivot = data[p]
+            for p in range(starts[i], starts[i + 1]):
+                w += W[p] * z[columns[p]]
+                if columns[p] == i:
+                    pivot = W[p]
             z[i] = max(0.0, z[i] - w / pivot)

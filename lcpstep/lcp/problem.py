@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lcpstep.lcp.judge import residual
+from lcpstep.lcp.judged import residual
 from lcpstep.lcp.status import SOLVED, Status
 
 FLOAT = np.dtype(np.float64)

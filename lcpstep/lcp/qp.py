@@ -20,7 +20,7 @@ from lcpstep.errors import MissingSolver, UnknownName
 from lcpstep.lcp.definite import require_semidefinite, scaled, unit_diagonal
 from lcpstep.lcp.factor import factoriser
 from lcpstep.lcp.infeasible import explained
-from lcpstep.lcp.judge import residual
+from lcpstep.lcp.judged import residual
 from lcpstep.lcp.newton import best_of, polish
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import FAILED, SOLVED, Status

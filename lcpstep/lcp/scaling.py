@@ -7,73 +7,59 @@ rounding. What is left free, a common factor of z, makes the largest entry of R 
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-import numpy as np
-
-from lcpstep.lcp.workspace import COLUMN_SCALE, DSLACK, ROW_SCALE, SCALED_B
+if not cython.compiled:
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles, abs, after, bits, double_of, max
+    from lcpstep.rows import largest_magnitude, raise_to
 
 # A double x > 0 as an integer: the higher, the larger x; from bit 52 on 1022 plus the k with 2^-k x in [1/2, 1)
-MAGNITUDE = 0x7FFFFFFFFFFFFFFF  # all bits but the sign
-INFINITY = 0x7FF0000000000000  # and beyond it what is not a number
+INFINITE = 0x7FF0000000000000  # and beyond it what is not a number
 MANTISSA = 52
 LARGEST_POWER, SMALLEST_POWER = 1023 + 1000, 1023 - 1000
 
 
-def equilibrate(W: Any, b: Any, work: Any) -> None:
-    """Fill columns, b, rows_by and columns_by of the work arrays with the scaled problem."""
-    n = b.shape[0]
-    r, c, scaled = work.vectors[ROW_SCALE], work.vectors[COLUMN_SCALE], work.vectors[SCALED_B]
+def equilibrate(W: Doubles, b: Doubles, n: int, work: Workspace) -> None:
+    """Fill columns, scaled_b, row_scale and column_scale of the work space with the scaled problem."""
+    r, c, scaled, columns = work.row_scale, work.column_scale, work.scaled_b, work.columns
     balance(W, r, c, n)
-    unit = work.vectors[DSLACK]
-    unit[0] = 0.0
+    largest = 0.0
     for i in range(n):
         scaled[i] = r[i] * b[i]
-        unit[0] = max(unit[0], abs(scaled[i]))
-    to_inverse_powers(unit, 1)
+        largest = max(largest, abs(scaled[i]))
+    unit = inverse_power(largest)
     for i in range(n):
-        scaled[i] *= unit[0]
+        scaled[i] *= unit
     for j in range(n):
-        column, factor = work.columns[j], c[j]
         for i in range(n):
-            column[i] = W[i, j] * r[i] * factor
+            columns[j * n + i] = W[i * n + j] * r[i] * c[j]
     for i in range(n):
-        r[i], c[i] = r[i] * unit[0], c[i] / unit[0]
+        r[i], c[i] = r[i] * unit, c[i] / unit
 
 
-def balance(W: Any, r: Any, c: Any, n: int) -> None:
+def balance(W: Doubles, r: Doubles, c: Doubles, n: int) -> None:
     """Scale the largest entry of each row, then of each column, to between 1/2 and 1."""
-    bits = r.view(np.int64)
     for i in range(n):
-        bits[i], c[i] = largest_magnitude(W[i], n), 0.0
-    to_inverse_powers(r, n)
+        r[i], c[i] = inverse_power(double_of(largest_magnitude(after(W, i * n), n))), 0.0
     for i in range(n):
-        row, factor = W[i], r[i]
-        for j in range(n):
-            c[j] = max(c[j], abs(row[j]) * factor)
-    to_inverse_powers(c, n)
+        raise_to(c, after(W, i * n), r[i], n)
+    for j in range(n):
+        c[j] = inverse_power(c[j])
 
 
-def largest_magnitude(x: Any, n: int) -> int:
-    """Largest |x_i| for i < n as an integer; integers are compared several at a time."""
-    bits, largest = x.view(np.int64), 0
-    for i in range(n):
-        largest = max(largest, bits[i] & MAGNITUDE)
-    return largest
+def inverse_power(x: float) -> float:
+    """The 2^k with x 2^k in [1/2, 1), at most 2^1000; one for x = 0. x must not be negative."""
+    if not bits(x) > 0:
+        return 1.0
+    power = 1023 + 1022 - (bits(x) >> MANTISSA)
+    if power < SMALLEST_POWER:
+        power = SMALLEST_POWER
+    if power > LARGEST_POWER:
+        power = LARGEST_POWER
+    return double_of(power << MANTISSA)
 
 
-def to_inverse_powers(x: Any, n: int) -> None:
-    """Replace every x_i >= 0 by the 2^k with x_i 2^k in [1/2, 1), at most 2^1000; zero by one."""
-    bits = x.view(np.int64)
-    for i in range(n):
-        power = min(max(1023 + 1022 - (bits[i] >> MANTISSA), SMALLEST_POWER), LARGEST_POWER)
-        bits[i] = (power if bits[i] > 0 else 1023) << MANTISSA
-
-
-def all_finite(W: Any, b: Any) -> bool:
+def all_finite(W: Doubles, b: Doubles, n: int) -> bool:
     """Whether no entry is NaN or infinite."""
-    n = b.shape[0]
-    largest = largest_magnitude(b, n)
-    for i in range(n):
-        largest = max(largest, largest_magnitude(W[i], n))
-    return largest < INFINITY
+    return largest_magnitude(W, n * n) < INFINITE and largest_magnitude(b, n) < INFINITE

@@ -6,6 +6,9 @@ from enum import IntEnum
 
 SOLVED, RAY, INFEASIBLE, MAX_ITERATIONS, FAILED = range(5)  # kernels return these
 TOLERANCE = 1e-10  # residual below which an answer is called solved, unless asked otherwise
+ENOUGH = 1000  # pivots granted unless asked otherwise, and as many more per unknown:
+PER_UNKNOWN = 20
+NOT_FINITE = -1  # in the place of a status: the problem holds what is no number
 
 
 class Status(IntEnum):

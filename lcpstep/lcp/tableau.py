@@ -14,49 +14,33 @@ Rules of the path, numbers of the variables and sources: see `lemke`.
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-import numpy as np
-
-from lcpstep.compiled import inline
-from lcpstep.lcp.elimination import copy, subtract
-from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
-from lcpstep.lcp.workspace import (
-    BASIC,
-    CHANGES,
-    CHOSEN,
-    COLUMN_SCALE,
-    ITERATIONS,
-    NONBASIC,
-    PLACE,
-    RESIDUAL,
-    ROW_SCALE,
-    SCALED_B,
-    SHARES,
-    SIZE,
-    SLACK,
-    TIED,
-    TRIAL,
-)
+
+if not cython.compiled:
+    from lcpstep.lcp.judge import judge
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles, abs, after, inf, max
+    from lcpstep.rows import add_eight, copy, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 ROUNDING = 1e-15  # relative error of a row of W z + b below which there is nothing to correct
 CORRECTIONS = 3
-TOGETHER = 4  # changes made at a time
+TOGETHER = 8  # changes made at a time
 LARGE = 40  # unknowns from which putting changes off pays
 NOTHING = -1
 
 
-def pivot_tableau(n: int, max_pivots: int, work: Any) -> int:
+def pivot_tableau(n: int, max_pivots: int, work: Workspace) -> int:
     """Pivot from z = 0 on the scaled problem in the work arrays to a complementary basis; returns a status."""
-    basic, nonbasic, place = work.indices[BASIC], work.indices[NONBASIC], work.indices[PLACE]
+    basic, nonbasic, place = work.basic, work.nonbasic, work.place
     for i in range(n):
-        basic[i], nonbasic[i], work.columns[n, i] = n + 1 + i, i, 1.0
+        basic[i], nonbasic[i], work.columns[n * n + i] = n + 1 + i, i, 1.0
         place[i], place[n + 1 + i] = i, NOTHING
     nonbasic[n], place[n] = n, n
-    s, p, waiting, together = n, last_lowest(work.vectors[SCALED_B], n), 0, TOGETHER if n >= LARGE else 1
+    s, p, waiting, together = n, last_lowest(work.scaled_b, n), 0, TOGETHER if n >= LARGE else 1
     for _ in range(max_pivots):
         entering, leaving = nonbasic[s], basic[p]
         advance(p, s, waiting, n, work)
@@ -64,7 +48,7 @@ def pivot_tableau(n: int, max_pivots: int, work: Any) -> int:
         waiting += 1
         if waiting == together or leaving == n:
             waiting = change_all(waiting, n, work)
-        work.report[ITERATIONS] += 1.0
+        work.iterations += 1
         if leaving == n:
             return SOLVED
         s = place[leaving + n + 1 if leaving < n else leaving - n - 1]
@@ -76,7 +60,7 @@ def pivot_tableau(n: int, max_pivots: int, work: Any) -> int:
     return MAX_ITERATIONS
 
 
-def last_lowest(q: Any, n: int) -> int:
+def last_lowest(q: Doubles, n: int) -> int:
     """The row that the covering variable, falling from infinity, brings to zero first; the last of equal ones."""
     p = 0
     for i in range(n):
@@ -85,75 +69,59 @@ def last_lowest(q: Any, n: int) -> int:
     return p
 
 
-@inline
-def bring_up_to_date(s: int, waiting: int, n: int, work: Any) -> None:
+def bring_up_to_date(s: int, waiting: int, n: int, work: Workspace) -> None:
     """Make the waiting changes in one column."""
     for k in range(waiting):
-        subtract(work.columns[s], work.vectors[CHANGES + k], -work.vectors[SHARES + k, s], n)
-        work.vectors[SHARES + k, s] = 0.0
+        share = work.shares[k * (n + 1) + s]
+        subtract(after(work.columns, s * n), after(work.changes, k * n), -share, n)
+        work.shares[k * (n + 1) + s] = 0.0
 
 
-@inline
-def advance(p: int, s: int, waiting: int, n: int, work: Any) -> None:
+def advance(p: int, s: int, waiting: int, n: int, work: Workspace) -> None:
     """Exchange row p and column s, which is up to date; the change of the other columns is put on the list."""
-    T, q = work.columns, work.vectors[SCALED_B]
-    change, shares = work.vectors[CHANGES + waiting], work.vectors[SHARES + waiting]
-    copy(change, T[s], n)
+    T, q, changes = work.columns, work.scaled_b, work.changes
+    change, shares = after(changes, waiting * n), after(work.shares, waiting * (n + 1))
+    copy(change, after(T, s * n), n)
     reciprocal = 1.0 / change[p]
-    for c in range(n + 1):
-        shares[c] = T[c, p]
-    for k in range(waiting):
-        subtract(shares, work.vectors[SHARES + k], -work.vectors[CHANGES + k, p], n + 1)
-    for c in range(n + 1):
-        shares[c] *= -reciprocal
     theta = max(-q[p] * reciprocal, 0.0)
     subtract(q, change, -theta, n)
     q[p] = theta
-    for k in range(waiting + 1):
-        work.vectors[CHANGES + k, p] = 0.0
     for c in range(n + 1):
-        T[c, p] = shares[c]
-    for i in range(n):
-        T[s, i] = change[i] * reciprocal
-    shares[s], T[s, p] = 0.0, reciprocal
+        shares[c] = T[c * n + p]
+    for k in range(waiting):
+        subtract(shares, after(work.shares, k * (n + 1)), -changes[k * n + p], n + 1)
+        changes[k * n + p] = 0.0
+    changes[waiting * n + p] = 0.0
+    for c in range(n + 1):
+        shares[c] *= -reciprocal
+        T[c * n + p] = shares[c]
+    copy(after(T, s * n), change, n)
+    multiply(after(T, s * n), reciprocal, n)
+    shares[s], T[s * n + p] = 0.0, reciprocal
 
 
-@inline
-def change_all(waiting: int, n: int, work: Any) -> int:
+def change_all(waiting: int, n: int, work: Workspace) -> int:
     """Make the waiting changes in all columns; returns how many are left: none."""
-    T, change = work.columns, work.vectors[CHANGES : CHANGES + TOGETHER]
-    share = work.vectors[SHARES : SHARES + TOGETHER]
     for c in range(n + 1):
+        column, shares = after(work.columns, c * n), after(work.shares, c)
         if waiting == TOGETHER:
-            change_column(T[c], change, share[0, c], share[1, c], share[2, c], share[3, c], n)
+            add_eight(column, work.changes, n, shares, n + 1, n)
         else:
             for k in range(waiting):
-                if share[k, c] != 0.0:
-                    subtract(T[c], change[k], -share[k, c], n)
+                subtract(column, after(work.changes, k * n), -shares[k * (n + 1)], n)
     return 0
 
 
-def change_column(column: Any, change: Any, d: float, e: float, f: float, g: float, n: int) -> None:
-    """Four changes of one column."""
-    if d == 0.0 and e == 0.0 and f == 0.0 and g == 0.0:
-        return
-    t, u, v, w = change[0], change[1], change[2], change[3]
-    for i in range(n):
-        column[i] += (d * t[i] + e * u[i]) + (f * v[i] + g * w[i])
-
-
-@inline
-def list_ties(s: int, n: int, work: Any) -> int:
-    """List in TIED the rows that bound the entering variable of column s, the covering one alone if it does."""
-    q, d, rows, growth = work.vectors[SCALED_B], work.columns[s], work.indices[TIED], work.vectors[TRIAL]
+def list_ties(s: int, n: int, work: Workspace) -> int:
+    """List in `tied` the rows that bound the entering variable of column s, the covering one alone if it does."""
+    q, d, rows, growth = work.scaled_b, after(work.columns, s * n), work.tied, work.trial
     smallest = SMALLEST_PIVOT * max(1.0, largest_entry(d, n))
     slack = TIE * largest_entry(q, n)
-    for i in range(n):  # without branches: several rows at a time
-        growth[i] = (max(q[i], 0.0) + slack) / -d[i] if -d[i] > smallest else np.inf
+    ratios(growth, q, slack, d, smallest, n)
     bound, tied = lowest_entry(growth, n), 0
     for i in range(n):
-        if (-d[i] > smallest) & (q[i] <= -bound * d[i]):
-            if work.indices[BASIC, i] == n:
+        if -d[i] > smallest and q[i] <= -bound * d[i]:
+            if work.basic[i] == n:
                 rows[0] = i
                 return 1
             rows[tied] = i
@@ -161,38 +129,38 @@ def list_ties(s: int, n: int, work: Any) -> int:
     return tied
 
 
-def first_of_ties(tied: int, s: int, waiting: int, n: int, work: Any) -> int:
+def first_of_ties(tied: int, s: int, waiting: int, n: int, work: Workspace) -> int:
     """Of the tied rows the one that is lowest lexicographically."""
-    rows, j = work.indices[TIED], 0
+    rows, j = work.tied, 0
     while tied > 1 and j < n:
-        c = work.indices[PLACE, n + 1 + j]
+        c = work.place[n + 1 + j]
         if c == NOTHING:
             tied = leave_out(n + 1 + j, tied, work)
         else:
-            tied = keep_lowest(c, tied, s, waiting, work)
+            tied = keep_lowest(c, tied, s, waiting, n, work)
         j += 1
     return rows[0]
 
 
-def leave_out(variable: int, tied: int, work: Any) -> int:
+def leave_out(variable: int, tied: int, work: Workspace) -> int:
     """Take the row of a basic w_j off the list of ties: b_j moves it up, and none of the others."""
-    rows, kept = work.indices[TIED], 0
+    rows, kept = work.tied, 0
     for t in range(tied):
-        if work.indices[BASIC, rows[t]] != variable:
+        if work.basic[rows[t]] != variable:
             rows[kept] = rows[t]
             kept += 1
     return kept
 
 
-def keep_lowest(c: int, tied: int, s: int, waiting: int, work: Any) -> int:
+def keep_lowest(c: int, tied: int, s: int, waiting: int, n: int, work: Workspace) -> int:
     """Keep of the ties those that b_j moves least: its coefficient over the pivot; w_j is that of column c."""
-    rows, lowest, kept = work.indices[TIED], np.inf, 0
+    rows, lowest, kept = work.tied, inf, 0
     for t in range(tied):
         i = rows[t]
-        value = work.columns[c, i]
+        value = work.columns[c * n + i]
         for k in range(waiting):
-            value += work.vectors[SHARES + k, c] * work.vectors[CHANGES + k, i]
-        value /= work.columns[s, i]
+            value += work.shares[k * (n + 1) + c] * work.changes[k * n + i]
+        value /= work.columns[s * n + i]
         if value < lowest - TIE * max(1.0, abs(value)):
             lowest, kept = value, 0
         if value <= lowest + TIE * max(1.0, abs(value)):
@@ -201,72 +169,49 @@ def keep_lowest(c: int, tied: int, s: int, waiting: int, work: Any) -> int:
     return kept
 
 
-def largest_entry(x: Any, n: int) -> float:
-    """Largest |x_i| for i < n, in four parts that the processor can overlap."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    whole = n - n % 4
-    for i in range(0, whole, 4):
-        a, b = max(a, abs(x[i])), max(b, abs(x[i + 1]))
-        c, d = max(c, abs(x[i + 2])), max(d, abs(x[i + 3]))
-    for i in range(whole, n):
-        a = max(a, abs(x[i]))
-    return max(max(a, b), max(c, d))
-
-
-def lowest_entry(x: Any, n: int) -> float:
-    """Lowest x_i for i < n, in four parts as well."""
-    a, b, c, d = np.inf, np.inf, np.inf, np.inf
-    whole = n - n % 4
-    for i in range(0, whole, 4):
-        a, b, c, d = min(a, x[i]), min(b, x[i + 1]), min(c, x[i + 2]), min(d, x[i + 3])
-    for i in range(whole, n):
-        a = min(a, x[i])
-    return min(min(a, b), min(c, d))
-
-
-def correct(W: Any, b: Any, z: Any, tolerance: float, work: Any) -> float:
+def correct(W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, work: Workspace) -> float:
     """Fill z with the answer of the tableau, corrected until its rows are right to rounding; its residual."""
-    n, q, w, s = b.shape[0], work.vectors[SCALED_B], work.vectors[SLACK], work.vectors[SIZE]
-    before, residual = np.inf, np.inf
+    q, w, s = work.scaled_b, work.slack, work.size
+    before, residual = inf, inf
     for _ in range(1 + CORRECTIONS):
-        read_off(q, 0.0, z, work)
-        residual, error = judge(W, b, z, w, s), row_error(n, work)
+        read_off(q, 0.0, z, n, work)
+        residual, error = judge(W, b, z, n, w, s), row_error(n, work)
         if error <= ROUNDING or error > 0.5 * before:
             break
         before = error
         for c in range(n + 1):
-            i = work.indices[NONBASIC, c] - n - 1
+            i = work.nonbasic[c] - n - 1
             if i >= 0:
-                subtract(q, work.columns[c], w[i] * work.vectors[ROW_SCALE, i], n)
+                subtract(q, after(work.columns, c * n), w[i] * work.row_scale[i], n)
     if residual > tolerance:  # what should be zero may be rounding: it has no sign
-        read_off(q, TIE, z, work)
-        residual = judge(W, b, z, w, s)
-    work.report[RESIDUAL] = residual
+        read_off(q, TIE, z, n, work)
+        residual = judge(W, b, z, n, w, s)
+    work.residual = residual
     return residual
 
 
-def read_off(q: Any, least: float, z: Any, work: Any) -> None:
+def read_off(q: Doubles, least: float, z: Doubles, n: int, work: Workspace) -> None:
     """Fill z with the basic values, zero where they are not above `least` of the largest."""
-    n, basic, largest = z.shape[0], work.indices[BASIC], 0.0
+    basic, largest = work.basic, 0.0
     for i in range(n):
         z[i] = 0.0
         if basic[i] < n:
             largest = max(largest, q[i])
     for i in range(n):
         if basic[i] < n and q[i] > least * largest:
-            z[basic[i]] = q[i] * work.vectors[COLUMN_SCALE, basic[i]]
+            z[basic[i]] = q[i] * work.column_scale[basic[i]]
 
 
-def row_error(n: int, work: Any) -> float:
+def row_error(n: int, work: Workspace) -> float:
     """Largest |w|, relative to the size of its terms, where it should be zero."""
-    error, w, size = 0.0, work.vectors[SLACK], work.vectors[SIZE]
+    error, w, size = 0.0, work.slack, work.size
     for i in range(n):
-        if work.indices[PLACE, n + 1 + i] != NOTHING and size[i] > 0.0:
+        if work.place[n + 1 + i] != NOTHING and size[i] > 0.0:
             error = max(error, abs(w[i]) / size[i])
     return error
 
 
-def mark_basis(n: int, work: Any) -> None:
-    """Mark the basic z in CHOSEN."""
+def mark_basis(n: int, work: Workspace) -> None:
+    """Mark the basic z in `chosen`."""
     for j in range(n):
-        work.indices[CHOSEN, j] = 1 if work.indices[PLACE, j] == NOTHING else 0
+        work.chosen[j] = 1 if work.place[j] == NOTHING else 0

@@ -1,93 +1,90 @@
-"""The arrays that the pivoting kernels work in, made once for the largest problem and used for smaller ones.
+"""What the pivoting kernels work in, made once for the largest problem and used for smaller ones.
 
-They are few, so that handing them from kernel to kernel costs little; their rows have names.
+Every quantity has its name. A matrix of a problem of n unknowns lies row by row from the start of its place, n
+numbers a row, whatever the largest n; indices of variables are numbered as in `lemke`.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
+import cython
 import numpy as np
 
-from lcpstep.compiled import by_address
+from lcpstep.compiled import Handle
 
-# rows of Workspace.vectors
-SCALED_B = 0  # b of the scaled problem
-ROW_SCALE = 1  # powers of two that the rows were multiplied by
-COLUMN_SCALE = 2  # the same for columns: z = column scale * scaled z
-X, DX = 3, 4  # basic z by position, and its change with the entering variable
-SLACK, DSLACK = 5, 6  # w by index, and its change
-LEFT = 7  # a left product with the inverse
-TRIAL = 8  # a solution on trial, or marks
-SIZE = 9  # sizes of the terms of w, the judge's scale
-RAY_DIRECTION, RAY_START = (
-    10,
-    11,
-)  # the ray that pivoting left along, in the units of z
-BEST = 12  # the best answer so far that passes the tolerance asked for
-CHANGES = 13  # of the tableau: changes that are still to be made, four rows
-SHARES = 17  # what each column takes of them
-VECTORS = 21
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.pointers import after, indices_after
 
-# entries of Workspace.report
-RESIDUAL, ITERATIONS = 0, 1  # of the last problem
-RAY_DZ0, RAY_Z0 = 2, 3  # the covering variable's share in the ray
-BEST_RESIDUAL = 4  # of the answer in BEST
-SMALLEST = 5  # size above which a component of Lemke's direction counts
-REPORT = 6
-
-# rows of Workspace.indices
-BASIC, TIGHT = 0, 1  # by position: index of the basic z; index of the row whose w is not basic
-Z_PLACE, W_PLACE = 2, 3  # position of z_j in BASIC, of w_i in TIGHT; -1 where there is none
-TIED = 4  # variables that reach zero together
-ORDER = 5  # row interchanges of an elimination
-ACTIVE, CHOSEN = 6, 7  # indices of a principal submatrix, and 1 for each of them, else 0
-NONBASIC, PLACE = 8, 9  # of the tableau: variable by column; column by variable, -1 for a basic one
-INDICES = 10
+VECTORS = 29  # rows of n + 1 numbers, and of indices of 2 n + 1:
+LISTS = 10
 
 
-@by_address
-class Workspace(NamedTuple):
-    """Work arrays for problems of up to n unknowns.
+class Workspace:
+    """Work space for problems of up to n unknowns; every thread needs its own.
 
     columns : (n+1, n)   columns of the scaled W, each in one piece, the last Lemke's covering vector; or the tableau
     inverse : (n, n)     inverse of the basis matrix
     factor : (n, n)      LU factors of a principal submatrix
-    vectors : (21, n+1)  see the names of its rows in this module
-    indices : (10, 2n+1)  likewise
-    report : (6,)        likewise: residual, number of iterations, ...
+    scaled_b             b of the scaled problem
+    row_scale, column_scale  powers of two that rows were multiplied by, and columns: z = column scale * scaled z
+    x, dx                basic z by position, and its change with the entering variable
+    slack, dslack        w by index, and its change
+    left                 a left product with the inverse
+    trial                a solution on trial, or marks
+    size                 sizes of the terms of w, the judge's scale
+    ray_direction, ray_start  the ray that pivoting left along, in the units of z
+    best                 the best answer so far that passes the tolerance asked for
+    changes, shares : (8, n), (8, n+1)  of the tableau: changes still to be made, and what each column takes of them
+
+    basic, tight         by position: index of the basic z; index of the row whose w is not basic
+    z_place, w_place     position of z_j in `basic`, of w_i in `tight`; -1 where there is none
+    tied                 variables that reach zero together
+    order                row interchanges of an elimination
+    active, chosen       indices of a principal submatrix, and 1 for each of them, else 0
+    nonbasic, place      of the tableau: variable by column; column by variable, -1 for a basic one
+
+    residual, iterations     of the last problem
+    best_residual            of the answer in `best`
+    ray_dz_0, ray_z_0        the covering variable's share in the ray
+    smallest                 size above which a component of Lemke's direction counts
     """
 
-    columns: Any
-    inverse: Any
-    factor: Any
-    vectors: Any
-    indices: Any
-    report: Any
+    def __init__(self, n: int) -> None:
+        self.numbers = np.zeros((n + 1) * n + 2 * n * n + VECTORS * (n + 1))
+        self.lists = np.zeros(LISTS * (2 * n + 1), dtype=np.intp)
+        self.residual = self.best_residual = self.smallest = 0.0
+        self.ray_dz_0 = self.ray_z_0 = 0.0
+        self.iterations = 0
+        self.columns = doubles(self.numbers)
+        self.inverse = after(self.columns, (n + 1) * n)
+        self.factor = after(self.inverse, n * n)
+        m = n + 1
+        self.scaled_b = after(self.factor, n * n)
+        self.row_scale = after(self.scaled_b, m)
+        self.column_scale = after(self.row_scale, m)
+        self.x = after(self.column_scale, m)
+        self.dx = after(self.x, m)
+        self.slack = after(self.dx, m)
+        self.dslack = after(self.slack, m)
+        self.left = after(self.dslack, m)
+        self.trial = after(self.left, m)
+        self.size = after(self.trial, m)
+        self.ray_direction = after(self.size, m)
+        self.ray_start = after(self.ray_direction, m)
+        self.best = after(self.ray_start, m)
+        self.changes = after(self.best, m)
+        self.shares = after(self.changes, 8 * m)
+        m = 2 * n + 1
+        self.basic = indices(self.lists)
+        self.tight = indices_after(self.basic, m)
+        self.z_place = indices_after(self.tight, m)
+        self.w_place = indices_after(self.z_place, m)
+        self.tied = indices_after(self.w_place, m)
+        self.order = indices_after(self.tied, m)
+        self.active = indices_after(self.order, m)
+        self.chosen = indices_after(self.active, m)
+        self.nonbasic = indices_after(self.chosen, m)
+        self.place = indices_after(self.nonbasic, m)
 
 
-def workspace(n_max: int) -> Workspace:
-    """Work arrays for problems of up to n_max unknowns; every thread needs its own."""
-    return carve(np.zeros(length_needed(n_max)), n_max)
-
-
-def length_needed(n: int) -> int:
-    """Length of the block of numbers that `carve` divides."""
-    return (n + 1) * n + 2 * n * n + VECTORS * (n + 1) + REPORT + INDICES * (2 * n + 1)
-
-
-def carve(block: Any, n: int) -> Workspace:
-    """Work arrays for n unknowns as parts of one block of floats; for kernels that are handed the block."""
-    inverse = (n + 1) * n
-    factor = inverse + n * n
-    vectors = factor + n * n
-    report = vectors + VECTORS * (n + 1)
-    indices = report + REPORT
-    return Workspace(
-        block[:inverse].reshape((n + 1, n)),
-        block[inverse:factor].reshape((n, n)),
-        block[factor:vectors].reshape((n, n)),
-        block[vectors:report].reshape((VECTORS, n + 1)),
-        block[indices:].view(np.int64).reshape((INDICES, 2 * n + 1)),
-        block[report:indices],
-    )
+Handle.register(Workspace)

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.compiled import solver_address
-from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.lcp.kernel import solver
+from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import Model
 from lcpstep.stepping import constrained
 from lcpstep.stepping.friction import Problem
 from lcpstep.stepping.joints import elimination
-from lcpstep.stepping.theta import State, solve_single
+from lcpstep.stepping.theta import State
 
 
 def frictional(scene: Scene) -> bool:
@@ -49,8 +49,6 @@ def problem(scene: Scene, ids: Any, fast: bool) -> Problem:
     """Room for the contacts' complementarity problem, with the solver for its size."""
     n_c, friction = scene.n_c, None if scene.contacts is None else scene.contacts.friction
     n = n_c if friction is None else 4 * n_c
-    work = workspace(max(n, 1))
-    solver = solve_single if n <= 1 else solve_small
     return Problem(
         R=np.zeros(4 * n_c * n_c),
         reduced=np.zeros(2 * n_c),
@@ -61,8 +59,8 @@ def problem(scene: Scene, ids: Any, fast: bool) -> Problem:
         W=np.zeros(n * n),
         b=np.zeros(n),
         z=np.zeros(n),
-        solver=solver_address(solver, work) if fast else solver,
-        work=work,
+        solver=solver(fast),
+        work=Workspace(max(n, 1)),
     )
 
 

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
-from lcpstep.compiled import compiled, jit_disabled, solver_address
+from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
-from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.lcp.kernel import solver
+from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import (
@@ -39,7 +40,6 @@ from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.located_piece import pressed
 from lcpstep.stepping.race import race
 from lcpstep.stepping.steps import WHOLE, check_steps, divided
-from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -195,14 +195,12 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool, joints: Joined | Non
     mark[work.LAST_COORDINATE], mark[work.LAST_CONTACT] = n_q - 1, n_c - 1
     if p.plain and n_c > 0:
         mark[work.FIRST_COORDINATE :] = ranges(m)
-    lcp = workspace(max(n_c, 1))
-    solver = solve_single if n_c <= 1 else solve_small
     return work.Work(
         vec=vec, num=np.zeros((work.N_NUM, n_c)), mark=mark,
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
         pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
-        solver=solver_address(solver, lcp) if fast else solver, lcp=lcp, joints=joints,
+        solver=solver(fast), lcp=Workspace(max(n_c, 1)), joints=joints,
     )  # fmt: skip
 
 

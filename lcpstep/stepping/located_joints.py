@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.compiled import by_address, call_solver, solver_address
+from lcpstep.compiled import by_address, call_task, task_address
 from lcpstep.dense import assign
 from lcpstep.model import Model
 from lcpstep.recording import LEAD
@@ -60,14 +60,14 @@ class Joined(NamedTuple):
 def joined(scene: Scene, m: Model, rows: Model, fast: bool) -> Joined:
     """Joints of a scene, `rows` being the model of their gaps."""
     own = joints_of(scene, m, rows)
-    return Joined(solver_address(serve, own) if fast else serve, own, np.zeros(1, dtype=np.int64))
+    return Joined(task_address(serve, own) if fast else serve, own, np.zeros(1, dtype=np.int64))
 
 
 def ask(w: Any, what: int, t: float, q: Any, v: Any) -> None:
     """Have one of the joints' tasks done."""
     j = w.joints
     j.own.order[WHAT], j.own.number[TIME] = what, t
-    how = call_solver(j.serve, w.M, q, v, j.own)
+    how = call_task(j.serve, w.M, q, v, j.own)
     if how != HOLD:
         j.failed[0] = NO_POSITION if what == PUT else JOINTS_FAILED
 

@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.compiled import compiled, jit_disabled, solver_address
+from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp import check_method, solve_lcp
-from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.lcp.kernel import solver
+from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import Model, culprit, model, models
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import adaptive, adaptive_moreau, constrained, interpolation, sparse
@@ -136,7 +137,6 @@ def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop
         **{name: np.zeros((n_q, n_q)) for name in ("M", "M_start", "A", "J")},
         pivots=np.zeros(n_q, dtype=np.int64),
     )
-    lcp = workspace(max(n_c, 1))
     state = loop.State(
         q=np.array(scene.q0),
         v=np.array(scene.v0),
@@ -144,16 +144,15 @@ def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop
         G=np.zeros((n_c, n_q)),
         active=np.zeros(n_c, dtype=np.int64),
         W=np.zeros(n_c * n_c),
-        solver=0,
-        lcp=lcp,
+        solver=solver(fast),
+        lcp=Workspace(max(n_c, 1)),
         newton=newton,
         **vectors,
         **contacts,
     )
     if features is not None:
         return enlarged(state, features)
-    solver = loop.solve_single if n_c <= 1 else solve_small
-    return state._replace(solver=solver_address(solver, lcp) if fast else solver)
+    return state
 
 
 class _Run:

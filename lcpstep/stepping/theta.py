@@ -19,9 +19,6 @@ from typing import Any, NamedTuple
 from lcpstep.compiled import by_address, call_solver, inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import external_force, gap_rates, gaps, obstacle, product, total_force
-from lcpstep.lcp.small import solve_one
-from lcpstep.lcp.status import FAILED, SOLVED, TOLERANCE
-from lcpstep.lcp.workspace import SIZE, SLACK
 from lcpstep.recording import quiet_until, write_event, write_row
 from lcpstep.stepping.newton import linearise
 
@@ -79,12 +76,6 @@ class State(NamedTuple):
     solver: Any  # the complementarity solver, a function or its address
     lcp: Any  # its work space
     newton: Any  # work space of `newton.linearise`
-
-
-def solve_single(W: Any, b: Any, z: Any, work: Any) -> int:
-    """The complementarity problem of a scene with one contact: a division."""
-    residual = solve_one(W, b, z, work.vectors[SLACK], work.vectors[SIZE])
-    return SOLVED if residual <= TOLERANCE else FAILED
 
 
 def begin(m: Any, state: Any, record: Any, count: Any, t: float, side: float) -> None:

@@ -5,7 +5,7 @@ import pytest
 import scipy.sparse as sp
 
 from lcpstep.lcp import residual
-from lcpstep.lcp.judge import proves_infeasible
+from lcpstep.lcp.judge import is_proof
 
 W = np.array([[2.0, 1.0], [1.0, 2.0]])
 b = np.array([-1.0, 1.0])
@@ -50,8 +50,8 @@ def test_sparse_and_dense_agree():
 
 def test_proof_of_infeasibility_is_checked():
     A, q = np.array([[1.0, -1.0], [-1.0, 1.0]]), np.array([-1.0, -1.0])
-    assert proves_infeasible(A, q, np.array([1.0, 1.0]))
-    assert not proves_infeasible(A, q, np.array([1.0, 0.9]))  # W^T y is not <= 0
-    assert not proves_infeasible(A, -q, np.array([1.0, 1.0]))  # b^T y is not < 0
-    assert not proves_infeasible(A, q, np.array([-1.0, -1.0]))
-    assert not proves_infeasible(A, q, np.array([np.nan, 1.0]))
+    assert is_proof(A, q, np.array([1.0, 1.0]))
+    assert not is_proof(A, q, np.array([1.0, 0.9]))  # W^T y is not <= 0
+    assert not is_proof(A, -q, np.array([1.0, 1.0]))  # b^T y is not < 0
+    assert not is_proof(A, q, np.array([-1.0, -1.0]))
+    assert not is_proof(A, q, np.array([np.nan, 1.0]))

@@ -3,24 +3,29 @@
 import numpy as np
 import pytest
 
-from lcpstep.compiled import compiled
-from lcpstep.lcp import Status, residual, solve_lcp
-from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.compiled import call_solver, compiled, jit_disabled
+from lcpstep.lcp import Status, residual, solve_lcp, solve_lcp_batch
+from lcpstep.lcp.kernel import solve, solver
+from lcpstep.lcp.workspace import Workspace
+from tests.processes import python
+from tests.uncompiled import copy_without_what_is_built, kernels
+
+plain = kernels()
 
 
-def repeat(W, b, z, status, work):
+def repeat(f, W, b, z, status, work):
     """A kernel that solves one problem after the other."""
     for i in range(b.shape[0]):
-        status[i] = solve_small(W[i], b[i], z[i], work)
+        status[i] = call_solver(f, W[i], b[i], z[i], work)
 
 
 def test_one_workspace_serves_every_smaller_size():
-    work, rng = workspace(30), np.random.default_rng(0)
+    work, rng = Workspace(30), np.random.default_rng(0)
     for n in (30, 1, 7, 2, 3, 30):
         G = rng.normal(size=(20, n, n))
         W, b, z, status = G @ G.swapaxes(1, 2), rng.normal(size=(20, n)), np.zeros((20, n)), np.ones(20, int)
         before = W.copy(), b.copy()
-        compiled(repeat)(W, b, z, status, work)
+        compiled(repeat)(solver(not jit_disabled()), W, b, z, status, work)
         assert not status.any()
         assert max(residual(*problem) for problem in zip(W, b, z, strict=True)) <= 1e-13
         assert np.array_equal(W, before[0])
@@ -41,7 +46,7 @@ def test_one_workspace_serves_every_smaller_size():
 )
 def test_one_contact_has_a_closed_form(W, b, z, status):
     out = np.zeros(1)
-    assert compiled(solve_small)(np.array([[W]]), np.array([b]), out, workspace(1)) == status
+    assert solve(np.array([[W]]), np.array([b]), out, Workspace(1)) == status
     assert out[0] == z
 
 
@@ -49,19 +54,59 @@ def test_not_a_number_is_not_solved():
     for n in (1, 2, 3, 9):
         W, b = np.eye(n), -np.ones(n)
         W[0, 0] = np.nan
-        assert compiled(solve_small)(W, b, np.zeros(n), workspace(n)) != Status.SOLVED
-        assert compiled(solve_small)(np.eye(n), b * np.nan, np.zeros(n), workspace(n)) != Status.SOLVED
+        assert solve(W, b, np.zeros(n), Workspace(n)) != Status.SOLVED
+        assert solve(np.eye(n), b * np.nan, np.zeros(n), Workspace(n)) != Status.SOLVED
 
 
-def test_the_same_source_runs_as_plain_python():
+def problems():
+    """Random ones of every kind: definite, dependent, indefinite, with ties, without an answer."""
     rng = np.random.default_rng(1)
-    for n in (1, 2, 3, 6):
-        G = rng.normal(size=(n, max(n - 1, 1)))
-        W, b = G @ G.T, -G @ rng.random(max(n - 1, 1))
-        plain, fast = np.zeros(n), np.zeros(n)
-        work, other = workspace(n), workspace(n)
-        assert solve_small(W, b, plain, work) == compiled(solve_small)(W, b, fast, other)
-        assert plain == pytest.approx(fast, rel=1e-12, abs=1e-14)
+    for k in range(120):
+        n = 1 + k % 12 if k % 20 else 45
+        G = rng.normal(size=(n, max(n - k % 3, 1)))
+        A = rng.integers(-2, 3, size=(n, n)).astype(float)
+        W = (G @ G.T, A, A @ A.T, -np.abs(A), G @ G.T + A - A.T)[k % 5]
+        yield W, rng.integers(-3, 3, size=n).astype(float), np.maximum(rng.normal(size=n), 0.0) * (k % 2)
+
+
+def test_the_same_source_runs_as_plain_python_to_the_last_bit():
+    for W, b, guess in problems():
+        n = len(b)
+        z, expected, work, other = guess.copy(), guess.copy(), plain.workspace.Workspace(n), Workspace(n)
+        with np.errstate(all="ignore"):
+            status = plain.kernel.solve(W, b, z, work)
+        assert status == solve(W, b, expected, other)
+        assert z.tobytes() == expected.tobytes()
+        assert (work.iterations, work.residual) == (other.iterations, other.residual)
+
+
+@pytest.mark.skipif(jit_disabled(), reason="nothing is compiled by numba")
+def test_compiled_steps_call_a_solver_that_is_not_built():
+    G = np.random.default_rng(2).normal(size=(5, 4, 4))
+    W, b, z, status = G @ G.swapaxes(1, 2), G[:, 0].copy(), np.zeros((5, 4)), np.ones(5, int)
+    compiled(repeat)(plain.kernel.solver(True), W, b, z, status, plain.workspace.Workspace(4))
+    assert not status.any()
+    np.testing.assert_array_equal(z, solve_lcp_batch(W, b).z)
+
+
+NOTHING_BUILT = """
+import numpy as np
+import lcpstep.rows
+from lcpstep.lcp import residual, solve_lcp, solve_lcp_batch
+W, b = np.array([[2.0, 1.0, 0.0], [1.0, 2.0, 1.0], [0.0, 1.0, 2.0]]), np.array([-1.0, -3.0, -1.0])
+print(lcpstep.rows.__file__.endswith(".py"))
+for method in ("lemke", "enumeration", "pgs", "newton"):
+    print(residual(W, b, solve_lcp(W, b, method).z) < 1e-10)
+print(solve_lcp(-W, b).status.name, solve_lcp_batch(np.array([W, W]), np.array([b, b])).solved.all())
+"""
+
+
+def test_everything_is_solved_where_nothing_is_built(tmp_path):
+    copy_without_what_is_built(tmp_path)
+    assert python(NOTHING_BUILT, cwd=tmp_path, PYTHONPATH=str(tmp_path)).split() == ["True"] * 5 + [
+        "INFEASIBLE",
+        "True",
+    ]
 
 
 def rounded_chain(n, b):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from lcpstep.compiled import compiled
 from lcpstep.lcp import Status, residual
-from lcpstep.lcp.kernel import workspace
-from lcpstep.lcp.scaling import equilibrate
-from lcpstep.lcp.tableau import LARGE, correct, pivot_tableau
-from lcpstep.lcp.workspace import BASIC, NONBASIC, SCALED_B
+from tests.uncompiled import kernels
+
+plain = kernels()  # in plain Python, where all that the kernels work on can be looked at
+LARGE, correct, pivot_tableau = plain.tableau.LARGE, plain.tableau.correct, plain.tableau.pivot_tableau
+equilibrate, workspace = plain.scaling.equilibrate, plain.workspace.Workspace
 
 SIZES = (7, LARGE + 3)  # changes made one by one, and several together
 
@@ -28,9 +28,9 @@ def test_the_answer_is_right_to_rounding(n):
     for seed in range(20):
         W, b = problem(n, n - seed % 3, seed)
         z = np.zeros(n)
-        compiled(equilibrate)(W, b, work)
-        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
-        assert compiled(correct)(W, b, z, 1e-13, work) <= 1e-13
+        equilibrate(W.reshape(-1), b, len(b), work)
+        assert pivot_tableau(n, 1000, work) == Status.SOLVED
+        assert correct(W.reshape(-1), b, z, n, 1e-13, work) <= 1e-13
         assert residual(W, b, z) <= 1e-13
 
 
@@ -40,24 +40,26 @@ def test_the_tableau_is_the_solution_of_the_equations_for_its_basis(n):
     W, b = problem(n, n, 0)
     work = workspace(n)
     for limit in (1, 2, 3, 5, 1000):
-        compiled(equilibrate)(W, b, work)
-        A, q0 = work.columns[:n].T.copy(), work.vectors[SCALED_B, :n].copy()
-        ended = compiled(pivot_tableau)(n, limit, work)
+        equilibrate(W.reshape(-1), b, len(b), work)
+        A, q0 = work.columns[: n * n].reshape(n, n).T.copy(), work.scaled_b[:n].copy()
+        ended = pivot_tableau(n, limit, work)
         M = np.hstack((A, np.ones((n, 1)), -np.eye(n)))  # of (z, z_0, w): M v = -b
-        basic, nonbasic = work.indices[BASIC, :n], work.indices[NONBASIC, : n + 1]
+        basic, nonbasic = work.basic[:n], work.nonbasic[: n + 1]
         assert sorted([*basic, *nonbasic]) == list(range(2 * n + 1))
         q = np.linalg.solve(M[:, basic], -q0)
-        assert work.vectors[SCALED_B, :n] == pytest.approx(q, rel=1e-9, abs=1e-9)
+        assert work.scaled_b[:n] == pytest.approx(q, rel=1e-9, abs=1e-9)
         if ended == Status.SOLVED:  # all changes are made
             T = np.linalg.solve(M[:, basic], -M[:, nonbasic])
-            np.testing.assert_allclose(work.columns[:, :n].T, T, rtol=1e-8, atol=1e-8)
+            np.testing.assert_allclose(
+                work.columns[: (n + 1) * n].reshape(n + 1, n).T, T, rtol=1e-8, atol=1e-8
+            )
     assert ended == Status.SOLVED
 
 
 def test_a_ray_is_not_a_solution():
     work = workspace(3)
-    compiled(equilibrate)(-np.eye(3), -np.ones(3), work)
-    assert compiled(pivot_tableau)(3, 100, work) == Status.RAY
+    equilibrate(-np.eye(3).reshape(-1), -np.ones(3), 3, work)
+    assert pivot_tableau(3, 100, work) == Status.RAY
 
 
 @pytest.mark.parametrize("n", SIZES)
@@ -66,9 +68,9 @@ def test_ties_everywhere_end(n):
     G = np.repeat(np.random.default_rng(n).normal(size=((n + 1) // 2, n)), 2, axis=0)[:n]
     W, z, work = G @ G.T, np.zeros(n), workspace(n)
     for b in (np.repeat(-G[::2] @ G[::2].sum(axis=0), 2)[:n], np.zeros(n)):
-        compiled(equilibrate)(W, b, work)
-        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
-        assert compiled(correct)(W, b, z, 1e-13, work) <= 1e-13
+        equilibrate(W.reshape(-1), b, len(b), work)
+        assert pivot_tableau(n, 1000, work) == Status.SOLVED
+        assert correct(W.reshape(-1), b, z, n, 1e-13, work) <= 1e-13
 
 
 @pytest.mark.parametrize("n", SIZES)
@@ -77,12 +79,12 @@ def test_what_the_work_arrays_held_before_does_not_matter(n):
     G = np.repeat(np.random.default_rng(n).normal(size=((n + 1) // 2, n)), 2, axis=0)[:n]
     W, b = G @ G.T, np.repeat(-G[::2] @ G[::2].sum(axis=0), 2)[:n]
     fresh, used = workspace(n), workspace(n)
-    used.vectors[:], used.indices[:] = 3.0, n - 1
+    used.numbers[:], used.lists[:] = 3.0, n - 1
     answers = []
     for work in (fresh, used):
         z = np.zeros(n)
-        compiled(equilibrate)(W, b, work)
-        assert compiled(pivot_tableau)(n, 1000, work) == Status.SOLVED
-        compiled(correct)(W, b, z, 1e-13, work)
+        equilibrate(W.reshape(-1), b, len(b), work)
+        assert pivot_tableau(n, 1000, work) == Status.SOLVED
+        correct(W.reshape(-1), b, z, n, 1e-13, work)
         answers.append(z)
     assert np.array_equal(*answers)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.compiled import compiled, jit_disabled, solver_address
+from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.events import dop853, run
 from lcpstep.events.bookkeeping import EVENTS, FINISHED, TOO_MANY_EVENTS
 from lcpstep.events.clock import T0, clock
@@ -25,7 +25,8 @@ from lcpstep.events.several.modes import obey
 from lcpstep.events.several.motion import lift
 from lcpstep.events.several.parabolas import fly, polish, synchronise
 from lcpstep.events.several.step import complete, step
-from lcpstep.lcp.kernel import solve_small, workspace
+from lcpstep.lcp.kernel import solver
+from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import ABSENT, Model, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
@@ -57,7 +58,7 @@ def start(scene: Scene, m: Model, joints: Model, method: Any, fast: bool) -> at.
     """The state at the start of the span, and work space."""
     n_q, n_c, n_j = scene.n_q, scene.n_c, scene.n_j
     n_r, constant = n_c + n_j, is_constant(m, joints)
-    p, lcp = plan(scene, m, method, QUADRATURE), workspace(max(n_c, 1))
+    p, lcp = plan(scene, m, method, QUADRATURE), Workspace(max(n_c, 1))
     x = clock(scene, at.N_NUMBERS)
     x[at.NEXT_STEP] = 0.1 * p.scan
     state = np.zeros((at.N_STATE, n_q))
@@ -73,7 +74,7 @@ def start(scene: Scene, m: Model, joints: Model, method: Any, fast: bool) -> at.
         G=np.zeros((n_c, n_q)), J=np.zeros((n_j, n_q)), R=rows[0], MR=rows[1], D=squares[0], L=squares[1],
         row=np.zeros(n_r, np.int64), held=np.zeros(n_r), change=np.zeros(n_r), kept=np.zeros(n_r, np.int64),
         doubt=np.zeros(n_r), member=np.zeros(n_c, np.int64), W=np.zeros(n_c * n_c), lcp=lcp,
-        solver=solver_address(solve_small, lcp) if fast else solve_small, w=dop853.work(2 * n_q),
+        solver=solver(fast), w=dop853.work(2 * n_q),
         dy=np.zeros(2 * n_q), seen=np.zeros((5, max(n_c, 2))),
     )  # fmt: skip
 

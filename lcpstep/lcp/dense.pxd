@@ -1,0 +1,24 @@
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.lcp.enumeration cimport enumerate_bases
+from lcpstep.lcp.judge cimport judge
+from lcpstep.lcp.kernel cimport solve_dense
+from lcpstep.lcp.scaling cimport all_finite
+from lcpstep.lcp.small cimport solve_closed
+from lcpstep.lcp.workspace cimport Workspace
+from lcpstep.pointers cimport after, max
+from lcpstep.rows cimport copy
+
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, LARGEST_KEPT, LARGEST_ENUMERATION
+
+cdef Workspace space_for(Py_ssize_t n)
+cdef Py_ssize_t pivot_once(
+    double* W, double* b, double* z, Py_ssize_t n, double* w, double tolerance, Py_ssize_t limit, Workspace work
+) noexcept
+cdef Py_ssize_t enumerate_all(
+    double* W, double* b, double* z, Py_ssize_t n, double* w, double tolerance, Py_ssize_t limit, Workspace work
+) noexcept
+cdef void solve_all(
+    double* matrices, bint shared, double* b, double* z, double* w, Py_ssize_t* status, Py_ssize_t* iterations, double* residual, Py_ssize_t m, Py_ssize_t n, double tolerance, Py_ssize_t limit, Workspace work
+) noexcept
+cdef object ray(Workspace work, Py_ssize_t n)
+cdef object array_of(double* x, Py_ssize_t n)

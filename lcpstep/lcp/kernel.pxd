@@ -1,0 +1,36 @@
+cimport cython
+from lcpstep.arrays cimport doubles
+from lcpstep.lcp.enumeration cimport enumerate_bases
+from lcpstep.lcp.judge cimport judge, proves_infeasible
+from lcpstep.lcp.lemke cimport lemke
+from lcpstep.lcp.principal cimport exchange_indices
+from lcpstep.lcp.scaling cimport equilibrate
+from lcpstep.lcp.small cimport solve_closed
+from lcpstep.lcp.tableau cimport correct, mark_basis, pivot_tableau
+from lcpstep.lcp.workspace cimport Workspace
+from lcpstep.pointers cimport abs, max, min
+from lcpstep.rows cimport copy
+
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, SPREADING, MOST, STARTS, STRIDE, TINY
+cdef double TOLERANCE, STRICT, ALMOST, SMALLEST_PIVOT, LARGER_PIVOT
+
+cdef Py_ssize_t solve_small(double* W, double* b, double* z, Py_ssize_t n, Workspace work) noexcept nogil
+@cython.locals(promising=bint)
+cdef Py_ssize_t solve_dense(
+    double* W, double* b, double* z, Py_ssize_t n, double tolerance, Py_ssize_t max_pivots, Workspace work
+) noexcept nogil
+cdef Py_ssize_t pivot_fast(
+    double* W, double* b, double* z, Py_ssize_t n, double strict, Py_ssize_t max_pivots, Workspace work
+) noexcept nogil
+cdef Py_ssize_t pivot_on(
+    double* W, double* b, double* z, Py_ssize_t n, double tolerance, Py_ssize_t max_pivots, Workspace work
+) noexcept nogil
+@cython.locals(open_question=bint)
+cdef Py_ssize_t conclude(
+    double* W, double* b, double* z, Py_ssize_t n, double tolerance, Py_ssize_t status, Workspace work
+) noexcept nogil
+cdef void choose_start(Py_ssize_t attempt, Py_ssize_t n, Workspace work) noexcept nogil
+@cython.locals(some=bint)
+cdef bint choose_positive(double* z, Py_ssize_t n, Workspace work) noexcept nogil
+@cython.locals(some=bint)
+cdef bint choose_negative(double* b, Py_ssize_t n, Workspace work) noexcept nogil

@@ -1,0 +1,11 @@
+from lcpstep.lcp.workspace cimport Workspace
+from lcpstep.pointers cimport abs, after, bits, double_of, max
+from lcpstep.rows cimport largest_magnitude, raise_to
+
+cdef long long INFINITE, LARGEST_POWER, SMALLEST_POWER
+cdef int MANTISSA
+
+cdef void equilibrate(double* W, double* b, Py_ssize_t n, Workspace work) noexcept nogil
+cdef void balance(double* W, double* r, double* c, Py_ssize_t n) noexcept nogil
+cdef double inverse_power(double x) noexcept nogil
+cdef bint all_finite(double* W, double* b, Py_ssize_t n) noexcept nogil

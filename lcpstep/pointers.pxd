@@ -1,0 +1,27 @@
+cdef extern from *:
+    """
+    #include <math.h>
+    #include <string.h>
+    static CYTHON_INLINE long long lcpstep_bits(double x) { long long k; memcpy(&k, &x, sizeof k); return k; }
+    static CYTHON_INLINE double lcpstep_double_of(long long k) { double x; memcpy(&x, &k, sizeof x); return x; }
+    """
+    double abs "fabs"(double x) noexcept nogil
+    double inf "((double)INFINITY)"
+    long long bits "lcpstep_bits"(double x) noexcept nogil
+    double double_of "lcpstep_double_of"(long long bits) noexcept nogil
+
+
+cdef inline double max(double a, double b) noexcept nogil:
+    return b if b > a else a
+
+
+cdef inline double min(double a, double b) noexcept nogil:
+    return b if b < a else a
+
+
+cdef inline double* after(double* x, Py_ssize_t i) noexcept nogil:
+    return x + i
+
+
+cdef inline Py_ssize_t* indices_after(Py_ssize_t* x, Py_ssize_t i) noexcept nogil:
+    return x + i

@@ -1,0 +1,22 @@
+from lcpstep.pointers cimport abs, after, bits, inf, max, min
+
+cdef long long MAGNITUDE
+
+# Named in C, for rows.h
+cdef double dot "lcpstep_dot"(double* x, double* y, Py_ssize_t m) noexcept nogil
+cdef void both_sums "lcpstep_both_sums"(
+    double* total, double* size, double* x, double* y, Py_ssize_t m
+) noexcept nogil
+cdef void subtract "lcpstep_subtract"(double* target, double* source, double factor, Py_ssize_t m) noexcept nogil
+cdef void add_eight "lcpstep_add_eight"(
+    double* target, double* x, Py_ssize_t stride, double* by, Py_ssize_t jump, Py_ssize_t m
+) noexcept nogil
+cdef void ratios "lcpstep_ratios"(
+    double* target, double* x, double slack, double* d, double smallest, Py_ssize_t m
+) noexcept nogil
+cdef void raise_to "lcpstep_raise_to"(double* target, double* x, double factor, Py_ssize_t m) noexcept nogil
+cdef long long largest_magnitude "lcpstep_largest_magnitude"(double* x, Py_ssize_t m) noexcept nogil
+cdef void multiply(double* target, double factor, Py_ssize_t m) noexcept nogil
+cdef void copy(double* target, double* source, Py_ssize_t m) noexcept nogil
+cdef double largest_entry "lcpstep_largest_entry"(double* x, Py_ssize_t m) noexcept nogil
+cdef double lowest_entry "lcpstep_lowest_entry"(double* x, Py_ssize_t m) noexcept nogil

@@ -1,0 +1,119 @@
+"""Loops over rows of numbers, as kernels: where the time of a large problem goes.
+
+On x86 under Linux the compiler also makes a version of most for newer processors, and the one that suits is taken
+when the library is loaded (`rows.h`). All round alike: sums are formed in four parts, and nothing is fused.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.pointers import Doubles, abs, after, bits, inf, max, min
+
+MAGNITUDE = 0x7FFFFFFFFFFFFFFF  # all bits of a double but its sign
+
+
+def dot(x: Doubles, y: Doubles, m: int) -> float:
+    """Sum of x_i y_i for i < m, in four partial sums that the processor can overlap."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = m - m % 4
+    for i in range(0, whole, 4):
+        a += x[i] * y[i]
+        b += x[i + 1] * y[i + 1]
+        c += x[i + 2] * y[i + 2]
+        d += x[i + 3] * y[i + 3]
+    for i in range(whole, m):
+        a += x[i] * y[i]
+    return (a + b) + (c + d)
+
+
+def both_sums(total: Doubles, size: Doubles, x: Doubles, y: Doubles, m: int) -> None:
+    """Sums of x_i y_i and of |x_i y_i| for i < m into total[0] and size[0], in four parts as well."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    e, f, g, h = 0.0, 0.0, 0.0, 0.0
+    whole = m - m % 4
+    for i in range(0, whole, 4):
+        t, u, v, w = x[i] * y[i], x[i + 1] * y[i + 1], x[i + 2] * y[i + 2], x[i + 3] * y[i + 3]
+        a, b, c, d = a + t, b + u, c + v, d + w
+        e, f, g, h = e + abs(t), f + abs(u), g + abs(v), h + abs(w)
+    for i in range(whole, m):
+        t = x[i] * y[i]
+        a, e = a + t, e + abs(t)
+    total[0], size[0] = (a + b) + (c + d), (e + f) + (g + h)
+
+
+def subtract(target: Doubles, source: Doubles, factor: float, m: int) -> None:
+    """Target -= factor * source in the first m entries."""
+    for i in range(m):
+        target[i] -= factor * source[i]
+
+
+def add_eight(target: Doubles, x: Doubles, stride: int, by: Doubles, jump: int, m: int) -> None:
+    """Target += by_0 x_0 + .. + by_7 x_7 in the first m entries: first four, then four.
+
+    x_k begins at x[k * stride], by_k is by[k * jump].
+    """
+    p, q, r, s = x, after(x, stride), after(x, 2 * stride), after(x, 3 * stride)
+    t, u, v, w = after(x, 4 * stride), after(x, 5 * stride), after(x, 6 * stride), after(x, 7 * stride)
+    a, b, c, d = by[0], by[jump], by[2 * jump], by[3 * jump]
+    e, f, g, h = by[4 * jump], by[5 * jump], by[6 * jump], by[7 * jump]
+    for i in range(m):
+        first = (a * p[i] + b * q[i]) + (c * r[i] + d * s[i])
+        target[i] = (target[i] + first) + ((e * t[i] + f * u[i]) + (g * v[i] + h * w[i]))
+
+
+def ratios(target: Doubles, x: Doubles, slack: float, d: Doubles, smallest: float, m: int) -> None:
+    """Target = (max(x, 0) + slack) / -d where -d is above `smallest`, else infinite."""
+    for i in range(m):
+        target[i] = (max(x[i], 0.0) + slack) / -d[i] if -d[i] > smallest else inf
+
+
+def raise_to(target: Doubles, x: Doubles, factor: float, m: int) -> None:
+    """Target = max(target, |x| factor) in the first m entries."""
+    for i in range(m):
+        target[i] = max(target[i], abs(x[i]) * factor)
+
+
+def largest_magnitude(x: Doubles, m: int) -> int:
+    """Largest |x_i| for i < m as an integer; integers are compared several at a time, and not-a-number is largest."""
+    largest = bits(0.0)
+    for i in range(m):
+        magnitude = bits(x[i]) & MAGNITUDE
+        largest = magnitude if magnitude > largest else largest
+    return largest
+
+
+def multiply(target: Doubles, factor: float, m: int) -> None:
+    """Target *= factor in the first m entries."""
+    for i in range(m):
+        target[i] *= factor
+
+
+def copy(target: Doubles, source: Doubles, m: int) -> None:
+    """Target = source in the first m entries."""
+    for i in range(m):
+        target[i] = source[i]
+
+
+def largest_entry(x: Doubles, m: int) -> float:
+    """Largest |x_i| for i < m, in four parts that the processor can overlap."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    whole = m - m % 4
+    for i in range(0, whole, 4):
+        a, b = max(a, abs(x[i])), max(b, abs(x[i + 1]))
+        c, d = max(c, abs(x[i + 2])), max(d, abs(x[i + 3]))
+    for i in range(whole, m):
+        a = max(a, abs(x[i]))
+    return max(max(a, b), max(c, d))
+
+
+def lowest_entry(x: Doubles, m: int) -> float:
+    """Lowest x_i for i < m, in four parts as well."""
+    a, b, c, d = inf, inf, inf, inf
+    whole = m - m % 4
+    for i in range(0, whole, 4):
+        a, b, c, d = min(a, x[i]), min(b, x[i + 1]), min(c, x[i + 2]), min(d, x[i + 3])
+    for i in range(whole, m):
+        a = min(a, x[i])
+    return min(min(a, b), min(c, d))

@@ -1,0 +1,93 @@
+"""What is compiled when the package is built: the modules with a `.pxd` file, from the very `.py` files beside these.
+
+python setup.py build_ext --inplace     after a change: compiles what it concerns, in seconds
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import platform
+import shutil
+import sys
+import sysconfig
+from pathlib import Path
+
+import numpy as np
+from Cython.Build import cythonize
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+HERE = Path(__file__).resolve().parent
+HEADERS = {"lcpstep.pointers", "lcpstep.arrays"}  # their functions are merged into the modules that use them
+DIRECTIVES = {
+    "language_level": 3,
+    "infer_types": True,  # of local variables, from what they are assigned
+    "annotation_typing": False,  # types of kernels stand in the .pxd; annotations are for readers and mypy
+    "cdivision": True,
+}
+# Nothing is fused, so that every processor rounds alike
+OPTIONS = (
+    ["/O2", "/fp:precise"] if os.name == "nt" else ["-O3", "-g0", "-ffp-contract=off", "-Wno-unused-function"]
+)
+NO_COMPILER = (
+    "lcpstep needs a C compiler to be built: install gcc or clang, or PyPI's ziglang (pip install ziglang)"
+)
+
+
+class Build(build_ext):
+    """Compile, several files at a time."""
+
+    def initialize_options(self) -> None:
+        """Use the processors there are."""
+        super().initialize_options()
+        self.parallel = os.cpu_count()
+
+    def run(self) -> None:
+        """Compile everything, by the compiler of PyPI's ziglang where there is no other."""
+        if not has_compiler():
+            if importlib.util.find_spec("ziglang") is None:
+                sys.exit(NO_COMPILER)
+            os.environ["CC"] = f"{sys.executable} -m ziglang cc"
+        super().run()
+
+
+def has_compiler() -> bool:
+    """Whether there is a C compiler; on Windows setuptools itself looks for one."""
+    if os.name == "nt" or "CC" in os.environ:
+        return True
+    usual = (sysconfig.get_config_var("CC") or "cc").split()[0]
+    if shutil.which(usual) is None:
+        other = next(filter(shutil.which, ("cc", "gcc", "clang")), None)
+        if other is None:
+            return False
+        os.environ["CC"] = other
+    return True
+
+
+def extension(header: Path) -> Extension:
+    """The module of one `.pxd` file."""
+    clones = header.with_suffix(".h")
+    cloned = clones.exists() and platform.libc_ver()[0] == "glibc"
+    return Extension(
+        ".".join(header.relative_to(HERE).with_suffix("").parts),
+        [str(header.relative_to(HERE).with_suffix(".py"))],
+        include_dirs=[np.get_include()],
+        define_macros=[("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION")],
+        extra_compile_args=[*OPTIONS, "-include", str(clones)] if cloned else OPTIONS,
+        depends=[str(clones)] if cloned else [],
+    )
+
+
+def extensions() -> list[Extension]:
+    """All compiled modules."""
+    found = [extension(header) for header in sorted(HERE.glob("lcpstep/**/*.pxd"))]
+    return [e for e in found if e.name not in HEADERS]
+
+
+if __name__ == "__main__":
+    setup(
+        ext_modules=cythonize(extensions(), compiler_directives=DIRECTIVES, build_dir="build/cython"),
+        cmdclass={"build_ext": Build},
+        setup_requires=[] if has_compiler() else ["ziglang"],  # into the build environment that pip makes
+    )

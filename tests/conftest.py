@@ -1,0 +1,19 @@
+"""Tests of what is built are tests of its sources: refused where these have changed since."""
+
+import importlib.machinery
+
+import pytest
+
+from tests.uncompiled import BUILT
+
+
+def pytest_configure(config):
+    """Compare times of sources with those of what was built from them."""
+    for name, source in BUILT.items():
+        for suffix in importlib.machinery.EXTENSION_SUFFIXES:
+            built = source.with_suffix(suffix)
+            newest = max(source.stat().st_mtime, source.with_suffix(".pxd").stat().st_mtime)
+            if built.exists() and built.stat().st_mtime < newest:
+                raise pytest.UsageError(
+                    f"{name} has changed since it was built: python setup.py build_ext --inplace"
+                )
