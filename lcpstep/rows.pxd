@@ -8,7 +8,7 @@ cdef void both_sums "lcpstep_both_sums"(
     double* total, double* size, double* x, double* y, Py_ssize_t m
 ) noexcept nogil
 cdef void subtract "lcpstep_subtract"(double* target, double* source, double factor, Py_ssize_t m) noexcept nogil
-cdef void add_eight "lcpstep_add_eight"(
+cdef void add_four "lcpstep_add_four"(
     double* target, double* x, Py_ssize_t stride, double* by, Py_ssize_t jump, Py_ssize_t m
 ) noexcept nogil
 cdef void ratios "lcpstep_ratios"(

@@ -49,18 +49,12 @@ def subtract(target: Doubles, source: Doubles, factor: float, m: int) -> None:
         target[i] -= factor * source[i]
 
 
-def add_eight(target: Doubles, x: Doubles, stride: int, by: Doubles, jump: int, m: int) -> None:
-    """Target += by_0 x_0 + .. + by_7 x_7 in the first m entries: first four, then four.
-
-    x_k begins at x[k * stride], by_k is by[k * jump].
-    """
-    p, q, r, s = x, after(x, stride), after(x, 2 * stride), after(x, 3 * stride)
-    t, u, v, w = after(x, 4 * stride), after(x, 5 * stride), after(x, 6 * stride), after(x, 7 * stride)
+def add_four(target: Doubles, x: Doubles, stride: int, by: Doubles, jump: int, m: int) -> None:
+    """Target += by_0 x_0 + .. + by_3 x_3 in the first m entries; x_k begins at x[k * stride], by_k is by[k * jump]."""
+    t, u, v, w = x, after(x, stride), after(x, 2 * stride), after(x, 3 * stride)
     a, b, c, d = by[0], by[jump], by[2 * jump], by[3 * jump]
-    e, f, g, h = by[4 * jump], by[5 * jump], by[6 * jump], by[7 * jump]
     for i in range(m):
-        first = (a * p[i] + b * q[i]) + (c * r[i] + d * s[i])
-        target[i] = (target[i] + first) + ((e * t[i] + f * u[i]) + (g * v[i] + h * w[i]))
+        target[i] += (a * t[i] + b * u[i]) + (c * v[i] + d * w[i])
 
 
 def ratios(target: Doubles, x: Doubles, slack: float, d: Doubles, smallest: float, m: int) -> None:

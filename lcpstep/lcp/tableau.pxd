@@ -1,7 +1,7 @@
 from lcpstep.lcp.judge cimport judge
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport abs, after, inf, max
-from lcpstep.rows cimport add_eight, copy, largest_entry, lowest_entry, multiply, ratios, subtract
+from lcpstep.rows cimport add_four, copy, largest_entry, lowest_entry, multiply, ratios, subtract
 
 cdef Py_ssize_t MAX_ITERATIONS, RAY, SOLVED, CORRECTIONS, TOGETHER, LARGE, NOTHING
 cdef double SMALLEST_PIVOT, TIE, ROUNDING

@@ -22,13 +22,13 @@ if not cython.compiled:
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, abs, after, inf, max
-    from lcpstep.rows import add_eight, copy, largest_entry, lowest_entry, multiply, ratios, subtract
+    from lcpstep.rows import add_four, copy, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 ROUNDING = 1e-15  # relative error of a row of W z + b below which there is nothing to correct
 CORRECTIONS = 3
-TOGETHER = 8  # changes made at a time
+TOGETHER = 4  # changes made at a time
 LARGE = 40  # unknowns from which putting changes off pays
 NOTHING = -1
 
@@ -105,7 +105,7 @@ def change_all(waiting: int, n: int, work: Workspace) -> int:
     for c in range(n + 1):
         column, shares = after(work.columns, c * n), after(work.shares, c)
         if waiting == TOGETHER:
-            add_eight(column, work.changes, n, shares, n + 1, n)
+            add_four(column, work.changes, n, shares, n + 1, n)
         else:
             for k in range(waiting):
                 subtract(column, after(work.changes, k * n), -shares[k * (n + 1)], n)

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.pointers import after, indices_after
 
-VECTORS = 29  # rows of n + 1 numbers, and of indices of 2 n + 1:
+VECTORS = 21  # rows of n + 1 numbers, and of indices of 2 n + 1:
 LISTS = 10
 
 
@@ -34,7 +34,7 @@ class Workspace:
     size                 sizes of the terms of w, the judge's scale
     ray_direction, ray_start  the ray that pivoting left along, in the units of z
     best                 the best answer so far that passes the tolerance asked for
-    changes, shares : (8, n), (8, n+1)  of the tableau: changes still to be made, and what each column takes of them
+    changes, shares : (4, n), (4, n+1)  of the tableau: changes still to be made, and what each column takes of them
 
     basic, tight         by position: index of the basic z; index of the row whose w is not basic
     z_place, w_place     position of z_j in `basic`, of w_i in `tight`; -1 where there is none
@@ -73,7 +73,7 @@ class Workspace:
         self.ray_start = after(self.ray_direction, m)
         self.best = after(self.ray_start, m)
         self.changes = after(self.best, m)
-        self.shares = after(self.changes, 8 * m)
+        self.shares = after(self.changes, 4 * m)
         m = 2 * n + 1
         self.basic = indices(self.lists)
         self.tight = indices_after(self.basic, m)
