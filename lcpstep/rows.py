@@ -50,7 +50,7 @@ def subtract(target: Doubles, source: Doubles, factor: float, m: int) -> None:
 
 
 def add_four(target: Doubles, x: Doubles, stride: int, by: Doubles, jump: int, m: int) -> None:
-    """Target += by_0 x_0 + .. + by_3 x_3 in the first m entries; x_k begins at x[k * stride], by_k is by[k * jump]."""
+    """Target += by_0 x_0 + .. + by_3 x_3 for i < m; x_k begins at x[k * stride], by_k is by[k * jump]."""
     t, u, v, w = x, after(x, stride), after(x, 2 * stride), after(x, 3 * stride)
     a, b, c, d = by[0], by[jump], by[2 * jump], by[3 * jump]
     for i in range(m):
