@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from lcpstep.pointers import Doubles, Indices
+
+
+def are_doubles(x: Any, dimensions: int) -> bool:
+    """Whether x is a float64 array that kernels can take: contiguous, aligned, writeable, with so many dimensions."""
+    return type(x) is np.ndarray and x.dtype == np.float64 and x.ndim == dimensions and x.flags.carray
 
 
 def doubles(x: Any) -> Doubles:

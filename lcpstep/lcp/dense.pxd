@@ -1,4 +1,4 @@
-from lcpstep.arrays cimport doubles, indices
+from lcpstep.arrays cimport are_doubles, doubles, indices
 from lcpstep.lcp.enumeration cimport enumerate_bases
 from lcpstep.lcp.judge cimport judge
 from lcpstep.lcp.kernel cimport solve_dense

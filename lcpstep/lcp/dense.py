@@ -13,7 +13,7 @@ from lcpstep.lcp.problem import Ray, Solution, check_finite
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, NOT_FINITE, PER_UNKNOWN, RAY, SOLVED, Status
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
+    from lcpstep.arrays import are_doubles, doubles, indices
     from lcpstep.lcp.enumeration import enumerate_bases
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.kernel import solve_dense
@@ -49,6 +49,11 @@ def space_for(n: int) -> Workspace:
         if n <= LARGEST_KEPT:
             spaces[n] = work
     return work
+
+
+def is_checked(W: Any, b: Any) -> bool:
+    """Whether W and b are arrays that need no conversion, of matching shapes; asked for every problem."""
+    return are_doubles(W, 2) and are_doubles(b, 1) and len(W) == len(b) and W.size == len(b) * len(b)
 
 
 def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:

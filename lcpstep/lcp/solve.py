@@ -10,10 +10,10 @@ import numpy as np
 
 from lcpstep.errors import UnknownName
 from lcpstep.lcp.automatic import automatic, dense
-from lcpstep.lcp.dense import enumeration, pivoting
+from lcpstep.lcp.dense import enumeration, is_checked, pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.pgs import pgs
-from lcpstep.lcp.problem import FLOAT, Solution, as_arrays, as_guess
+from lcpstep.lcp.problem import Solution, as_arrays, as_guess
 from lcpstep.lcp.qp import DEFAULT, known_solvers, parse, quadratic, require_solver, unpolished
 from lcpstep.lcp.status import TOLERANCE, Status
 
@@ -67,14 +67,7 @@ def solve_lcp(
     ValueError : W or b are not real, finite and of matching shapes; W is outside of what the method solves
     UnknownName, MissingSolver : no such method; its package is not installed
     """
-    if not (  # asked here and not in a function: calling one would take as long as a small problem's pivots
-        type(W) is type(b) is np.ndarray
-        and W.dtype is b.dtype is FLOAT
-        and b.ndim == 1
-        and W.shape == (len(b), len(b))
-        and W.flags.carray
-        and b.flags.carray
-    ):
+    if not is_checked(W, b):
         W, b = as_arrays(W, b)
     n = len(b)
     z = np.zeros(n) if guess is None else as_guess(guess, n)
