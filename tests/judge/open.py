@@ -7,8 +7,8 @@ MISSED = "tolerance missed"
 OTHER_KEEP, OTHER_TIME = "other: keep=times", "other: shifted in time"
 
 OPEN: dict[str, frozenset[str]] = {
-    "event-driven": frozenset({"negative impulse", "penetration"}),
-    "event-driven-loose": frozenset({MISSED, "negative impulse", "penetration"}),
+    "event-driven": frozenset({"penetration"}),
+    "event-driven-loose": frozenset({MISSED, "penetration"}),
     "located": frozenset({HANG, SLOW, "penetration", "impulse while open", IN_TWO}),
     "located-4": frozenset(
         {HANG, SLOW, NO_STATES, "penetration", "impulse while open", IN_TWO, OTHER_KEEP, OTHER_TIME}
