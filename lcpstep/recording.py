@@ -98,6 +98,22 @@ def write_event(event: Any, t: float, contact: int, before: float, after: float,
     event[2], event[3], event[4] = before, after, p
 
 
+def in_order(events: Array, end: float) -> Array:
+    """Events in the order of time, within the span; those of one time in the order in which they were noted.
+
+    The end of a chattering sequence is noted, with the time at which it comes, where the rest of the sequence is
+    summed up: before events of other contacts that come earlier. What the contact itself does next ends the sequence.
+    """
+    time, contact = np.minimum(events[:, 0], end), events[:, 1]
+    ordered = np.column_stack([time, events[:, 1:]])
+    if np.all(np.diff(time) >= 0.0):
+        return ordered
+    for c in np.unique(contact):
+        own = contact == c
+        ordered[own, 0] = np.minimum.accumulate(time[own][::-1])[::-1]
+    return ordered[np.argsort(ordered[:, 0], kind="stable")]
+
+
 class States(NamedTuple):
     """Kept states: times t (n,), q and v (n, n_q), impulses (n, n_c), modes and durations (n,)."""
 
@@ -151,9 +167,9 @@ class Recorder:
         """Dense output of the steps after the kept states."""
         return np.concatenate(self._parts["dense"])
 
-    def events(self) -> Any:
-        """The impact log, a record array of `trajectory.IMPACT_DTYPE`."""
-        events = np.concatenate(self._parts["events"])
+    def events(self, end: float) -> Any:
+        """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
+        events = in_order(np.concatenate(self._parts["events"]), end)
         log = np.empty(len(events), dtype=IMPACT_DTYPE)
         for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
             log[name] = column

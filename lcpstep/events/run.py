@@ -127,8 +127,8 @@ class Run(ABC):
         s = self.recorder.states()
         return Trajectory(
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v,
-            impulse=np.ascontiguousarray(s.impulse[:, :n_c]), impacts=self.recorder.events(), status=status,
-            message=message,
+            impulse=np.ascontiguousarray(s.impulse[:, :n_c]),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=message,
             counts=Counts(
                 steps=int(count[STEP]), force_evaluations=int(count[FORCES]), events=int(count[EVENTS])
             ),

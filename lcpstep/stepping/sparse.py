@@ -290,7 +290,7 @@ class Run:
             t[-1] = self.scene.t_span[1]
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=kept.q, v=kept.v, impulse=kept.impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status),
             counts=Counts(
                 steps=self.steps, lcp_calls=self.problems, force_evaluations=self.forces, events=self.all_events
             ),

@@ -60,11 +60,21 @@ def gap_tolerance(s: Any, c: int) -> float:
 
     Zero where it depends on no coordinate, as in the middle of a bowl.
     """
+    return least_effect(s, c, s.state[Q])
+
+
+def speed_tolerance(s: Any, c: int) -> float:
+    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, c, s.state[V])
+
+
+def least_effect(s: Any, c: int, x: Any) -> float:
+    """The gap, or gap velocity, that contact c can change without changing an x by more than its tolerance."""
     i, least = len(s.J) + c, math.inf
-    for j in range(s.state.shape[1]):
+    for j in range(len(x)):
         moved = abs(s.MR[i, j])
         if moved > 0.0:
-            least = min(least, (s.plan.atol + s.plan.rtol * abs(s.state[Q, j])) * s.D[i, i] / moved)
+            least = min(least, (s.plan.atol + s.plan.rtol * abs(x[j])) * s.D[i, i] / moved)
     return least if least < math.inf else 0.0
 
 
