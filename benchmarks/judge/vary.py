@@ -63,7 +63,8 @@ def distance(r: Run, times: Any, q: Any, variant: Variant | None = None) -> Any:
     if r.usable:
         shift, unit = (variant.shift, variant.unit) if variant else (0.0, 1.0)
         ends = r.motion.t[[0, -1]] - shift
-        there = (times >= ends[0]) & (times <= ends[1] + 1e-12 * abs(ends[1]))
+        rounding = 1e-12 * abs(ends[1]) + 2.0 * EPS * abs(shift)
+        there = (times >= ends[0] - rounding) & (times <= ends[1] + rounding)
         moments = np.clip(times[there] + shift, *r.motion.t[[0, -1]])
         moved = positions(r, moments)
         moved = moved @ unit.T if np.ndim(unit) else moved

@@ -300,6 +300,7 @@ class Attempts:
         """Keep the state at the start of a step, and the last row, which an event at its time changes."""
         for saved, a in zip(self.saved, self.arrays, strict=True):
             np.copyto(saved, a)
+        self.row.fill(0.0)
         if self.count[ROW] > 0:
             np.copyto(self.row, self.record.rows[self.count[ROW] - 1])
         self.under_way = True

@@ -299,7 +299,7 @@ class _Run:
             self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
 
         try:
-            arrive()
+            self.count[work.EVENTS_LEFT] = self.method.max_events
             return STATUS[adaptive.advance(steps, control, arrive, progress)]
         except Exception as error:  # a callback in plain Python; compiled code raises nothing
             raise self.failed() from error
