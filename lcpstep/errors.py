@@ -70,6 +70,10 @@ class StudyInterrupted(Pickled, KeyboardInterrupt):
         self.study = study
 
 
+class SweepInterrupted(Pickled, KeyboardInterrupt):
+    """The user's interrupt of a long computation; the parts finished before are kept where it was told to keep them."""
+
+
 class NotWritten(LcpStepError, OSError):
     """A file that could not be written; the one that was there before is unchanged."""
 

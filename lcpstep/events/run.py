@@ -32,11 +32,12 @@ from lcpstep.events.bookkeeping import (
 )
 from lcpstep.faults import forget
 from lcpstep.model import ABSENT, Model, culprit, model, unrepeatable
+from lcpstep.pace import Pace
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 4096  # steps between two looks at the outside world
+PORTION = 4096  # steps between two looks at the outside world, at most
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
 SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
@@ -60,6 +61,7 @@ class Run(ABC):
         self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
         self.count = np.zeros(N_COUNTERS, dtype=np.int64)
         self.count[MAX_EVENTS] = method.max_events
+        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
 
     @property
     @abstractmethod
@@ -94,7 +96,7 @@ class Run(ABC):
         try:
             while code in (FINISHED, BUFFER_FULL) and self.now < self.scene.t_span[1]:
                 try:
-                    code = self.advance(int(self.count[STEP]) + PORTION)
+                    code = self.advance(self.pace.goal(int(self.count[STEP])))
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
                     message = self.message(NOT_FINITE)
                     raise SimulationError(message, self.trajectory(Status.NOT_FINITE, message)) from error

@@ -22,6 +22,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from lcpstep.compiled import by_address, inline
+from lcpstep.pace import Pace
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 
 # Why a loop returned, besides its method's own reasons: to have its buffers emptied, and for good
@@ -33,9 +34,10 @@ FLAT = 3.0  # an error that half the step makes smaller by less than this comes 
 NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 FIRST = 1e-6  # of the span: the first step
-LOOK = 4096  # steps between two looks at the outside world
-# Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
-POSITION, LEVEL, END, FINEST = range(4)
+LOOK = 4096  # steps between two looks at the outside world, at most
+# Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level;
+# attempts so far, and their number at the next look at the outside world
+POSITION, LEVEL, END, FINEST, TRIED, UNTIL = range(6)
 # Places in Control.real; the last three: error of the attempt before, if that failed at the same place; the time
 # reached, rounded as that of the state kept there; how far beyond POSITION an event has cut the step
 START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED, INTO = range(10)
@@ -45,7 +47,7 @@ START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED, INTO = ran
 class Control(NamedTuple):
     """Where the run is, and what it allows."""
 
-    whole: Any  # (4,)
+    whole: Any  # (6,)
     real: Any  # (10,)
 
 
@@ -69,7 +71,7 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
     if least > 0.0:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
     first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
-    whole = np.array([0, first, coarse << finest, finest], dtype=np.int64)
+    whole = np.array([0, first, coarse << finest, finest, 0, 0], dtype=np.int64)
     enough = PLENTY * 0.5**order
     real = np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, start, 0.0])
     return Control(whole, real)
@@ -77,8 +79,10 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
 
 def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
     """The whole span; 0, or why it could not be reached. `arrive` is called where the loop has returned to Python."""
+    pace = Pace(LOOK)
     while True:
         try:
+            c.whole[UNTIL] = pace.goal(int(c.whole[TRIED]))
             code = steps.attempts()
         except BaseException:
             steps.undo()

@@ -23,12 +23,13 @@ from lcpstep.stepping.adaptive import (
     GIVEN_UP,
     INTO,
     LEVEL,
-    LOOK,
     PAUSED,
     REACHED,
     SIZE_Q,
     SIZE_V,
     TOO_SMALL,
+    TRIED,
+    UNTIL,
     Control,
     distance,
     goal,
@@ -135,12 +136,13 @@ class Attempts:
 
     def attempts(self) -> int:
         """Take steps until the end of the span, full buffers, or a step that cannot be taken."""
-        for _ in range(LOOK):
+        while self.control.whole[TRIED] < self.control.whole[UNTIL]:
             if over(self.control):
                 return FINISHED
             left = len(self.record.rows) - self.count[ROW]
             if left < len(self.record.times) - self.count[NEXT_TIME] + 8:
                 return PAUSED
+            self.control.whole[TRIED] += 1
             self.store()
             code, verdict = self.attempt()
             full = code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0

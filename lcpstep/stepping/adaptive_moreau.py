@@ -29,12 +29,13 @@ from lcpstep.stepping.adaptive import (
     LEAST_SHARE,
     LEVEL,
     LEVELS,
-    LOOK,
     PAUSED,
     SIZE_Q,
     SIZE_V,
     SPAN,
     TOO_SMALL,
+    TRIED,
+    UNTIL,
     Control,
     distance,
     judge,
@@ -131,7 +132,7 @@ def run(
     c: Any,
 ) -> int:
     """Steps until the end of the span, full buffers, or a step that cannot be taken; says why it returned."""
-    for _ in range(LOOK):
+    while control.whole[TRIED] < control.whole[UNTIL]:
         if over(control):
             return FINISHED
         if len(record.rows) - count[ROW] < len(saved.times) - count[NEXT_TIME] + 4:
@@ -139,6 +140,7 @@ def run(
         level = control.whole[LEVEL]
         if levels.ready[level] == 0 or levels.ready[level + 1] == 0:
             return WANTED
+        control.whole[TRIED] += 1
         code = attempt(model, levels, state, motion, record, count, control, saved, c)
         full, done = code == LOG_FULL and saved.count[EVENT] > 0, saved.done
         verdict = AGAIN

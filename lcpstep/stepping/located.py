@@ -19,6 +19,7 @@ from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import (
     adaptive,
@@ -43,7 +44,7 @@ from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 16384  # steps between two looks at the outside world
+PORTION = 16384  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within a step that failed
 SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 ORDERS = (2, 4, "exact")
@@ -247,6 +248,7 @@ class _Run:
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
         self.count = np.zeros(work.N_COUNTERS, dtype=np.int64)
         self.totals = {"events": 0}
+        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
         self.t0, self.first, self.half_done = scene.t_span[0], 0, False
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
@@ -328,7 +330,7 @@ class _Run:
         self.t0, self.first = t0, first
         code = work.FINISHED
         while count[work.STEP] < last and code in (work.FINISHED, work.BUFFER_FULL):
-            goal = min(last, int(count[work.STEP]) + PORTION)
+            goal = min(last, self.pace.goal(int(count[work.STEP])))
             try:
                 count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
                 code = self.steps(self.plan, self.work, t0, first, goal)

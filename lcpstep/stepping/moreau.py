@@ -18,6 +18,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import Model, culprit, model, models
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import adaptive, adaptive_moreau, constrained, interpolation, sparse
 from lcpstep.stepping import theta as loop
@@ -29,7 +30,7 @@ from lcpstep.stepping.steps import RESTING, WHOLE, check_steps, divided
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 65536  # steps between two looks at the outside world
+PORTION = 65536  # steps between two looks at the outside world, at most
 
 
 @dataclass(frozen=True)
@@ -183,6 +184,7 @@ class _Run:
         )
         self.slack = RESTING * float(size or 1.0)
         self.totals = {"steps": 0, "events": 0}
+        self.pace = Pace(PORTION, scene.n_q + len(self.state.impulse))
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
@@ -217,7 +219,7 @@ class _Run:
         count, external, solved = self.count, self.method.lcp != "lemke", False
         self.plan, self.t0, self.first = p, t0, first
         while count[loop.STEP] < last:
-            goal = min(last, int(count[loop.STEP]) + PORTION)
+            goal = min(last, self.pace.goal(int(count[loop.STEP])))
             code = loop.FINISHED
             while count[loop.STEP] < goal:
                 try:
