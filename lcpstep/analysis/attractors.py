@@ -170,9 +170,9 @@ def _settled(
             result.append(Settled(int(i), runs.states[i], np.full(runs.final.shape[1], size), allowed, n))
         return result
     moved = spread(scene, method, runs.final[done], phase)
-    allowed = np.maximum(APART * moved.radius, TOLERANCE)
+    within = np.maximum(APART * moved.radius, TOLERANCE)
     returns = [
-        return_time(runs.states[i] / moved.scale[k], longest, float(allowed[k])) if moved.forgets[k] else 0
+        return_time(runs.states[i] / moved.scale[k], longest, float(within[k])) if moved.forgets[k] else 0
         for k, i in enumerate(done)
     ]
     # On its own grid an aperiodic motion may be caught by a cycle that only this grid has
@@ -183,7 +183,7 @@ def _settled(
         for k, path in zip(restless, spread(scene, method, later, phase).paths, strict=True):
             states[k] = path
     return [
-        Settled(int(i), states[k], moved.scale[k], float(allowed[k]), returns[k]) for k, i in enumerate(done)
+        Settled(int(i), states[k], moved.scale[k], float(within[k]), returns[k]) for k, i in enumerate(done)
     ]
 
 
