@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
-from lcpstep.analysis.grid_error import APART, on_other_grids, spread
+from lcpstep.analysis.grid_error import APART, finer_method, on_other_grids, spread, wandered
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
 from lcpstep.analysis.listed import listed
 from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
@@ -32,6 +32,9 @@ TOLERANCE = 1e-6  # of a return, relative to the size of the motion
 LYAPUNOV_PERIODS = 400
 POINTS, CLOUD = 8000, 2000  # periods that an aperiodic attractor, and one of time-stepping, are sampled over
 STARTS, FORGET, KICK = 32, 60, 1e-9  # of these samples: runs, periods until they have parted, by what kick
+# Exponents of periodic motions by time-stepping: shares of h, runs on each, turns averaged over, and before
+GRIDS, RUNS, AVERAGED, FORGOTTEN = (1.0, 0.9, 0.8, 0.71, 0.6, 0.5), 2, 60, 40
+UNSURE = 0.5  # of an exponent: an error beyond which it is not told
 MOST, MOST_OF_MANY = 512, 64  # impacts of a period that are kept, of a periodic motion and of others
 
 
@@ -133,7 +136,7 @@ def attractors(
         scene, method, starts, transient + window, drop=transient, phase=phase, most=0, strict=True
     )
     done = np.flatnonzero(runs.status == Status.DONE)
-    settled = _settled(scene, method, runs, done, longest, phase, tolerance)
+    settled = _settled(scene, method, runs, done, longest, phase, tolerance, transient)
     groups = sorted(grouped(settled), key=len, reverse=True)
     label = np.full(len(runs.status), -1)
     found = []
@@ -155,7 +158,7 @@ def attractors(
 
 def _settled(
     scene: Scene, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
-    tolerance: float | None,
+    tolerance: float | None, transient: int,
 ) -> list[Settled]:  # fmt: skip
     """What each run that got to its end has settled to; what counts as a return the method's grid decides."""
     if isinstance(method, EventDriven) or tolerance is not None or len(done) == 0:
@@ -167,14 +170,21 @@ def _settled(
             result.append(Settled(int(i), runs.states[i], np.full(runs.final.shape[1], size), allowed, n))
         return result
     moved = spread(scene, method, runs.final[done], phase)
-    result = []
-    for k, i in enumerate(done):
-        allowed = max(float(APART * moved.radius[k]), TOLERANCE)
-        n = return_time(runs.states[i] / moved.scale[k], longest, allowed) if moved.forgets[k] else 0
-        # On its own grid an aperiodic motion may be caught by a cycle that only the grid has
-        states = runs.states[i] if n else moved.paths[k]
-        result.append(Settled(int(i), states, moved.scale[k], allowed, n))
-    return result
+    within = np.maximum(APART * moved.radius, TOLERANCE)
+    returns = [
+        return_time(runs.states[i] / moved.scale[k], longest, float(within[k])) if moved.forgets[k] else 0
+        for k, i in enumerate(done)
+    ]
+    # On its own grid an aperiodic motion may be caught by a cycle that only this grid has
+    restless = np.flatnonzero(np.array(returns) == 0)
+    states = [runs.states[i] for i in done]
+    if len(restless):
+        later = wandered(scene, method, runs.final[done[restless]], transient, phase)
+        for k, path in zip(restless, spread(scene, method, later, phase).paths, strict=True):
+            states[k] = path
+    return [
+        Settled(int(i), states[k], moved.scale[k], float(within[k]), returns[k]) for k, i in enumerate(done)
+    ]
 
 
 def with_new(known: Attractors, more: Attractors) -> Attractors:
@@ -258,11 +268,11 @@ def _sampled(P: PeriodMap, runs: Periods, members: list[int], n: int, points: in
 
 def _growth(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
     """Largest Lyapunov exponent per period: from the multipliers of a periodic motion, or along an aperiodic one."""
-    if not sample.tangents.shape[
-        1
-    ]:  # no closed form, and differences across the impacts of time-stepping say nothing
+    if not sample.tangents.shape[1]:  # no closed form
         if not isinstance(P.method, EventDriven):
-            return Lyapunov(math.nan, math.nan)
+            return Lyapunov(
+                math.nan, math.nan, reason="differences across the impacts of time-stepping say nothing"
+            )
         if not n:
             return lyapunov(P, x, LYAPUNOV_PERIODS)
         return _of_multipliers(image_and_derivative(P, x, n)[1], n)
@@ -272,27 +282,38 @@ def _growth(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
             J = factor @ J
         return _of_multipliers(J, n)
     if n:
-        return _of_scattered(P, sample, n)
+        return _of_scattered(P, sample.final[:RUNS], n)
     return growth_of_runs(sample.tangents)
 
 
-def _of_scattered(P: PeriodMap, sample: Periods, n: int) -> Lyapunov:
-    """From the impacts of runs that the grid of time-stepping scatters around a periodic motion.
+def _of_scattered(P: PeriodMap, starts: Array, n: int) -> Lyapunov:
+    """Of a periodic motion by time-stepping, from motions with steps of h/2 to h.
 
-    The derivative is that along the mean impacts of each run, which have lost the scatter; how far the growth along
-    the scattered runs is from it is its error. Both are of the motion as the grid has it.
+    Each grid scatters the impacts, and moves their mean; the derivative is that along the mean impacts of a run. What
+    the exponents on the grids differ by is their error. Where that is as large as a good part of the exponent the
+    motion has left the orbit too far for its derivative to be that of the orbit, and nothing is told.
     """
     parts = []
-    for i in range(len(sample.status)):
-        log, counts = mean_impacts(sample, i, n)
-        J = np.eye(2)
-        for factor in P.from_impacts(log[None], counts[None])[0]:
-            J = factor @ J
-        parts.append(_of_multipliers(J, n).largest)
+    for share in GRIDS:
+        finer = replace(P, method=finer_method(P.method, share))
+        run = finer.many(starts, (AVERAGED + FORGOTTEN) * n, FORGOTTEN * n, most=MOST)
+        for i in range(len(starts)):
+            log, counts = mean_impacts(run, i, n)
+            J = np.eye(2)
+            for factor in P.from_impacts(log[None], counts[None])[0]:
+                J = factor @ J
+            parts.append(_of_multipliers(J, n).largest)
     if -math.inf in parts:
         return Lyapunov(-math.inf, 0.0)
-    largest = float(np.mean(parts))
-    return Lyapunov(largest, abs(largest - growth_of_runs(sample.tangents).largest))
+    largest = float(np.median(parts))
+    error = float(np.max(np.abs(np.array(parts) - largest)))
+    if error > UNSURE * abs(largest):
+        reason = (
+            f"from {min(parts):.3g} to {max(parts):.3g} with steps of h/2 to h; the motion by time-stepping lies too "
+            f"far from the orbit: take a smaller h"
+        )
+        return Lyapunov(math.nan, error, reason=reason)
+    return Lyapunov(largest, error)
 
 
 def mean_impacts(sample: Periods, i: int, n: int) -> tuple[Array, NDArray[np.int64]]:

@@ -96,9 +96,9 @@ def run_attractor(options: argparse.Namespace) -> int:
 
 
 def _exponent(r: dict[str, Any]) -> str:
-    """The exponent and its error; nothing where it is not known."""
-    if math.isnan(r["lyapunov"]):
-        return "not known"
+    """The exponent and its error; why, where it is not known."""
+    if r["lyapunov"] is None:
+        return f"not known: {r['lyapunov_reason']}"
     return f"{r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
 
 
@@ -113,10 +113,11 @@ def box(options: argparse.Namespace) -> list[list[float]]:
 
 
 def _row(method: str, a: Any) -> dict[str, Any]:
-    per_period = a.impacts / a.periods if a.periods else a.impacts
+    per_period, found = a.impacts / a.periods if a.periods else a.impacts, a.lyapunov
     return {
         "method": method, "name": a.name, "share": a.share, "impacts_per_period": per_period,
-        "lyapunov": a.lyapunov.largest, "lyapunov_error": a.lyapunov.error,
+        "lyapunov": None if math.isnan(found.largest) else found.largest,
+        "lyapunov_error": None if math.isnan(found.error) else found.error, "lyapunov_reason": found.reason,
     }  # fmt: skip
 
 

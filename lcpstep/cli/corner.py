@@ -211,7 +211,7 @@ def _run_chattering(options: argparse.Namespace) -> int:
     def make(value: float) -> Scene:
         return scene_of(options, **{options.parameter: value, "q0": 0.0, "v0": 0.0})
 
-    found: list[Crossing] = corner_crossings(make, (low, high), points=max(2, options.points))
+    found: list[Crossing] = corner_crossings(make, (low, high))
     rows = [c._asdict() for c in found]
     if options.out is not None:
         save_text(json.dumps(rows, indent=1), options.out / "chattering.json")
@@ -221,5 +221,5 @@ def _run_chattering(options: argparse.Namespace) -> int:
     print(f"{options.parameter:>14}  sequence  event         corner")
     for c in found:
         event = f"impact {c.number}" if c.event == "impact" else c.event
-        print(f"{c.p:14.7f}  {c.sequence + 1:8d}  {event:12}  {c.corner:6d}")
+        print(f"{c.p:14.9f}  {c.sequence + 1:8d}  {event:12}  {c.corner:6d}")
     return DONE

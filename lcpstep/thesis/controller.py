@@ -11,8 +11,9 @@ from lcpstep.analysis.abs_cycle import basins, bifurcation, limit_cycle, peak, v
 from lcpstep.plot.abs_cycle import overview
 from lcpstep.plot.orbits import STABLE, UNSTABLE
 
-# Of the two other roads: M. Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme (Vogel 1993)
-OTHERS = {"cobblestone": (1.3713, 6.4565, 0.6691), "snow": (0.1946, 94.129, 0.0646)}
+# Of the two other roads: M. Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme (Vogel 1993); U. Kiencke,
+# L. Nielsen, Automotive Control Systems (Springer 2000), table of c1, c2, c3
+OTHERS = {"dry cobblestone": (1.3713, 6.4565, 0.6691), "snow": (0.1946, 94.129, 0.0646)}
 TORQUES = (0.0, 2500.0)
 CELLS = 60
 
