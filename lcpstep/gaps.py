@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,8 +85,8 @@ def _rows(constraints: Any, scene: Scene, t: float, q: Array, rows: list[int]) -
     """Jacobian of some gaps, and their velocities at rest."""
     at = t, np.array(q), np.zeros(len(q)), np.array(scene.p)
     if isinstance(constraints, LinearContacts):
-        G = constraints.G[rows]
-        G = G.toarray() if constraints.sparse else G
+        chosen: Any = cast(Any, constraints.G)[rows]
+        G = chosen.toarray() if constraints.sparse else chosen
     else:
         everything = np.zeros((constraints.n_c, len(q)))
         constraints.jacobian(*at, everything)
