@@ -19,6 +19,7 @@ from lcpstep.model import ABSENT
 # what a gap has turned so much that nothing is seen of it
 DIFFERENCE = 1e-3
 BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
+TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
 
 
 @inline
@@ -188,6 +189,23 @@ def carry_obstacles(model: Any, t: float, q: Any, v: Any) -> None:
             for j in range(len(model.frame_now)):
                 own += model.G[c, j] * model.frame_now[j, k]
             model.motion_now[c, k] = own
+
+
+@inline
+def gap_rounding(model: Any, G: Any, q: Any, c: int, path: float) -> float:
+    """What rounding may leave of gap c where it is closed: of its terms, and of the way by which it has come.
+
+    Contacts whose gaps are as small at one instant strike together: which of them came first is not known, and would
+    depend on their numbers and on the units. A moving obstacle's place must be known (`gaps`).
+    """
+    size = path
+    if model.flat:
+        size += abs(model.offset[c])
+        if moves(model):
+            size += abs(model.motion_now[c, 0])
+    for j in range(len(q)):
+        size += abs(G[c, j] * q[j])
+    return TOGETHER * size
 
 
 @inline

@@ -44,7 +44,7 @@ class EventDriven:
     p >= 0 (Newton's law in Moreau's form), whether they have rested until then or meet at the same instant; with
     joints, their impulses are part of it. Impacts at different times follow one another, however near. So balls of
     a cradle that touch share the blow, and balls a thousandth of a micrometre apart hand it on. Where the motion is
-    known exactly "the same instant" is exact; otherwise a gap below the tolerance counts as closed. This law is
+    known exactly "the same instant" is so up to rounding; otherwise a gap below the tolerance counts as closed. This law is
     solvable for any contacts and loses energy for any restitutions, while the outcome of impacts in turn depends on
     an order that nothing but a gap can tell.
 

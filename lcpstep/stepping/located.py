@@ -17,6 +17,7 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
 from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
 from lcpstep.pace import Pace
@@ -428,7 +429,8 @@ class _Run:
         if status == Status.LCP_FAILED:
             n = int(self.count[work.MEMBERS])
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
-            return f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together {where}"
+            words = f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together"
+            return f"{no_way_out(self.scene, t, q, contacts) or words} {where}"
         return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
 
 

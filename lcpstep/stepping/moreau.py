@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks
 from lcpstep.compiled import compiled, jit_disabled, solver_address
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solve_small, workspace
 from lcpstep.model import Model, culprit, model, models
@@ -342,7 +343,8 @@ class _Run:
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
-            return f"{self.method.lcp} found no solution for the contacts {self.active} {where}"
+            words = f"{self.method.lcp} found no solution for the contacts {self.active}"
+            return f"{no_way_out(self.scene, self.now + self.plan.h, s.q, self.active) or words} {where}"
         if status == Status.JOINTS_FAILED:
             joints = np.flatnonzero(self.extra[0].failed).tolist()
             return f"joints {joints} contradict each other {step} {where}"

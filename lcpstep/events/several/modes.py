@@ -30,7 +30,7 @@ from lcpstep.events.several.forces import CONTRADICTION, DONE, contact_forces
 from lcpstep.events.several.held import constrain, hold_contacts, note
 from lcpstep.events.several.impact import speed_noise, strike
 from lcpstep.events.several.keep import keep_event, log
-from lcpstep.events.several.motion import gap_tolerance, lift, rebase
+from lcpstep.events.several.motion import lift, rebase, touching
 from lcpstep.events.several.parabolas import polish, synchronise
 from lcpstep.events.several.state import (
     ACCELERATION,
@@ -106,11 +106,6 @@ def approaches(s: Any) -> bool:
                 hit = hit or u < -noise
         s.contact[LEFT_SPEED, c] = s.contact[SPEED, c]
     return hit
-
-
-def touching(s: Any, c: int) -> float:
-    """The gap below which a contact is closed: zero where gaps are followed exactly, else the tolerance."""
-    return 0.0 if s.constant else gap_tolerance(s, c)
 
 
 def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from lcpstep.dense import assign, join, split
+from lcpstep.dynamics import gap_rounding
 from lcpstep.events.clock import start_at
 from lcpstep.events.dop853 import interpolate
 from lcpstep.events.several.earliest import observe
@@ -61,6 +62,17 @@ def gap_tolerance(s: Any, c: int) -> float:
     Zero where it depends on no coordinate, as in the middle of a bowl.
     """
     return least_effect(s, c, s.state[Q])
+
+
+def touching(s: Any, c: int) -> float:
+    """The gap below which contact c is closed: rounding, and the tolerance where gaps are not followed exactly."""
+    way = 0.0
+    if s.x[LENGTH] > 0.0:
+        for j in range(s.state.shape[1]):
+            way += abs(s.R[len(s.J) + c, j] * s.state[V, j])
+        way *= s.x[LENGTH]
+    rounding = gap_rounding(s.model, s.G, s.state[Q], c, way)
+    return rounding if s.constant else max(rounding, gap_tolerance(s, c))
 
 
 def speed_tolerance(s: Any, c: int) -> float:
