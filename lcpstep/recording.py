@@ -152,10 +152,14 @@ class Recorder:
         """Dense output of the steps after the kept states."""
         return np.concatenate(self._parts["dense"])
 
-    def events(self) -> Any:
-        """The impact log, a record array of `trajectory.IMPACT_DTYPE`."""
+    def events(self, latest: float = np.inf) -> Any:
+        """The impact log, a record array of `trajectory.IMPACT_DTYPE`; no time in it is later than the latest.
+
+        Rounding may take the last step's end there, and a chattering sequence may end after the span.
+        """
         events = np.concatenate(self._parts["events"])
         log = np.empty(len(events), dtype=IMPACT_DTYPE)
         for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
             log[name] = column
+        np.minimum(log["time"], latest, out=log["time"])
         return log.view(np.recarray)

@@ -381,7 +381,7 @@ class _Run:
         impulse, joint = np.split(impulse, [self.scene.n_c], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status, *last),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status, *last),
             counts=Counts(
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],

@@ -316,7 +316,7 @@ class _Run:
         impulse, friction, joint = np.split(impulses, [n_c, impulses.shape[1] - self.scene.n_j], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status),
             counts=Counts(
                 steps=int(count[loop.STEP]), lcp_calls=int(count[loop.LCP_CALLS]),
                 force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],

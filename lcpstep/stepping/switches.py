@@ -62,17 +62,21 @@ def turn(m: Any, plan: Any, w: Any, x: Any, c: int, u: float, struck: bool) -> N
     """Note that contact c strikes, closes or opens at speed u; where that goes on for ever, the motion is settled.
 
     What goes on at one instant has no end if its speeds are faint. An elastic contact may be struck as often as
-    masses are unlike, and is counted at one and the same time only.
+    masses are unlike: it is counted at one and the same time only, or where its hops are too short to be followed and
+    what it strikes with is but what others have left of the motion.
     """
     elastic = struck and m.restitution[c] == 1.0
     since = x[SIGMA] - w.num[TURNED, c]
     if since > (0.0 if elastic else COLLAPSE * plan.h):
         w.num[TURNS, c] = 0.0
-    hops = not elastic and since <= SHORT_TOGETHER * plan.h and hardly_moves(m, plan, w, c, u)
+    if elastic:
+        hops = since <= COLLAPSE * plan.h and faint(plan, w, c, u)
+    else:
+        hops = since <= SHORT_TOGETHER * plan.h and hardly_moves(m, plan, w, c, u)
     w.num[TURNED, c] = x[SIGMA]
     w.num[TURNS, c] += 1.0
     w.num[HOPS, c] = w.num[HOPS, c] + 1.0 if hops else 0.0
-    if w.num[HOPS, c] >= AT_ONCE:
+    if w.num[HOPS, c] >= (AT_ONCE_FAST if elastic else AT_ONCE):
         x[STALLED] = max(x[STALLED], SHORT_TOGETHER * plan.h)
     if w.num[TURNS, c] < AT_ONCE:
         return

@@ -232,6 +232,19 @@ def test_hops_between_planes_that_move_come_to_an_end_long_after_the_start_of_ti
     np.testing.assert_allclose(m.q[-1], reference.q[-1], rtol=0, atol=1e-4)
 
 
+@pytest.mark.parametrize("order", ORDERS)
+def test_elastic_hops_too_short_to_be_followed_come_to_an_end(order):
+    # what is left of the motion of beads that fall onto each other: hops of 1e-12 s, which no step can follow
+    scene = Scene(
+        system=LinearSystem(M=np.eye(2), force=[-9.81, -9.81]),
+        contacts=LinearContacts(G=[[1.0, 0.0], [-1.0, 1.0]], restitution=[0.4, 1.0]), q0=[0.0, 0.0], v0=[0.0, 4e-12],
+        t_span=(0.0, 1.0),
+    )  # fmt: skip
+    m = simulate(scene, Located(0.05, order, max_events=50_000))
+    assert m.status.name == "DONE"
+    np.testing.assert_allclose(m.q[-1], 0.0, rtol=0, atol=1e-12)
+
+
 def test_what_rounding_has_left_of_rest_is_rest():
     # a slit at rest: had its body 5e-35 m/s, the step would be cut in two where it touches the other wall
     force = Harmonic(constant=[0.05, -0.4], cosine=[0.18, -0.18], sine=[-0.1, -0.38], omega=0.46)
