@@ -17,7 +17,8 @@ from lcpstep.trajectory import IMPACT_DTYPE
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 EVENT_CAPACITY = 4096
-# Places in a row: its time, whether the contact is closed, duration of the step that follows; then q, v, impulses
+# Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
+# duration of the step that follows; then q, v, impulses
 TIME, MODE, LENGTH, LEAD = range(4)
 
 

@@ -26,6 +26,7 @@ from lcpstep.stepping.located_work import (
     CORNER,
     END,
     EVENTS,
+    FALL,
     GAP,
     GROUND,
     GROUNDED,
@@ -52,10 +53,9 @@ from lcpstep.stepping.located_work import (
 )
 from lcpstep.stepping.magnitudes import faint, speed_terms
 from lcpstep.stepping.refine import solve_chosen
-from lcpstep.stepping.switches import AT_ONCE_FAST, COLLAPSE, log, release, stick, turn
+from lcpstep.stepping.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, log, release, stick, turn
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
-SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 IN_A_ROW = (
@@ -99,6 +99,9 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
     Those that close with one speed land together, those that touched before are pushed together. Others whose gaps
     happen to be zero at the same time are struck one after another, as they would be a little apart.
     """
+    for c in range(w.num.shape[1]):
+        if w.num[FALL, c] > 0.0 and w.num[RATE, c] < 0.0 and (c == first or w.num[GAP, c] <= plan.slack):
+            w.num[RATE, c] = -w.num[FALL, c]
     w.mark[CHOSEN, 0] = first
     u, n_s = w.num[RATE, first], 1
     touched = w.mark[GROUNDED, first] >= GROUND and w.num[LAST, first] < 0.0
@@ -185,6 +188,7 @@ def push(plan: Any, w: Any, x: Any, d: int, p: float) -> None:
         change = w.W[c, d] * p
         if change != 0.0:
             w.num[RATE, c] += change
+            w.num[FALL, c] = 0.0
             u = abs(w.num[RATE, c])
             touches = u <= SMALL * abs(change) and w.num[GAP, c] <= plan.slack
             if touches and u <= ROUNDING * speed_terms(plan, w, c):
@@ -221,6 +225,7 @@ def after_impact(
         stick(w, record, count, x, c, t + T)
         return
     w.num[RATE, c] = -r * before if r > 0.0 else 0.0
+    w.num[FALL, c] = w.num[RATE, c] if plan.plain and plan.steady else 0.0
     log(record, count, t, c, before, w.num[RATE, c], p, IMPACT)
     if r == 0.0:
         stick(w, record, count, x, c, t)

@@ -32,7 +32,7 @@ from lcpstep.stepping import (
 )
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping.interpolation import Parabolic
+from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_event import straighten
@@ -369,10 +369,10 @@ class _Run:
         kept, w = self.recorder.states(), self.work
         c, c_t = carried.displaced(self.scene, self.model, self.now)
         q_now, v_now, impulse_now = w.vec[work.Q] - c, w.vec[work.V] - c_t, self.impulse()
-        t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
+        t, q, v, impulse, jumps = kept.t, kept.q, kept.v, kept.impulse, kept.mode > 0.0
         if len(self.kept.times) == 0 and self.now > t[-1] and not self.half_done:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
-            impulse = np.vstack([impulse, impulse_now])
+            impulse, jumps = np.vstack([impulse, impulse_now]), np.append(jumps, True)
         bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
         if len(bad):  # the step that failed has left its numbers behind
             t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
@@ -389,16 +389,16 @@ class _Run:
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=self.between(t, q, v, *last[1:]),
+            dense=self.between(t, q, v, jumps[: len(t)], *last[1:]),
             joint_impulse=joint,
         )  # fmt: skip
 
     def between(
-        self, t: Array, q: Array, v: Array, q_end: Array, v_end: Array
+        self, t: Array, q: Array, v: Array, jumps: NDArray[np.bool_], q_end: Array, v_end: Array
     ) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time: from the kept ones where these tell, by another run where they do not."""
         if self.method.order == 2:
-            return Parabolic(t, q, v, self.kept.all)
+            return Bent(t, q, v, self.kept.all, jumps)
         return Again(self.method, self.scene, q_end, v_end)
 
     def impulse(self) -> Array:
@@ -413,8 +413,8 @@ class _Run:
         if status == Status.DONE and cut == 0:
             return "reached the end of the span"
         if status == Status.DONE:
-            bound = f"max_per_step = {self.method.max_per_step} events"
-            return f"reached the end of the span; {cut} times one plastic impact ended a step after {bound}"
+            events = f"events without end, or more than max_per_step = {self.method.max_per_step} in a step"
+            return f"reached the end of the span; {cut} times one plastic impact stood for {events}"
         where = f"at t = {t:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
@@ -425,7 +425,8 @@ class _Run:
         if status == Status.JOINTS_FAILED:
             return f"joint {self.work.joints.own.order[CULPRIT]} contradicts others {where}"
         if status == Status.PROJECTION_FAILED:
-            return f"no position near satisfies joint {self.work.joints.own.order[CULPRIT]} {where}"
+            joint = self.work.joints.own.order[CULPRIT]
+            return f"no position near satisfies joint {joint} {where}; try a smaller h"
         if status == Status.LCP_FAILED:
             n = int(self.count[work.MEMBERS])
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())

@@ -6,7 +6,7 @@ from typing import Any
 
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates
-from lcpstep.recording import LEAD, write_row
+from lcpstep.recording import LEAD, MODE, write_row
 from lcpstep.recording import TIME as ROW_TIME
 from lcpstep.stepping.located_joints import (
     take_back,
@@ -92,13 +92,14 @@ def keep_between(
         refactor(m, w, base + tau)
 
 
-def keep(w: Any, record: Any, count: Any, t: float) -> None:
-    """Keep the current state; states at one time share a row."""
+def keep(w: Any, record: Any, count: Any, t: float, jump: float) -> None:
+    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here."""
     if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:
         count[ROW] -= 1
+        jump = max(jump, record.rows[count[ROW], MODE])
         for c in range(w.num.shape[1]):
             w.num[IMPULSE, c] += record.rows[count[ROW], LEAD + 2 * w.vec.shape[1] + c]
         take_back(w, record.rows[count[ROW]])
-    write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q], w.vec[V], w.num[IMPULSE])
+    write_row(record.rows[count[ROW]], t, jump, w.vec[Q], w.vec[V], w.num[IMPULSE])
     write_joints(w, record.rows[count[ROW]])
     count[ROW] += 1

@@ -349,7 +349,7 @@ class _Run:
             joints = np.flatnonzero(self.extra[0].failed).tolist()
             return f"joints {joints} contradict each other {step} {where}"
         if status == Status.PROJECTION_FAILED:
-            return f"no position near satisfies all joints and contacts {step} {where}"
+            return f"no position near satisfies all joints and contacts {step} {where}; try a smaller h"
         if status == Status.STEP_TOO_SMALL:
             return adaptive.too_small(self.method.tolerance, where)
         if status == Status.NEWTON_FAILED:

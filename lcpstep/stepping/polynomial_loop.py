@@ -112,7 +112,7 @@ def run(
         if not finite(w):
             return NOT_FINITE
         if record.every > 0 and count[STEP] % record.every == 0:
-            keep(w, record, count, t_next)
+            keep(w, record, count, t_next, 0.0)
     return FINISHED
 
 
@@ -191,7 +191,7 @@ def lose_force(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int,
     release(m, plan, w, record, count, x, c, t, 0.0)
     w.mark[GROUNDED, c] = LEFT
     if record.on_events or record.every == 1:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
 
 
 @inline
@@ -274,7 +274,7 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
             for i in range(w.vec.shape[1]):
                 w.vec[V, i] += w.MG[d, i] * error / W
     if record.on_events or record.every == 1:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
     return FINISHED
 
 
