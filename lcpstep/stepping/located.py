@@ -156,7 +156,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return work.Plan(
-        h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
+        h=h, made_for=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
         plain=bool(trapezoidal and m.flat and not moves(m)), constant=bool(trapezoidal and m.flat),
         small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
@@ -293,7 +293,7 @@ class _Run:
         )  # fmt: skip
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[work.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[work.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
             self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]

@@ -261,7 +261,7 @@ class _Run:
         )
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[loop.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[loop.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
 
