@@ -21,7 +21,9 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from lagrangian import Scene
 from lcpstep.compiled import by_address, inline
+from lcpstep.model import failing
 from lcpstep.recording import TIME
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 
@@ -35,6 +37,7 @@ NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 FIRST = 1e-6  # of the span: the first step
 LOOK = 4096  # steps between two looks at the outside world
+LOOKS_AHEAD = 17  # at the callbacks where no step is short enough
 # Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
 POSITION, LEVEL, END, FINEST = range(4)
 # Places in Control.real; the last two: error of the attempt before, if that failed at the same place; how far beyond
@@ -210,6 +213,9 @@ def distance(x: Any, y: Any) -> float:
     return most
 
 
-def too_small(tolerance: float | None, where: str) -> str:
-    """A tolerance that no step meets, in words."""
-    return f"the tolerance {tolerance:g} cannot be met by any step {where}; expected a larger one"
+def too_small(method: Any, scene: Scene, t: float, q: Any, v: Any, where: str) -> str:
+    """A tolerance that no step meets, in words; and the callback that fails ahead in a straight line, if one does."""
+    text = f"the tolerance {method.tolerance:g} cannot be met by any step {where}"
+    ahead = np.linspace(t, max(t, min(t + method.h, scene.t_span[1])), LOOKS_AHEAD)
+    found = failing(scene, ahead, q, v)
+    return f"{text}; ahead of it {found.rstrip(';')}" if found else f"{text}; expected a larger one"

@@ -418,7 +418,7 @@ class _Run:
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, t, q, v, where)
         if status == Status.JOINTS_FAILED:
             return f"joint {self.work.joints.own.order[CULPRIT]} contradicts others {where}"
         if status == Status.PROJECTION_FAILED:

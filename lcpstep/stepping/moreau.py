@@ -347,7 +347,7 @@ class _Run:
         if status == Status.PROJECTION_FAILED:
             return f"no position near satisfies all joints and contacts {step} {where}"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, self.now, s.q, s.v, where)
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
         return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"
