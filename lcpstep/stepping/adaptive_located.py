@@ -24,19 +24,20 @@ from lcpstep.stepping.adaptive import (
     INTO,
     LEVEL,
     PAUSED,
-    REACHED,
     SIZE_Q,
     SIZE_V,
     TOO_SMALL,
     TRIED,
     UNTIL,
     Control,
+    base,
     distance,
     goal,
     judge,
     largest,
     now,
     over,
+    stamp,
     step_size,
 )
 from lcpstep.stepping.adaptive_forces import hidden, late
@@ -54,6 +55,7 @@ from lcpstep.stepping.located_work import (
     FORCE_NOW,
     FORCES,
     GAP,
+    GOAL,
     HALF,
     IMPULSE,
     LAST,
@@ -79,6 +81,7 @@ from lcpstep.stepping.located_work import (
 
 Array = NDArray[np.float64]
 Prepared = tuple[Plan, Work]
+Offsets = tuple[float, float]  # from the base of a step to the beginning and the end of a part [s]
 Step = Callable[[Plan, Work, float], int]  # one step from a time; the code of the loop
 EARLY = 1 / 32  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -130,7 +133,7 @@ class Attempts:
         self.weigh = compiled(weigh) if fast else weigh
         self.arrays = [w.vec, w.num, w.mark, x, count] + ([] if plan.constant else [w.G, w.MG, w.W, w.M])
         self.saved = [a.copy() for a in self.arrays]
-        self.row, self.under_way, self.reached = record.rows[0].copy(), False, now(control)
+        self.row, self.under_way = record.rows[0].copy(), False
         control.real[SIZE_Q], control.real[SIZE_V] = largest(w.vec[Q]), largest(w.vec[V])
         x[PAUSING] = 1.0
 
@@ -147,7 +150,7 @@ class Attempts:
             code, verdict = self.attempt()
             full = code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0
             if verdict == ACCEPTED:
-                self.control.real[REACHED], self.x[UNDER_WAY] = self.reached, 0.0
+                self.x[UNDER_WAY] = 0.0
             else:
                 self.undo()
             self.under_way = False
@@ -159,10 +162,10 @@ class Attempts:
 
     def attempt(self) -> tuple[int, int]:
         """One step, then two halves of it: the last code of the loop, and the verdict."""
-        c, start, end = self.control, now(self.control), self.end()
-        until, entire = math.inf, end == goal(c)
+        c, start, end = self.control, float(self.control.real[INTO]), self.end()
+        until, entire = math.inf, end == step_size(c, int(c.whole[LEVEL]))
         for _ in range(4):
-            one, half, two = self.compare(start, end, entire and c.real[INTO] == 0.0, until)
+            one, half, two = self.compare(start, end, entire, until)
             if two.code != STOPPED or two.time in (until, 0.0):
                 break
             self.undo()
@@ -170,6 +173,7 @@ class Attempts:
             early = self.alike or self.saved[3][CLOSED_NOW] > 0.0
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, math.inf
+        self.in_time(entire)
         wrong_q = wrong_v = 0.0
         if two.time == 0.0:  # an event before anything moved
             one = two
@@ -180,56 +184,74 @@ class Attempts:
             return two.code, AGAIN
         failed = one.code not in GOOD or two.code not in GOOD
         happened = two.code == STOPPED or self.count[EVENT] > self.saved[4][EVENT]
-        cut = math.inf if entire and two.code == FINISHED else two.time
+        cut = math.inf if entire and two.code == FINISHED else self.x[SIGMA]
         verdict = self.weigh(c, failed, one.q, one.v, two.q, two.v, wrong_q, wrong_v, happened, cut)
         return two.code, verdict
 
-    def compare(self, start: float, end: float, even: bool, until: float) -> tuple[Led, Led, Led]:
-        """A single piece up to a time; from the same start a half, and both halves, at most to an event."""
-        one = self.led(self.part(start, end, even and until == math.inf, until, 0))
+    def compare(self, start: float, end: float, entire: bool, until: float) -> tuple[Led, Led, Led]:
+        """A single piece up to a time; from the same start a half, and both halves, at most to an event.
+
+        `start`, `end`: since the base of the step, whose end this is where it is `entire`.
+        """
+        last, even = goal(self.control) if entire else base(self.control) + end, entire and start == 0.0
+        one = self.led(self.part((start, end), last, even and until == math.inf, until, 0))
         self.undo()
         middle = start + 0.5 * (end - start)
-        code = self.part(start, middle, even, 0.0, 1)
-        half = self.led(code)
-        two = half
-        if code == FINISHED:
-            two = self.led(self.part(middle, end, even, 0.0, 1))
+        half = two = self.led(self.part((start, middle), base(self.control) + middle, even, 0.0, 1))
+        if half.code == FINISHED:
+            two = self.led(self.part((middle, end), last, even, 0.0, 1))
             two = two._replace(time=middle - start + two.time)
         return one, half, two
 
     def end(self) -> float:
-        """Where the step ends that begins now: at the next multiple, or at a corner before it."""
-        start, end = now(self.control), goal(self.control)
+        """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
+        c = self.control
+        end = step_size(c, int(c.whole[LEVEL]))
         if len(self.plan.corners) == 0:
             return end
-        corner = find_corners(self.plan, start)[1]
-        return corner if corner < end - self.plan.margin else end
+        corner = find_corners(self.plan, now(c))[1]
+        return corner - base(c) if corner < goal(c) - self.plan.margin else end
 
-    def part(self, start: float, end: float, even: bool, until: float, halved: int) -> int:
-        """From start to end, in a single piece up to a time if that is not 0; `even` where this is a whole step."""
-        level, x = int(self.control.whole[LEVEL]) + (halved if even else 0), self.x
+    def part(self, offsets: Offsets, last: float, even: bool, until: float, halved: int) -> int:
+        """A part of a step, in a single piece up to a time if that is not 0; `even` where it is as long as a level's.
+
+        Times are counted from the base of the step, so that what happens at one instant has one time whichever part
+        it ends. `last`: the time at the end of the part.
+        """
+        (start, end), x, level = offsets, self.x, int(self.control.whole[LEVEL]) + (halved if even else 0)
         if level not in self.prepared:
             self.prepared[level] = self.make(step_size(self.control, level))
         p, w = self.make(end - start) if self.sized and not even else self.prepared[level]
+        if end != p.h:
+            p = p._replace(h=end)
         self.taken = w
-        t, x[UNCHANGED], x[BLIND], x[UNDER_WAY] = start, 0.0, until, 0.0
-        before = 0.0
-        if not even:  # the end of a longer step
-            before = max(p.h - (end - start), 0.0)
-            t, x[UNDER_WAY], x[END] = end - p.h, 1.0, 0.0
-            self.carry_on(before, COLLAPSE * p.h)
-        code = self.step(p, w, t)
-        self.elapsed = end - start if code == FINISHED else x[SIGMA] - before
-        self.reached = t + p.h if code == FINISHED else t + x[SIGMA]
+        x[UNCHANGED], x[BLIND], x[GOAL] = 0.0, until, last
+        self.carry_on(start, even and start == 0.0, COLLAPSE * p.h)
+        code = self.step(p, w, base(self.control))
+        if code == FINISHED:  # a contact's flight is followed without counting times
+            x[SIGMA] = end
+        self.elapsed = x[SIGMA] - start
         return code
 
-    def carry_on(self, sigma: float, close: float) -> None:
-        """Begin a part of a step at sigma: what has just fired has done so now."""
-        last = self.w.num[LAST]
-        just = (last >= 0.0) & (self.x[SIGMA] - last <= close)
-        last[:] = np.where(just, sigma, -1.0)
-        self.w.num[TURNED] += sigma - self.x[SIGMA]
-        self.x[SIGMA] = sigma
+    def carry_on(self, start: float, anew: bool, close: float) -> None:
+        """Begin a part at an offset: a step `anew`; else what has just fired has done so now."""
+        x, last = self.x, self.w.num[LAST]
+        x[UNDER_WAY] = 0.0 if anew else 1.0
+        if anew:
+            return
+        if x[SIGMA] != start:
+            just = (last >= 0.0) & (x[SIGMA] - last <= close)
+            last[:] = np.where(just, start, -1.0)
+            self.w.num[TURNED] += start - x[SIGMA]
+        x[SIGMA], x[END] = start, 0.0
+
+    def in_time(self, entire: bool) -> None:
+        """Nothing of a step comes after the multiple that it ends at, by rounding."""
+        c = self.control
+        end, last = base(c) + step_size(c, int(c.whole[LEVEL])), goal(c)
+        if entire and end > last:
+            rows, events = (int(self.saved[4][k]) for k in (ROW, EVENT))
+            stamp(self.record, rows, int(self.count[ROW]), events, int(self.count[EVENT]), last, last)
 
     def led(self, code: int) -> Led:
         """Where the part that has just been taken led."""

@@ -158,7 +158,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return work.Plan(
-        h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
+        h=h, made_for=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
         plain=bool(trapezoidal and m.flat and not moves(m)), constant=bool(trapezoidal and m.flat),
         small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
@@ -296,7 +296,7 @@ class _Run:
         )  # fmt: skip
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[work.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[work.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
             self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
@@ -421,7 +421,7 @@ class _Run:
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, t, q, v, where)
         if status == Status.JOINTS_FAILED:
             return f"joint {self.work.joints.own.order[CULPRIT]} contradicts others {where}"
         if status == Status.PROJECTION_FAILED:

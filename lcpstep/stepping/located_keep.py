@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates
 from lcpstep.recording import LEAD, MODE, write_row
@@ -15,9 +16,11 @@ from lcpstep.stepping.located_joints import (
 from lcpstep.stepping.located_work import (
     A_FROM,
     CHANGE,
+    EPS,
     GAP_T,
     IMPULSE,
     IMPULSE_FROM,
+    LATE,
     NEXT_TIME,
     Q_FROM,
     Q_TRY,
@@ -47,6 +50,12 @@ def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: 
         write_joints(w, record.rows[count[ROW]])
         count[ROW] += 1
         count[NEXT_TIME] += 1
+
+
+@inline
+def just_after(plan: Any, t: float) -> float:
+    """Up to where times asked for are the end t of a step, but for rounding."""
+    return t + LATE * plan.h + 4.0 * EPS * abs(t)
 
 
 def remember(w: Any) -> None:

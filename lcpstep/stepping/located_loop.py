@@ -21,7 +21,7 @@ from lcpstep.stepping.located_joints import (
     joints_failed,
     turn_with_joints,
 )
-from lcpstep.stepping.located_keep import keep, keep_times
+from lcpstep.stepping.located_keep import just_after, keep, keep_times
 from lcpstep.stepping.located_piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.located_work import (
     ALPHA,
@@ -43,6 +43,7 @@ from lcpstep.stepping.located_work import (
     FREE,
     GAP,
     GAP_T,
+    GOAL,
     GROUND,
     GROUNDED,
     HALF,
@@ -50,7 +51,6 @@ from lcpstep.stepping.located_work import (
     HITS,
     IDLE,
     LAST,
-    LATE,
     LCP_FAILED,
     LOW,
     NEXT_FORCE,
@@ -140,8 +140,9 @@ def run(
         code = step(model, plan, w, x, record, count, t)
         if code != FINISHED:
             return code
-        t_next = t0 + plan.h * (count[STEP] + 1 - first)
-        keep_times(model, plan, w, x, record, count, t_next + LATE * plan.h, t_next + LATE * plan.h)
+        t_next = x[GOAL] if x[PAUSING] == 1.0 else t0 + plan.h * (count[STEP] + 1 - first)
+        late = just_after(plan, t_next)
+        keep_times(model, plan, w, x, record, count, late, late)
         count[STEP] += 1
         x[UNDER_WAY] = 0.0
         if not finite(w):

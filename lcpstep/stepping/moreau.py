@@ -264,7 +264,7 @@ class _Run:
         )
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[loop.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[loop.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
 
@@ -351,7 +351,7 @@ class _Run:
         if status == Status.PROJECTION_FAILED:
             return f"no position near satisfies all joints and contacts {step} {where}; try a smaller h"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, self.now, s.q, s.v, where)
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
         return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Kind, Located, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.stepping.adaptive import LOOK
 from tests.known import ball_height
 
@@ -143,6 +143,30 @@ def test_what_is_lifted_off_does_not_land_by_rounding(start, order):
     assert np.max(np.abs(m.q[:, 0] - exact)) < 1e-6
     assert np.all(np.diff(m.t) > 0.0)
     assert m.t[-1] == start + 0.06
+
+
+@pytest.mark.parametrize(
+    "method", [Located(0.1, tolerance=1e-5), Located(0.1, 4, tolerance=1e-7), Moreau(0.1, tolerance=1e-2)]
+)
+@pytest.mark.parametrize("start", [0.3, 5420.0, -17699.3, 83800.0])
+def test_times_go_on_and_end_as_asked_far_from_zero(method, start):
+    """Events, kept states and the steps between them agree about one instant to the bit."""
+    system = LinearSystem(
+        np.eye(2), K=[[12.0, -3.0], [-3.0, 5.0]], force=Harmonic([-2.0, -1.0], [1.0, 0.7], [0.0, 0.3], 7.0)
+    )
+    contacts = LinearContacts([[1.0, 0.0], [0.3, 1.0]], [0.1, 0.05], [0.5, 0.0])
+    for length in (0.010918, 1.0 / 3.0, 1.9):
+        scene = Scene(
+            system, contacts=contacts, q0=[0.1, 0.2], v0=[-1.0, 0.3], t_span=(start, start + length)
+        )
+        m = simulate(scene, method)
+        assert m.status == Status.DONE
+        assert m.t[-1] == start + length
+        assert np.all(np.diff(m.t) >= 0.0)
+        assert np.all(np.diff(m.impacts.time) >= 0.0)
+        assert np.all(m.impacts.time <= m.t[-1])
+        at = np.linspace(start, start + length, 7)
+        assert np.array_equal(simulate(scene, method, keep=at).t, at)
 
 
 def test_bad_input_is_named():
