@@ -131,7 +131,7 @@ def test_methods_are_equal_afterwards():
         errors.NotWritten("a.nc", OSError(28, "No space left on device")),
         errors.StudyInterrupted(["a study"]),
         SimulationError("failed", ["a motion"]),
-        errors.SimulationInterrupted(["a motion"]),
+        errors.SimulationInterrupted(lambda: ["a motion"]),
     ],
     ids=lambda e: type(e).__name__,
 )

@@ -20,6 +20,7 @@ from lcpstep.cli.studies import (
     PARTS,
     files,
     finish,
+    keeps_parts,
     method_of,
     parts_bar,
     stopped,
@@ -91,6 +92,7 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != options.parameter}
     make = partial(CATALOGUE[options.scene].make, **fixed)
     values = np.linspace(low, high, options.points)
+    keeps_parts(options)
     data = _diagram(options, make, values, method_of(options), options.out / PARTS)
     title = _title(options, scene, low, high)
     if steps:

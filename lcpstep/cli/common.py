@@ -11,10 +11,12 @@ from typing import Any
 from lagrangian import Scene
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau
+from lcpstep.cli import interrupt
+from lcpstep.cli.interrupt import INTERRUPTED as INTERRUPTED
 from lcpstep.errors import UnknownName
 from lcpstep.files import replacing
 
-DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130  # exit status
+DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
 DPI = 150  # of pictures
 
 
@@ -87,6 +89,7 @@ def save_figure(figure: Any, file: Path) -> None:
     """Write a picture, or leave the one that is there as it is."""
     with replacing(file) as draft:
         figure.savefig(draft, dpi=DPI)
+    interrupt.wrote(file)
 
 
 def save_text(text: str, file: Path) -> None:
@@ -94,6 +97,7 @@ def save_text(text: str, file: Path) -> None:
     with replacing(file) as draft:
         file.parent.mkdir(parents=True, exist_ok=True)
         draft.write_text(text + "\n")
+    interrupt.wrote(file)
 
 
 @contextmanager

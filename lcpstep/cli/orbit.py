@@ -20,11 +20,12 @@ from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, 
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.cli.common import DONE, INTERRUPTED
+from lcpstep.cli import interrupt
+from lcpstep.cli.common import DONE, INTERRUPTED, save_figure
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
 from lcpstep.plot import orbits as pictures
-from lcpstep.plot.words import DPI, method_words, title_of
+from lcpstep.plot.words import method_words, title_of
 
 
 def add(commands: Any) -> None:
@@ -76,13 +77,15 @@ def run_orbit(options: argparse.Namespace) -> int:
         drawn.parent.mkdir(parents=True, exist_ok=True)
         kind = "stable" if orbit.stable else "unstable"
         title = title_of(scene, f"{orbit.name}, {kind}", method)
-        pictures.orbit(orbit, title).savefig(drawn, dpi=DPI)
+        save_figure(pictures.orbit(orbit, title), drawn)
         print(f"wrote {drawn}")
     return DONE if names is None else _run_branch(options, orbit, names)
 
 
 def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:
     """The branch through the orbit, both ways; what there is of it is saved where it is interrupted."""
+    import xarray  # noqa: F401  (saves it; an interrupt should not wait for that to be loaded)
+
     scene, parameter = orbit.scene, options.parameter
     known = CATALOGUE[options.scene].parameters
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != parameter}
@@ -96,19 +99,21 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
             )  # fmt: skip
             ways.append(way)
             if way.points.ended == INTERRUPTED_WORD:
+                interrupt.answer()
                 break
     low, high = (float(x) for x in options.range)
     data = branch_dataset(ways, parameter, (low, high), scene, orbit.method)
     title = (
         f"{scene.name}: branch of {orbit.name}, {parameter} {low:g} to {high:g}; {method_words(orbit.method)}"
     )
-    finish(options, data, pictures.branch(data, title), names)
+    interrupted = ways[-1].points.ended == INTERRUPTED_WORD
+    finish(options, data, None if interrupted else pictures.branch(data, title), names)
     for way in ways:
         for s in way.special:
             shown = ", ".join(f"{m:.6g}" for m in s.multipliers)
             print(f"{s.kind:13} at {parameter} = {s.p:.10g}   multipliers {shown}")
         print(f"ended: {way.points.ended}")
-    return INTERRUPTED if ways[-1].points.ended == INTERRUPTED_WORD else DONE
+    return INTERRUPTED if interrupted else DONE
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep import energy, simulate
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
     DONE,
     FAILED,
@@ -73,6 +74,7 @@ def run_simulate(options: argparse.Namespace) -> int:
         with progress_bar(scene, options.method) as progress:
             run = simulate(scene, method, keep=options.every, progress=progress)
     except (SimulationError, SimulationInterrupted) as stopped:
+        interrupt.answer()
         _save(options.out, stopped.trajectory)
         raise
     _save(options.out, run)
@@ -147,3 +149,4 @@ def _save(file: Path | None, run: Trajectory) -> None:
         arrays: dict[str, Any] = {"t": run.t, "q": run.q, "v": run.v, "impulse": run.impulse, "impacts": log}
         with replacing(file) as draft:
             np.savez_compressed(draft, **arrays, summary=json.dumps(_summary(run)))
+        interrupt.wrote(file)

@@ -14,6 +14,7 @@ from lcpstep.analysis.errors import MEASURES
 from lcpstep.analysis.reference import find_reference
 from lcpstep.analysis.solvers import LEVELS, compare_solvers
 from lcpstep.analysis.work_precision import Study
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text, scene_arguments, scene_of
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulate import Method
@@ -73,6 +74,7 @@ def run_study(options: argparse.Namespace) -> int:
     span = scene.t_span[1] - scene.t_span[0]
     methods = [METHODS[name](options, span) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
+    interrupt.keeps(options, lambda: str(file) if file and file.exists() else "")
     from tqdm import tqdm
 
     with tqdm(bar_format="{desc}", disable=None, leave=False) as bar:
@@ -82,6 +84,7 @@ def run_study(options: argparse.Namespace) -> int:
                 horizon=options.horizon, repeats=options.repeats, save=file, progress=bar.set_description_str,
             )  # fmt: skip
         except StudyInterrupted as stopped:
+            interrupt.answer()
             _report(stopped.study, options)
             return INTERRUPTED
     _report(result, options)

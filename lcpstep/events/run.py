@@ -104,7 +104,7 @@ class Run(ABC):
                 progress(self.now)
         except KeyboardInterrupt:
             message = f"interrupted {self.where}"
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, message)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, message)) from None
         result = self.trajectory(self.status_of[code], self.message(code))
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)

@@ -266,7 +266,7 @@ class _Run:
                 else:
                     status = self.adapted(tolerance, progress)
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)

@@ -195,7 +195,7 @@ class _Run:
             self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start, side)
             status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)

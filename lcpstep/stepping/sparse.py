@@ -168,7 +168,7 @@ class Run:
                 if status != Status.DONE:
                     break
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         except SimulationError:
             raise
         except Exception as error:  # a callback in plain Python

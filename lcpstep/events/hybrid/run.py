@@ -95,7 +95,7 @@ class HybridRun:
                 if code not in (at.FINISHED, at.BUFFER_FULL) or (code == at.FINISHED and self.now >= t_end):
                     break
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, kept)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, kept)) from None
         result = self.trajectory(STATUS[code], kept)
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
