@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian.scenes import CATALOGUE
+from lagrangian import HybridScene
+from lagrangian.scenes import SCENES
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
@@ -53,7 +54,7 @@ def add(commands: Any) -> None:
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     scene, method = study_scene(options), method_of(options)
-    known = CATALOGUE[options.scene].parameters
+    known = SCENES[options.scene].parameters
     if options.range is not None and options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None and not options.range[0] < options.range[1]:
@@ -64,10 +65,9 @@ def run_orbit(options: argparse.Namespace) -> int:
         dataset.check_new(drawn, options.overwrite)
     guess = options.guess
     if guess is None:
-        x = np.concatenate([scene.q0, scene.v0])
         guess = (
             PeriodMap(scene, method, options.phase)
-            .follow(x, options.transient + 1, options.transient)
+            .follow(scene.x0, options.transient + 1, options.transient)
             .final[0]
         )
     orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
@@ -84,9 +84,9 @@ def run_orbit(options: argparse.Namespace) -> int:
 def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:
     """The branch through the orbit, both ways; what there is of it is saved where it is interrupted."""
     scene, parameter = orbit.scene, options.parameter
-    known = CATALOGUE[options.scene].parameters
+    known = SCENES[options.scene].parameters
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != parameter}
-    make = partial(CATALOGUE[options.scene].make, **fixed)
+    make = partial(SCENES[options.scene].make, **fixed)
     ways: list[OrbitBranch] = []
     with _points_bar(options, parameter) as progress:
         for forward in (False, True):
@@ -132,6 +132,8 @@ def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progres
 def _print(orbit: PeriodicOrbit) -> None:
     print(f"{orbit.name}, {'stable' if orbit.stable else 'unstable'}; residual {orbit.residual:.2g}")
     print("states on the section: " + "; ".join(str(x.tolist()) for x in orbit.x))
+    event, unit = ("switch", "") if isinstance(orbit.scene, HybridScene) else ("impact", " m/s")
+    rate = "rate of the guard" if event == "switch" else "gap velocity"
     for phase, before, after in zip(orbit.phases, orbit.before, orbit.after, strict=True):
-        print(f"impact at phase {phase:.12f}: gap velocity {before:.9g} -> {after:.9g} m/s")
+        print(f"{event} at phase {phase:.12f}: {rate} {before:.9g} -> {after:.9g}{unit}")
     print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in orbit.multipliers))
