@@ -20,6 +20,7 @@ from lcpstep.cli import (
     compare,
     corner,
     hard,
+    maps,
     orbit,
     scenes,
     simulate,
@@ -40,6 +41,7 @@ COMMANDS = (
     basin,
     orbit,
     corner,
+    maps,
     abs_,
     thesis,
 )
