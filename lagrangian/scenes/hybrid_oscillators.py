@@ -76,7 +76,7 @@ def bilinear_oscillator(
         _bilinear_side(0.0, (x0, v0), ()),
         (0.0, t_end),
         parameters={"left": left, "right": right, "damping": damping, "amplitude": amplitude, "omega": omega},
-        period=math.inf if free else 2.0 * math.pi / omega,
+        period=math.inf if amplitude == 0.0 else 2.0 * math.pi / omega,
         name="bilinear-oscillator",
         exact=partial(_two_half_waves, left=left, right=right, x0=x0, v0=v0) if free else None,
         labels=LABELS,

@@ -14,8 +14,7 @@ from lcpstep import compiled
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid import tangent
 from lcpstep.events.hybrid.machine import machine
-from lcpstep.events.hybrid.state import SWITCH_LEAD
-from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
 from lcpstep.trajectory import Status
 
@@ -39,15 +38,3 @@ def monodromy(run: HybridTrajectory) -> Array:
     start, end = float(run.pieces.t[0]), float(run.pieces.t[-1])
     code = walk(s, log, len(log), names.index(scene.mode), start, np.array(scene.x0), end)
     return told(code, scene, s.J)
-
-
-def log_of(run: HybridTrajectory) -> Array:
-    """The switches of a run as kernels write them."""
-    names, n = run.scene.system.names, run.scene.n_x
-    log = np.zeros((len(run.switches), SWITCH_LEAD + 2 * n))
-    log[:, 0], log[:, 3] = run.switches.time, run.switches.guard
-    for place, which in ((1, run.switches.source), (2, run.switches.target)):
-        log[:, place] = [names.index(str(name)) for name in which]
-    log[:, SWITCH_LEAD : SWITCH_LEAD + n] = run.switches.before
-    log[:, SWITCH_LEAD + n :] = run.switches.after
-    return log

@@ -17,6 +17,7 @@ from lagrangian.scenes import SCENES
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
+from lcpstep.analysis.fixed_points import periodic_point
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
@@ -24,6 +25,7 @@ from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli.common import DONE, INTERRUPTED
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
+from lcpstep.maps import SwitchMap, iterate
 from lcpstep.plot import orbits as pictures
 from lcpstep.plot.words import DPI, method_words, title_of
 
@@ -40,6 +42,11 @@ def add(commands: Any) -> None:
     )
     study_arguments(p)
     p.add_argument("--periods", type=int, default=1, help="periods of the forcing after which it repeats (1)")
+    p.add_argument(
+        "--mode",
+        metavar="NAME",
+        help="a mode of the scene: the orbit from one entry into it to the next, driven or not",
+    )
     p.add_argument("--guess", type=float, nargs="+", metavar="X", help="state (q, v) on the section")
     p.add_argument("--transient", type=int, default=500, help="periods to settle without a guess (500)")
     p.add_argument("--parameter", default="rpm", help="parameter of the branch (rpm)")
@@ -59,6 +66,8 @@ def run_orbit(options: argparse.Namespace) -> int:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
+    if options.mode is not None:
+        return _run_returns(options, scene, method)
     names = files(options, "branch") if options.range is not None else None
     drawn = options.out / "orbit.png"
     if options.draw:
@@ -79,6 +88,23 @@ def run_orbit(options: argparse.Namespace) -> int:
         pictures.orbit(orbit, title).savefig(drawn, dpi=DPI)
         print(f"wrote {drawn}")
     return DONE if names is None else _run_branch(options, orbit, names)
+
+
+def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
+    """The orbit of a scene with modes on the section of entries into one of them."""
+    if options.range is not None or options.draw:
+        raise ValueError(
+            "--mode: prints the orbit on the entries into a mode; --range and --draw go without it"
+        )
+    P = SwitchMap(scene, method, options.mode)
+    x = P.entry() if options.guess is None else options.guess
+    found = periodic_point(P, iterate(P, x, options.transient)[-1], options.periods)
+    period = sum(P.duration(y) for y in found.points)
+    print(f"{'stable' if found.stable else 'unstable'}; period {period:.12g}, residual {found.residual:.2g}")
+    state = "phase [rad] and state" if P.driven else "state"
+    print(f"{state} on entering {options.mode}: " + "; ".join(str(y.tolist()) for y in found.points))
+    print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in found.multipliers))
+    return DONE
 
 
 def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:

@@ -80,6 +80,8 @@ def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None
         return
     drive = scene.parameters.get("amplitude")
     hint = "; it is driven where its parameter amplitude is not zero" if drive == 0.0 else ""
+    if isinstance(scene, HybridScene):
+        hint += "; lcpstep.maps.SwitchMap (lcpstep orbit --mode) takes returns to a mode"
     raise ValueError(f"scene: {scene.name!r} has no period, and so no {what}{hint}")
 
 
