@@ -2,8 +2,9 @@
 
 Runs from many states are followed until they have settled. A motion that comes back after n periods, with m impacts
 on the way, is an O(n, m); where infinitely many impacts (complete chattering) belong to it, that is said in place
-of m. One that does not come back is aperiodic: chaotic if its largest Lyapunov exponent is positive beyond its
-standard error. Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.2.3.
+of m. Of a system with modes the m events are its switches. One that does not come back is aperiodic: chaotic if its
+largest Lyapunov exponent is positive beyond its standard error. Source: G. Osorio, Complex Behavior in Impacting
+Systems, section 3.2.3.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
 from lcpstep.analysis.grid_error import APART, finer_method, on_other_grids, spread, wandered
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
@@ -47,8 +48,9 @@ class Attractor:
     periods : n of an O(n, m), 0 where the motion is aperiodic
     impacts : m, impacts in n periods; their mean per period where the motion is aperiodic
     landings : how often in n periods the contact closes for good, after complete chattering or an impact without
-        rebound; in one period, on the average, where the motion is aperiodic
-    points : (k, 2 n_q)   states (q, v) on the section: n of them, or many where the motion is aperiodic
+        rebound; in one period, on the average, where the motion is aperiodic. Of a system with modes: how often
+        sliding begins
+    points : (k, 2 n_q)   states (q, v), or (k, n_x), on the section: n of them, or many where the motion is aperiodic
     cloud : (j, 2 n_q)   the same, but many for every motion by time-stepping, whose grid scatters them; for an
         aperiodic one each period is taken with a step of its own, between 0.9 h and h, for on one grid all runs come
         to a cycle that only the grid has
@@ -56,6 +58,7 @@ class Attractor:
     impact_number : (m,)   the number of each in its period, from 1
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
+    modes : whether the scene is one with modes, so that `impacts` are its switches and landings begin to slide
     """
 
     periods: int
@@ -69,12 +72,14 @@ class Attractor:
     cloud: Array
     lyapunov: Lyapunov
     share: float = 1.0
+    modes: bool = False
 
     @property
     def name(self) -> str:
         """O(n, m), O(n, chattering), chaotic, or aperiodic where chaos is not certain."""
         if self.periods:
-            return f"O({self.periods}, {'chattering' if self.landings else round(self.impacts)})"
+            endless = self.landings and not self.modes
+            return f"O({self.periods}, {'chattering' if endless else round(self.impacts)})"
         return "chaotic" if self.lyapunov.chaotic else "aperiodic"
 
 
@@ -97,7 +102,7 @@ class Attractors:
 
 
 def attractors(
-    scene: Scene,
+    scene: Scene | HybridScene,
     method: Method,
     starts: ArrayLike,
     *,
@@ -112,9 +117,9 @@ def attractors(
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period
-    method : lcpstep.EventDriven or lcpstep.Moreau
-    starts : (s, 2 n_q)   states (q, v) at the section; see `random_starts`
+    scene : lagrangian.Scene, or HybridScene, with a period
+    method : lcpstep.EventDriven or lcpstep.Moreau; EventDriven for a system with modes
+    starts : (s, 2 n_q)   states (q, v), or (s, n_x), at the section; see `random_starts`
     transient, window : periods dropped, and looked at
     longest : longest period n, in periods of the forcing, that is recognised; at most a half of the window
     phase : of the section, as a share of the period in [0, 1)
@@ -157,7 +162,7 @@ def attractors(
 
 
 def _settled(
-    scene: Scene, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
+    scene: Any, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
     tolerance: float | None, transient: int,
 ) -> list[Settled]:  # fmt: skip
     """What each run that got to its end has settled to; what counts as a return the method's grid decides."""
@@ -242,6 +247,7 @@ def described(
         cloud=sample.states.reshape(-1, sample.states.shape[-1]),
         lyapunov=_growth(P, sample, x, n),
         share=share,
+        modes=isinstance(P.scene, HybridScene),
     )
 
 

@@ -21,6 +21,7 @@ from lcpstep.cli import (
     corner,
     hard,
     interrupt,
+    maps,
     orbit,
     scenes,
     simulate,
@@ -41,6 +42,7 @@ COMMANDS = (
     basin,
     orbit,
     corner,
+    maps,
     abs_,
     thesis,
 )

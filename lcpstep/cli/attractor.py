@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import HybridScene
 from lcpstep.analysis.attractors import POINTS, Attractors, attractors, random_starts
 from lcpstep.analysis.basins import outside
 from lcpstep.analysis.likeness import Likeness, likeness, sample
@@ -75,16 +76,17 @@ def run_attractor(options: argparse.Namespace) -> int:
         rows[method_words(other)] = search(other).found
     title = f"{scene_words(scene)}: attractors, {options.starts} random starts, section at phase {options.phase:g}"
     corners = np.atleast_1d(np.asarray(scene.corners)) / scene.period
-    figure = pictures.attractors(rows, title, [float(c) for c in corners])
+    figure = pictures.attractors(rows, title, [float(c) for c in corners], scene.labels)
     finish(options, _dataset(scene, method, found, options.seed), figure, names)
     lines = [_row(name, a) for name, group in rows.items() for a in group]
     if options.json:
         text = {"attractors": lines, "likeness": {k: vars(x) for k, x in compared.items()}}
         print(json.dumps(text, indent=2))
         return DONE
+    event = "switches" if isinstance(scene, HybridScene) else "impacts"
     for r in lines:
         print(
-            f"{r['name']:20} share {r['share']:6.1%}   impacts per period {r['impacts_per_period']:8.4g}   "
+            f"{r['name']:20} share {r['share']:6.1%}   {event} per period {r['impacts_per_period']:8.4g}   "
             f"Lyapunov exponent per period {_exponent(r)}   {r['method'] if len(rows) > 1 else ''}".rstrip()
         )
     for name, x in compared.items():

@@ -8,12 +8,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lagrangian import Scene
-from lagrangian.scenes import CATALOGUE
+from lagrangian import HybridScene, Scene
+from lagrangian.scenes import SCENES
 from lcpstep import EventDriven, Located, Moreau
 from lcpstep.cli import interrupt
 from lcpstep.cli.interrupt import INTERRUPTED as INTERRUPTED
-from lcpstep.errors import UnknownName
+from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.files import replacing
 
 DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
@@ -22,7 +22,7 @@ DPI = 150  # of pictures
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
     """Which scene, how long, and its parameters."""
-    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(CATALOGUE)} (see: lcpstep scenes)")
+    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(SCENES)} (see: lcpstep scenes)")
     p.add_argument("--t-end", type=float, help="length of the simulation [s]; default: the scene's own")
     p.add_argument(
         "--set",
@@ -40,12 +40,26 @@ def stepping_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--lcp", default="lemke", help="complementarity solver: lemke, qp, qp:daqp, ... (lemke)")
 
 
-def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
-    """The scene that the options name; `more` sets further parameters of it."""
-    if options.scene not in CATALOGUE:
-        raise UnknownName("scene", options.scene, CATALOGUE)
-    entry = CATALOGUE[options.scene]
+def scene_with_contacts(options: argparse.Namespace, **more: Any) -> Scene:
+    """The scene that the options name, for tools that compare methods; one with modes has one method only."""
+    scene = scene_of(options, **more)
+    if isinstance(scene, HybridScene):
+        raise LcpStepError(
+            f"scene: {scene.name!r} has modes and no contacts, and is run by the event-driven method alone; "
+            f"see lcpstep simulate, attractor, bifurcation, basin, orbit"
+        )
+    return scene
+
+
+def scene_of(options: argparse.Namespace, **more: Any) -> Any:
+    """The scene that the options name, a `Scene` or a `HybridScene`; `more` sets further parameters of it."""
+    if options.scene not in SCENES:
+        raise UnknownName("scene", options.scene, SCENES)
+    entry = SCENES[options.scene]
     known = entry.parameters
+    for name in more:
+        if name not in known:
+            raise UnknownName(f"parameter of {options.scene}", name, known)
     values = dict(more)
     for setting in options.set:
         name, equals, value = setting.partition("=")
@@ -60,7 +74,11 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
 
 
 def number(name: str, value: str, kind: type[float] = float) -> float:
-    """The value of a parameter given as a text; kind: float, or int for a count."""
+    """The value of a parameter given as a text; kind: float, int for a count, or bool."""
+    if kind is bool:
+        if value.lower() not in ("true", "false"):
+            raise ValueError(f"--set: {name}: expected true or false, got {value!r}")
+        return value.lower() == "true"
     try:
         return kind(value)
     except ValueError:
@@ -101,7 +119,7 @@ def save_text(text: str, file: Path) -> None:
 
 
 @contextmanager
-def progress_bar(scene: Scene, title: str) -> Iterator[Callable[[float], None]]:
+def progress_bar(scene: Scene | HybridScene, title: str) -> Iterator[Callable[[float], None]]:
     """A bar over the scene's time span, on a terminal only."""
     from tqdm import tqdm
 

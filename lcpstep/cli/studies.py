@@ -10,7 +10,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lagrangian import Scene
 from lcpstep import dataset
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
@@ -51,7 +50,7 @@ def method_of(options: argparse.Namespace) -> Method:
     return moreau(options) if options.method == "moreau" else event_driven(options)
 
 
-def study_scene(options: argparse.Namespace, **more: Any) -> Scene:
+def study_scene(options: argparse.Namespace, **more: Any) -> Any:
     """The scene that the options name, at the speed --rpm if it is given."""
     if options.rpm is not None:
         if options.scene != "cam-follower":

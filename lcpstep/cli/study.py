@@ -15,7 +15,15 @@ from lcpstep.analysis.reference import find_reference
 from lcpstep.analysis.solvers import LEVELS, compare_solvers
 from lcpstep.analysis.work_precision import Study
 from lcpstep.cli import interrupt
-from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text, scene_arguments, scene_of
+from lcpstep.cli.common import (
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    save_figure,
+    save_text,
+    scene_arguments,
+    scene_with_contacts,
+)
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulate import Method
 
@@ -68,7 +76,7 @@ def add(commands: Any) -> None:
 
 def run_study(options: argparse.Namespace) -> int:
     """`lcpstep study`."""
-    scene = scene_of(options)
+    scene = scene_with_contacts(options)
     if options.solvers is not None:
         return run_solvers(scene, options)
     span = scene.t_span[1] - scene.t_span[0]

@@ -22,6 +22,13 @@ PANELS = {
     "accumulation": "accumulation points:\nphase [periods]",
     "impacts": "impacts per period",
 }
+MODES = {  # the same of a scene with modes
+    "phase": "phase of switches [periods]",
+    "speed": "rate of the guard\nbefore switches",
+    "accumulation": "sliding begins:\nphase [periods]",
+    "impacts": "switches per period",
+}
+PLACES = {"position": 0, "velocity": 1}  # of the first and the middle state
 USUAL = ("phase", "position")
 CHATTERING = ("accumulation", "impacts")
 PHASES = ("phase", "accumulation")
@@ -85,7 +92,7 @@ def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0)
     x, y = thinned(*points(data, name))
     size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 1.2, 4.0))
     ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
-    ax.set_ylabel(PANELS[name])
+    ax.set_ylabel(label(data, name))
     if name in PHASES:
         ax.set_ylim(0.0, 1.0)
         corners(ax, data)
@@ -93,6 +100,14 @@ def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0)
         ax.set_ylim(bottom=0.0)
     if name in ("phase", "speed", "impacts"):
         _warned(ax, data)
+
+
+def label(data: Any, name: str) -> str:
+    """What a panel shows, with its unit; states by their own names, and switches where a scene has modes."""
+    labels = data.attrs["labels"]
+    if name in PLACES:
+        return f"{labels[PLACES[name] * (len(labels) // 2)]}\non the section"
+    return MODES.get(name, PANELS[name]) if data.attrs["modes"] else PANELS[name]
 
 
 def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -104,6 +119,8 @@ def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
         return values[data[f"{kind}_value"].values], data[listed[name]].values
     if name == "impacts":
         y = np.where(data["status"].values[..., None] == 0, data["impacts"].values, np.nan)
+    elif data.attrs["modes"]:
+        y = data["x"].isel(state=PLACES[name] * (data.sizes["state"] // 2)).values
     else:
         y = data[{"position": "q", "velocity": "v"}[name]].isel(coordinate=0).values
     return np.broadcast_to(values[None, :, None], y.shape).ravel(), y.ravel()
@@ -137,10 +154,15 @@ def _warned(ax: Any, data: Any) -> None:
     """Marks along the top where impacts of a period are missing, and where runs ended early."""
     values = data[str(data.attrs["parameter"])].values
     most = int(data.attrs["most"])
+    event = "switches" if data.attrs["modes"] else "impacts"
     cut = np.any(data["impacts"].values > most, axis=(0, 2))
     early = np.any(data["status"].values != 0, axis=0)
     for which, mark, text in (
-        (cut, "v", f"more than {most} impacts a period: only the first {most} are shown"),
+        (
+            cut,
+            "v",
+            f"more than {most} {event} a period: only the first {most} are shown",
+        ),
         (early, "x", "a run ended early"),
     ):
         if np.any(which):

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import HybridScene
 from lcpstep.analysis.orbits import PeriodicOrbit
 from lcpstep.plot.lift import absolute
 from lcpstep.plot.words import parameter_label
@@ -42,7 +43,7 @@ def branch(data: Any, title: str = "") -> Any:
     below = figure.add_subplot(grid[1], sharex=above)
     branch_lines(above, data)
     mark_special(above, data)
-    above.set(ylabel=f"position at phase {data.attrs['phase']:.4g} [m]")
+    above.set(ylabel=f"{data.attrs['labels'][0]}, at phase {data.attrs['phase']:.4g}")
     above.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     p, stable = data[parameter].values, data["stable"].values.astype(bool)
     for which, style in ((stable, STABLE), (~stable, UNSTABLE)):
@@ -120,21 +121,25 @@ def orbit(found: PeriodicOrbit, title: str = "") -> Any:
     T, n = found.scene.period, found.periods
     start = found.phase * T
     run = found.run()
-    jumps = run.impacts.time[run.impacts.kind == Kind.IMPACT]
+    modes = isinstance(found.scene, HybridScene)
+    jumps = run.switches.time if modes else run.impacts.time[run.impacts.kind == Kind.IMPACT]
     t = np.unique(
         np.concatenate([np.linspace(start, start + n * T, SAMPLES * n), jumps, np.nextafter(jumps, start)])
     )
-    q, v = run.at(t)
+    across = found.scene.n_x // 2
+    x = run.at(t) if modes else np.concatenate(run.at(t), axis=1)
     figure = Figure(figsize=(12, 4.5), layout="constrained")
     figure.suptitle(title)
     left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
-    motion_panel(left, found.scene, t, q, v)
+    if isinstance(found.scene, HybridScene):
+        modes_panel(left, found.scene, t, x, run.mode_at(t))
+    else:
+        motion_panel(left, found.scene, t, x[:, :across], x[:, across:])
     for time in jumps:
         left.axvline(time / T, color="0.85", lw=0.8, zorder=0)
-    state_panel(right, t, q[:, 0], v[:, 0], jumps)
-    right.plot(
-        found.x[:, 0], found.x[:, found.scene.n_q], "C3o", ms=4, label=f"section at phase {found.phase:.4g}"
-    )
+    state_panel(right, t, x[:, 0], x[:, across], jumps)
+    right.set(xlabel=found.scene.labels[0], ylabel=found.scene.labels[across])
+    right.plot(found.x[:, 0], found.x[:, across], "C3o", ms=4, label=f"section at phase {found.phase:.4g}")
     right.legend(fontsize=8)
     return figure
 
@@ -147,6 +152,21 @@ def motion_panel(ax: Any, scene: Any, t: Array, q: Array, v: Array) -> None:
         ax.plot(t / scene.period, surface, "k-", lw=1.0, label="obstacle")
         ax.legend(fontsize=8)
     ax.set(xlabel="time [periods]", ylabel="position [m]", xlim=(t[0] / scene.period, t[-1] / scene.period))
+    ax.grid(alpha=0.3)
+
+
+def modes_panel(ax: Any, scene: HybridScene, t: Array, x: Array, mode: Any) -> None:
+    """The first state over time in periods, one colour a mode."""
+    ends = np.flatnonzero(mode[1:] != mode[:-1]) + 1
+    names = list(dict.fromkeys(str(name) for name in mode))
+    shown: set[str] = set()
+    for piece in np.split(np.arange(len(t)), ends):
+        name, to = str(mode[piece[0]]), slice(piece[0], piece[-1] + 2)
+        ax.plot(t[to] / scene.period, x[to, 0], f"C{names.index(name)}-", lw=1.5,
+                label=None if name in shown else name)  # fmt: skip
+        shown.add(name)
+    ax.legend(title="mode", fontsize=8, title_fontsize=8)
+    ax.set(xlabel="time [periods]", ylabel=scene.labels[0], xlim=(t[0] / scene.period, t[-1] / scene.period))
     ax.grid(alpha=0.3)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from lagrangian import HybridScene
 from lcpstep.dataset import UNITS
 
 DPI = 150
+FEW = 6  # parameters that a title has room for
 
 
 def method_words(method: Any) -> str:
@@ -27,8 +29,11 @@ def parameter_label(name: str) -> str:
 
 
 def scene_words(scene: Any) -> str:
-    """The scene, and how fast its cam turns."""
+    """The scene, and how fast its cam turns; of a scene with modes the parameters, where they are few."""
     rpm = scene.parameters.get("rpm")
+    if isinstance(scene, HybridScene) and len(scene.parameters) <= FEW:
+        values = ", ".join(f"{k} = {x:g}" for k, x in scene.parameters.items() if not isinstance(x, str))
+        return f"{scene.name} ({values})"
     return str(scene.name) if rpm is None else f"{scene.name} at {rpm:.9g} rpm"
 
 
