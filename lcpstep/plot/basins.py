@@ -26,6 +26,6 @@ def basins(data: Any, title: str = "") -> Any:
         ax.plot(
             [], [], "s", color=shades[min(k + 2, len(shades) - 1)], label=f"{name}: {share:.4f} ± {error:.4f}"
         )
-    ax.legend(loc="upper right")
+    figure.legend(loc="outside lower center", ncols=3)
     ax.set(title=title, xlabel="position [m]", ylabel="velocity [m/s]")
     return figure
