@@ -84,8 +84,8 @@ def overlaid(
 def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
     """Points of one panel."""
     x, y = thinned(*points(data, name))
-    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 1.2, 4.0))
-    ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True, snap=False)
+    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 2.0, 4.0))
+    ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
     ax.set_ylabel(PANELS[name])
     if name in PHASES:
         ax.set_ylim(phases_shown(y) if name == "accumulation" else (0.0, 1.0))

@@ -102,7 +102,7 @@ def scenarios() -> tuple[Any, dict[str, Any]]:
         ax.axhline(0.0, color="C0", lw=0.8, ls=":")
         title = "tr, det of A−: {:g}, {:g}; of A+: {:g}, {:g}".format(*values)
         ax.set(
-            title=f"{name} ({found.words})\n{title}",
+            title=f"{name}\n{found.words}\n{title}",
             xlabel="m",
             ylabel="x₁",
             xlim=(-1.0, 1.0),

@@ -24,6 +24,7 @@ SPEEDS = (358.0, 660.0, 700.0)
 STEP = 1e-4
 FLANK_NOSE = 1  # the corner at which the thesis cuts the circle of phases
 BOX = [[0.0, -60.0], [1.5, 60.0]]
+LOWEST, TOUCHING = 1e-12, 1e-18  # gaps that are drawn, and what stands for zero [m]
 
 
 @lru_cache(maxsize=1)
@@ -94,15 +95,17 @@ def _over_the_cam(rpm: float) -> tuple[Any, dict[str, Any]]:
     figure = Figure(figsize=(11, 6.5), layout="constrained")
     figure.suptitle(f"follower over the cam at {rpm:g} rpm, event-driven: one turn of the settled motion")
     grid = figure.add_gridspec(2, len(opened))
-    motion_panel(figure.add_subplot(grid[0, :]), scene, *turn)
+    motion_panel(figure.add_subplot(grid[0, :]), scene, turn[0] - 4.0 * T, *turn[1:])
     for k, (start, end) in enumerate(zip(opened, closed, strict=True)):
         ax = figure.add_subplot(grid[1, k])
         margin = 0.06 * (end - start)
         t, q, _ = sampled(run, start - margin, end + margin, hits)
-        ax.semilogy(t / T, np.where(q[:, 0] > 0.0, q[:, 0], np.nan), "C0-", lw=0.9)
-        ax.axvline(start / T, color="C2", lw=1.0, label="release")
-        ax.axvline(end / T, color="C3", lw=1.0, label="accumulation point")
-        ax.set(xlabel="time [periods]", ylim=(1e-12, None), xlim=((start - margin) / T, (end + margin) / T))
+        ax.semilogy(t / T - 4.0, np.maximum(q[:, 0], TOUCHING), "C0-", lw=0.9)
+        ax.axvline(start / T - 4.0, color="C2", lw=1.0, label="release")
+        ax.axvline(end / T - 4.0, color="C3", lw=1.0, label="accumulation point")
+        ax.set(xlabel="time [periods]", ylim=(LOWEST, None))
+        ax.set_xlim((start - margin) / T - 4.0, (end + margin) / T - 4.0)
+        ax.locator_params(axis="x", nbins=6)
         ax.set_title(f"sequence {k + 1}: gap", fontsize=10, loc="left")
         ax.grid(alpha=0.3)
         if k == 0:
