@@ -1,6 +1,6 @@
-"""Seconds for the studies of the cam-follower and for every figure of the thesis; how far time-stepping is off in them.
+"""Seconds for the studies of the cam-follower and for every figure of the thesis; how far time-stepping is off.
 
-python -m benchmarks.analysis [--jobs N] [--quick] [--only PART ..]      writes results.md and results.json beside this
+python -m benchmarks.analysis [--jobs N] [--quick] [--only PART ..]      writes results.md and results.json
 
 With --only the other parts stay as they were measured before.
 """
@@ -94,7 +94,7 @@ def row(study: str, jobs: int, f: Callable[[], Any]) -> dict[str, Any]:
 
 
 def figures() -> list[dict[str, Any]]:
-    """Seconds for each figure of the thesis with its data, kernels on disk; the second of two times where it is short."""
+    """Seconds for each figure of the thesis with its data, kernels on disk; the second time where it is short."""
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name in FIGURES:
