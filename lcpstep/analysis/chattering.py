@@ -30,7 +30,7 @@ Phases = dict[tuple[int, str, int], float]
 Places = tuple[Phases, Array]  # of the followed events, and of the corners
 FORGOTTEN = 4  # periods after which a motion that sticks has forgotten its start
 ROOT = 1e-12  # relative accuracy of a crossing
-AT_CORNER = 1e-11  # of the period: an event this near to a corner lies on it
+AT_CORNER = 1e-11  # of the period: a release this near to a corner lies on it
 REACHED = 1e-7  # of the period: how near the event must come to the corner at the parameter found
 APART = 1e-7  # of the parameter: crossings nearer to each other than this may be missed in pairs
 TWICE, NEIGHBOURS = 1e-9, 64  # crossings of one event this near are one; among so many at about one parameter
@@ -200,7 +200,8 @@ class _Followed:
         for event in at_a[0].keys() & at_b[0].keys():
             for c, (corner_a, corner_b) in enumerate(zip(at_a[1], at_b[1], strict=True)):
                 start, end = _distance(at_a[0][event], corner_a), _distance(at_b[0][event], corner_b)
-                if _off(start) * _off(end) <= 0.0 and abs(start - end) < 0.5 and _off(start) != _off(end):
+                off = _off(event, start), _off(event, end)
+                if off[0] * off[1] <= 0.0 and abs(start - end) < 0.5 and off[0] != off[1]:
                     p = self.located(event, c, a, b, start, end)
                     if p is not None:
                         found.append(Crossing(*event, c, p))
@@ -222,7 +223,7 @@ class _Followed:
             d = _distance(phase, self.corners(p)[c])
             return abs(d) - AT_CORNER if stays else d
 
-        stays = _off(start) == 0.0 or _off(end) == 0.0
+        stays = 0.0 in (_off(event, start), _off(event, end))
         try:
             p = float(brentq(distance, a, b, xtol=ROOT * abs(b), rtol=4.0 * np.finfo(float).eps))
             # Where it jumps once it has passed the corner, one side comes near
@@ -269,7 +270,8 @@ def plain(at: list[Places]) -> bool:
         return True
     phases = np.array([[found[event] for event in events] for found, _ in at])
     d = _distance(phases[:, :, None], np.array([corners for _, corners in at])[:, None, :])
-    d = np.where(np.abs(d) <= AT_CORNER, 0.0, d)
+    may_stay = np.array([event[1] == "release" for event in events])[:, None]
+    d = np.where(may_stay & (np.abs(d) <= AT_CORNER), 0.0, d)
     steps = _distance(d[1:], d[:-1])
     bend = SAFE * np.max(np.abs(np.diff(steps, axis=0)), axis=0)
     away = (np.min(np.abs(d), axis=0) > bend) & ((np.min(d, axis=0) > 0.0) | (np.max(d, axis=0) < 0.0))
@@ -286,6 +288,6 @@ def _distance(phase: Any, corner: Any) -> Any:
     return (phase - corner + 0.5) % 1.0 - 0.5
 
 
-def _off(distance: float) -> float:
+def _off(event: tuple[int, str, int], distance: float) -> float:
     """A distance of which rounding is taken for zero: a release may stay on a corner over a range of parameters."""
-    return 0.0 if abs(distance) <= AT_CORNER else distance
+    return 0.0 if event[1] == "release" and abs(distance) <= AT_CORNER else distance

@@ -34,6 +34,7 @@ CHATTERING = ("accumulation", "impacts")
 PHASES = ("phase", "accumulation")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 MISSING = "C3"
+NARROW = 0.25  # of the period
 FINE = 4000  # places along an axis that can be told apart
 
 
@@ -90,11 +91,11 @@ def overlaid(
 def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
     """Points of one panel."""
     x, y = thinned(*points(data, name))
-    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 1.2, 4.0))
+    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 2.0, 4.0))
     ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
     ax.set_ylabel(label(data, name))
     if name in PHASES:
-        ax.set_ylim(0.0, 1.0)
+        ax.set_ylim(phases_shown(y) if name == "accumulation" else (0.0, 1.0))
         corners(ax, data)
     if name == "impacts":
         ax.set_ylim(bottom=0.0)
@@ -108,6 +109,14 @@ def label(data: Any, name: str) -> str:
     if name in PLACES:
         return f"{labels[PLACES[name] * (len(labels) // 2)]}\non the section"
     return MODES.get(name, PANELS[name]) if data.attrs["modes"] else PANELS[name]
+
+
+def phases_shown(phases: np.ndarray) -> tuple[float, float]:
+    """Limits of an axis of phases: the whole period, or where all are in a small part of it, that part."""
+    low, high = (float(np.min(phases)), float(np.max(phases))) if len(phases) else (0.0, 1.0)
+    if high - low > NARROW:
+        return 0.0, 1.0
+    return max(0.0, low - 0.5 * (high - low) - 0.01), min(1.0, high + 0.5 * (high - low) + 0.01)
 
 
 def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -143,7 +152,7 @@ def corners(ax: Any, data: Any) -> None:
     values = data[str(data.attrs["parameter"])].values
     for k, phase in enumerate(data["corner_phase"].values.T):
         ax.plot(values, phase, color="C0", lw=0.6, alpha=0.7, zorder=0.5)
-        if len(LETTERS) > k and np.isfinite(phase[-1]):
+        if len(LETTERS) > k and ax.get_ylim()[0] <= phase[-1] <= ax.get_ylim()[1]:
             ax.annotate(
                 LETTERS[k], (1.0, phase[-1]), (4.0 + 9.0 * (k % 2), 0.0), xycoords=("axes fraction", "data"),
                 textcoords="offset points", color="C0", fontsize=8, va="center",

@@ -33,9 +33,10 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
         axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=_name(exact))
         axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=_name(fast))
         axes[2 * k].set(title=title, ylabel="position q [m]")
-        axes[2 * k].legend(loc="upper right", fontsize=8)
+        axes[2 * k].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8, frameon=False)
+        axes[2 * k].title.set(x=0.0, ha="left")
         distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]), "C3-", lw=0.7)
-        distance.set(ylabel="|difference| [m]", xlabel="time t [s]")
+        distance.set(ylabel="|Δq| [m]", xlabel="time t [s]")
         distance.set_ylim(bottom=max(c.sup_q, 1e-16) * DECADES)
         for ax in (axes[2 * k], distance):
             ax.set_xlim(exact.t[0], exact.t[-1])

@@ -28,6 +28,11 @@ def parameter_label(name: str) -> str:
     return "cam speed [rpm]" if name == "rpm" else f"{name} [{unit}]" if unit else name
 
 
+def names_of(scene: Any) -> tuple[str, str]:
+    """What moves, and what it strikes."""
+    return ("follower", "cam") if "rpm" in scene.parameters else ("body", "obstacle")
+
+
 def scene_words(scene: Any) -> str:
     """The scene, and how fast its cam turns; of a scene with modes the parameters, where they are few."""
     rpm = scene.parameters.get("rpm")

@@ -23,6 +23,7 @@ def found(rpm, method, n=40, seed=0, **settings):
 
 def test_time_stepping_names_the_two_orbits_at_358_5_rpm_as_event_driven_does():
     exact, stepped = found(358.5, EventDriven()), found(358.5, Moreau(h=1e-4))
+    assert exact.settings["tolerance"] == 1e-6
     assert {a.name for a in stepped.found} == {a.name for a in exact.found} == {"O(3, 8)", "O(1, 2)"}
     assert len(stepped.found) == 2
     shares = {a.name: a.share for a in exact.found}
