@@ -1,21 +1,26 @@
-"""Every direct dependency at its lower bound in pyproject.toml, one requirement a line, for pip.
+"""An environment with every direct dependency at its lower bound in pyproject.toml: .venv-lowest.
 
-python3 .ci/lowest.py test solvers     those of the package, and of the extras named
+python3 .ci/lowest.py
 """
 
 import re
 import sys
 import tomllib
+import venv
 from pathlib import Path
 
-PROJECT = Path(__file__).resolve().parent.parent / "pyproject.toml"
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+import start  # noqa: E402  (the file beside the project, which knows how to find a pip)
+
+EXTRAS = ("test", "solvers", "symbolic", "cluster")  # all but mpi, which needs an MPI library
 
 
-def lowest(extras: list[str]) -> list[str]:
-    """The package's dependencies and those of its extras, each once, with == in the place of >=."""
-    project = tomllib.loads(PROJECT.read_text())["project"]
+def lowest() -> list[str]:
+    """The dependencies of the package and of its extras, each once, with == in the place of >=."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     named = project["optional-dependencies"]
-    bounds = [*project["dependencies"], *(bound for extra in extras for bound in named[extra])]
+    bounds = [*project["dependencies"], *(bound for extra in EXTRAS for bound in named[extra])]
     return sorted({pinned(bound) for bound in bounds})
 
 
@@ -27,5 +32,16 @@ def pinned(bound: str) -> str:
     return f"{found[1]}=={found[2]}"
 
 
+def set_up(environment: Path) -> None:
+    """Make the environment afresh and install the project into it."""
+    start.ENVIRONMENT = environment
+    start.BIN = environment / start.BIN.name
+    venv.create(environment, clear=True)
+    constraints = environment / "lowest.txt"
+    constraints.write_text("\n".join(lowest()) + "\n")
+    extras = ",".join(EXTRAS)
+    start.install("--quiet", "--constraint", str(constraints), "--editable", f".[{extras}]")
+
+
 if __name__ == "__main__":
-    print("\n".join(lowest(sys.argv[1:])))
+    set_up(ROOT / ".venv-lowest")

@@ -127,6 +127,8 @@ class Scene(Pickled):
         return self.contacts.state(float(t), *state, np.array(self.p))
 
     def _check_parts(self) -> None:
+        if not isinstance(self.parameters, Mapping):
+            raise TypeError(f"parameters: expected names and values, got {self.parameters!r}")
         checks.instance("system", self.system, LinearSystem, System)
         if self.contacts is not None:
             checks.instance("contacts", self.contacts, LinearContacts, Contacts)

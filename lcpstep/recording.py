@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lagrangian import checks
 from lcpstep.compiled import by_address
 from lcpstep.trajectory import IMPACT_DTYPE
 
@@ -43,10 +44,10 @@ class Kept:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
             return cls(int(keep), False, nothing)
         try:
-            times = np.array(keep, dtype=float)
-        except (TypeError, ValueError):
+            times = np.array(checks.vector("keep", keep))
+        except ValueError:
             raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
-        if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
+        if np.ndim(keep) != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(

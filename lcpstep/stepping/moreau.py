@@ -52,6 +52,7 @@ class Moreau:
 
     Raises
     ------
+    TypeError   projected is neither True nor False
     ValueError   h or the tolerance is not positive, theta lies outside [0, 1], or the solver's name is unknown
     LcpStepError   a tolerance is given with another solver than "lemke"
     MissingSolver   the solver is not installed
@@ -73,6 +74,7 @@ class Moreau:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
         check_method(self.lcp)
+        checks.instance("projected", self.projected, bool)
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
             if self.lcp != "lemke":
