@@ -155,10 +155,10 @@ BLOCK = ("stick-slip-oscillator", "--set", "amplitude=0.3", "omega=0.9")
             ("orbit", *BLOCK, "--parameter", "omega", "--range", 0.85, 1.1, "--draw", "--transient", 60),
             "flip          at omega = 1.04123526", ["branch.nc", "branch.png", "orbit.png"],
         ),
-        (
-            ("basin", *STICKING, "--position", -1, 1, "--velocity", -1, 1, "--grid", 4, 4, "--longest", 30, "--sample",
-             4),
-            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"],
+        pytest.param(
+            ("basin", *STICKING, "--position", -1, 1, "--velocity", -1, 1, "--grid", 4, 4, "--longest", 30,
+             "--sample", 4),
+            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"], marks=pytest.mark.slow,
         ),
         (("orbit", "stick-slip-oscillator", "--mode", "stick", "--transient", 3), "period 8.06888787159", []),
     ],
