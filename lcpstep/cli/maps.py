@@ -33,9 +33,11 @@ def add(commands: Any) -> None:
         help="iterate a map given by a formula: diagram, exponent, periodic points, border collision",
         description="MAP is logistic, border-collision, grazing, piecewise-linear (with --A-minus and so on), or a "
         "Python file with a function image(x, parameters) and, if you like, derivative(x, parameters), PARAMETERS "
-        "and RANGES (by name), X0, and side(x, parameters), zero on a border between smooth pieces. Prints where the orbit settles, the largest Lyapunov exponent, periodic points "
-        "with their multipliers and, of piecewise-linear maps, the verdict on the border collision. --range makes a "
-        "bifurcation diagram; a run that was interrupted goes on with the same command.",
+        "and RANGES (by name), X0, and side(x, parameters), zero on a border between smooth pieces. Prints where the "
+        "orbit settles, the largest Lyapunov exponent, periodic points with their multipliers and, of "
+        "piecewise-linear maps, the verdict on the border collision. --range makes a bifurcation diagram; a run that "
+        "was interrupted goes on with the same command. --near finds where a fixed point meets the border, and "
+        "says what happens there.",
         epilog="Example: lcpstep map logistic --parameter r --range 2.8 4 --out out",
     )
     p.add_argument("map", metavar="MAP", help=f"one of: {', '.join(MAPS)}, {OWN}; or FILE.py")
@@ -67,7 +69,7 @@ def add(commands: Any) -> None:
         p.add_argument(f"--{name}", type=float, nargs="+", metavar="X", help=f"of {OWN}, row by row")
     p.add_argument(
         "--near", type=float, metavar="VALUE",
-        help="find the fixed point on the border of a file with `side`, from this value of --parameter, and classify it",
+        help="find where a fixed point meets the border of a file with `side`, from this value of --parameter on",
     )  # fmt: skip
     p.add_argument("--D", type=float, default=0.0, help=f"of {OWN} (0)")
     p.add_argument(
@@ -239,9 +241,8 @@ def _run_border(options: argparse.Namespace, family: Family) -> int:
     if options.json:
         print(json.dumps(result | {"local": matrices, "border_collision": verdict}, indent=2))
         return DONE
-    print(
-        f"{family.name}: the fixed point {_numbers(found.x.tolist())} meets the border at {parameter} = {found.p:.10g}"
-    )
+    point = _numbers(found.x.tolist())
+    print(f"{family.name}: the fixed point {point} meets the border at {parameter} = {found.p:.10g}")
     print("\n".join(_verdict_lines(verdict, f"{parameter} = {found.p:.6g}")))
     print(f"m = {parameter} - {found.p:.10g}; side > 0 is +")
     return DONE

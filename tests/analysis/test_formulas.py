@@ -336,7 +336,7 @@ PARAMETERS = {"a": 0.4, "k": %(k)r}
 X0 = [0.1, 0.0]
 
 
-def side(x, p):  # a curved border, which the fixed point (a - 1, 2 a - 2) meets where a = 1
+def side(x, p):  # a curved border, which the fixed point meets in the origin where a = 1
     return x[0] + 0.5 * x[0] * x[1]
 
 
