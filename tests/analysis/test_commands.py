@@ -218,3 +218,19 @@ def test_simulate_saves_states_modes_and_switches(capsys, tmp_path):
     assert set(saved["mode"]) == {"left", "right"}
     assert len(saved["switches"]) == 10
     assert (tmp_path / "run.png").stat().st_size > 1000
+
+
+def test_the_exponent_of_a_linear_oscillator_is_its_damping(capsys):
+    linear = ("driven-bilinear-oscillator", "--set", "left=2", "right=2", "damping=0.4", "omega=1.3")
+    status, out, _ = run(capsys, "lyapunov", *linear, "--transient", 5, "--periods", 400, "--json")
+    assert status == DONE
+    found = json.loads(out)
+    assert found["verdict"] == "not chaotic"
+    assert found["largest"] == pytest.approx(-0.2 * 2.0 * np.pi / 1.3, abs=5e-3)
+    chattering = run(capsys, "lyapunov", "cam-follower", "--rpm", 150, "--transient", 20, "--periods", 20)
+    assert "-inf" in chattering[1]
+    assert "all deviations vanish in 20 of 20 periods" in chattering[1]
+    for name, said in (("stick-slip-oscillator", "has no period"), ("bouncing-ball", "has no period")):
+        status, _, err = run(capsys, "lyapunov", name)
+        assert status == USAGE
+        assert said in err
