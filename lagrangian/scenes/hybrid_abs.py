@@ -33,7 +33,7 @@ SLOWEST = 1.0  # speed at which the full model stands [m/s]
 # Places in the parameters p
 TH1, TH2, TH3, INERTIA, MASS, RADIUS, GRAVITY, SPEED, RATE, T_MAX, T_MIN, SLIP_MAX, SLIP_MIN = range(13)
 SLIP, TORQUE, CAR_SPEED = range(3)  # places in the state
-LABELS = ("slip", "brake torque [N m]", "speed [m/s]")
+LABELS = ("slip [-]", "brake torque [N m]", "speed [m/s]")
 
 
 def friction(slip: float, p: Any) -> float:

@@ -13,6 +13,7 @@ import numpy as np
 from lcpstep.analysis.attractors import TOLERANCE, return_time
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify
 from lcpstep.analysis.fixed_points import PeriodicPoint
+from lcpstep.analysis.map_border import border_point
 from lcpstep.analysis.map_diagram import STARTS, Escaped, exponent, map_diagram, periodic_points, settled
 from lcpstep.cli.common import DONE, number
 from lcpstep.cli.studies import PARTS, files, finish, parts_bar, stopped
@@ -32,9 +33,11 @@ def add(commands: Any) -> None:
         help="iterate a map given by a formula: diagram, exponent, periodic points, border collision",
         description="MAP is logistic, border-collision, grazing, piecewise-linear (with --A-minus and so on), or a "
         "Python file with a function image(x, parameters) and, if you like, derivative(x, parameters), PARAMETERS "
-        "and RANGES (by name), X0. Prints where the orbit settles, the largest Lyapunov exponent, periodic points "
-        "with their multipliers and, of piecewise-linear maps, the verdict on the border collision. --range makes a "
-        "bifurcation diagram; a run that was interrupted goes on with the same command.",
+        "and RANGES (by name), X0, and side(x, parameters), zero on a border between smooth pieces. Prints where the "
+        "orbit settles, the largest Lyapunov exponent, periodic points with their multipliers and, of "
+        "piecewise-linear maps, the verdict on the border collision. --range makes a bifurcation diagram; a run that "
+        "was interrupted goes on with the same command. --near finds where a fixed point meets the border, and "
+        "says what happens there.",
         epilog="Example: lcpstep map logistic --parameter r --range 2.8 4 --out out",
     )
     p.add_argument("map", metavar="MAP", help=f"one of: {', '.join(MAPS)}, {OWN}; or FILE.py")
@@ -64,6 +67,10 @@ def add(commands: Any) -> None:
     )  # fmt: skip
     for name in MATRICES:
         p.add_argument(f"--{name}", type=float, nargs="+", metavar="X", help=f"of {OWN}, row by row")
+    p.add_argument(
+        "--near", type=float, metavar="VALUE",
+        help="find where a fixed point meets the border of a file with `side`, from this value of --parameter on",
+    )  # fmt: skip
     p.add_argument("--D", type=float, default=0.0, help=f"of {OWN} (0)")
     p.add_argument(
         "--seed", type=int, default=0, help="of the points that periodic ones are looked for from (0)"
@@ -78,6 +85,8 @@ def add(commands: Any) -> None:
 def run_map(options: argparse.Namespace) -> int:
     """`lcpstep map`."""
     family = family_of(options)
+    if options.near is not None:
+        return _run_border(options, family)
     if options.range is not None:
         return _run_diagram(options, family)
     result = _described(options, family)
@@ -202,20 +211,48 @@ def _text(r: dict[str, Any]) -> str:
         lines.append(f"period {p['period']}, {kind}: {points}   multipliers {multipliers}")
     if not r["periodic"]:
         lines.append("no periodic points found; --box and --periods say where and which")
-    border = r.get("border_collision")
-    if border:
-        lines.append(f"border collision at m = 0: {border['verdict']}")
-        for sign in ("m < 0", "m > 0"):
-            fixed = " and ".join(
-                f"x{'-' if side == 'minus' else '+'}" for side in border["fixed_points"][sign]
-            )
-            two = ", an orbit of period two" if border["period_two"][sign] else ""
-            lines.append(f"  {sign}: {f'fixed point {fixed}' if fixed else 'no fixed point'}{two}")
+    if "border_collision" in r:
+        lines += _verdict_lines(r["border_collision"], "m = 0")
     return "\n".join(lines)
+
+
+def _verdict_lines(border: dict[str, Any], where: str) -> list[str]:
+    """The verdict, and what there is on both sides."""
+    lines = [f"border collision at {where}: {border['verdict']}"]
+    for sign in ("m < 0", "m > 0"):
+        fixed = " and ".join(f"x{'-' if side == 'minus' else '+'}" for side in border["fixed_points"][sign])
+        two = ", an orbit of period two" if border["period_two"][sign] else ""
+        lines.append(f"  {sign}: {f'fixed point {fixed}' if fixed else 'no fixed point'}{two}")
+    return lines
 
 
 def _numbers(x: list[float]) -> str:
     return f"({', '.join(f'{y:.10g}' for y in x)})"
+
+
+def _run_border(options: argparse.Namespace, family: Family) -> int:
+    """The border collision of a fixed point, and what it leads to."""
+    parameter = _parameter(options, family)
+    found = border_point(family, parameter, options.near, options.x0)
+    verdict = _verdict(classify(found.map))
+    names = ("A_minus", "A_plus", "B_minus", "B_plus", "C")
+    matrices = {name: np.asarray(getattr(found.map, name)).tolist() for name in names} | {"D": found.map.D}
+    result = {"map": family.name, "parameter": parameter, "value": found.p, "x": found.x.tolist()}
+    if options.json:
+        print(json.dumps(result | {"local": matrices, "border_collision": verdict}, indent=2))
+        return DONE
+    point = _numbers(found.x.tolist())
+    print(f"{family.name}: the fixed point {point} meets the border at {parameter} = {found.p:.10g}")
+    print("\n".join(_verdict_lines(verdict, f"{parameter} = {found.p:.6g}")))
+    print(f"m = {parameter} - {found.p:.10g}; side > 0 is +")
+    return DONE
+
+
+def _parameter(options: argparse.Namespace, family: Family) -> str:
+    """The parameter that varies."""
+    if not family.parameters:
+        raise ValueError(f"--range, --near: {family.name} has no parameters")
+    return str(options.parameter or next(iter(family.parameters)))
 
 
 def _run_diagram(options: argparse.Namespace, family: Family) -> int:
@@ -224,9 +261,7 @@ def _run_diagram(options: argparse.Namespace, family: Family) -> int:
         raise ValueError(f"--range: expected LOW < HIGH, got {low:g} {high:g}")
     if options.points < 1:
         raise ValueError(f"--points: expected a positive number, got {options.points}")
-    if not family.parameters:
-        raise ValueError(f"--range: {family.name} has no parameters")
-    parameter = options.parameter or next(iter(family.parameters))
+    parameter = _parameter(options, family)
     names = files(options, "map")
     with parts_bar(f"{parameter} {low:g} .. {high:g}") as progress:
         data = map_diagram(

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from lagrangian import HybridScene
 from lcpstep import dataset
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
@@ -56,7 +57,11 @@ def study_scene(options: argparse.Namespace, **more: Any) -> Any:
         if options.scene != "cam-follower":
             raise ValueError("--rpm: only the cam-follower turns")
         more["rpm"] = options.rpm
-    return scene_of(options, **more)
+    scene = scene_of(options, **more)
+    stepping = options.method == "moreau" or bool(getattr(options, "compare", None))
+    if isinstance(scene, HybridScene) and stepping:
+        raise ValueError(f"--method, --compare: {scene.name!r} has modes, and is run by event-driven alone")
+    return scene
 
 
 def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:

@@ -45,6 +45,7 @@ class Family:
     derivative : function derivative(x, parameters) giving (d, d), or None: differences
     ranges : (lowest, highest) value that makes sense, by name; others are refused
     about : in one line
+    side : function side(x, parameters) giving a number, zero on the border between two smooth pieces, or None
     border : function (parameters) giving A_minus, A_plus (d, d), B_minus, B_plus, C (d,), D of a piecewise-linear map
     source : what the functions are made of, as a text; a diagram that was interrupted goes on with the same only
 
@@ -63,9 +64,10 @@ class Family:
     about: str = ""
     border: Callable[[Numbers], dict[str, Any]] | None = None
     source: str = ""
+    side: Callable[[Array, Numbers], Any] | None = None
 
     def __post_init__(self) -> None:
-        for name, f in ((FUNCTION, self.image), ("derivative", self.derivative)):
+        for name, f in ((FUNCTION, self.image), ("derivative", self.derivative), ("side", self.side)):
             if f is not None:
                 _takes_two(f"{self.name}: {name}", f)
         object.__setattr__(self, "x0", checks.vector("x0", self.x0))
@@ -80,6 +82,8 @@ class Family:
         self.point(x)
         if self.derivative is not None:
             self.jacobian(x)
+        if self.side is not None:
+            self.border_value(x)
 
     def at(self, **values: float) -> FormulaMap:
         """The map at these values of parameters, the others as they are."""
@@ -101,6 +105,11 @@ class Family:
         assert self.derivative is not None
         d = len(np.asarray(self.x0))
         return self._checked("derivative", self.derivative, x, (d, d))
+
+    def border_value(self, x: Array) -> float:
+        """The function of the border at x, checked."""
+        assert self.side is not None
+        return float(self._checked("side", self.side, x, (1,))[0])
 
     def _checked(
         self, name: str, f: Callable[[Array, Numbers], Any], x: Array, shape: tuple[int, ...]
@@ -258,7 +267,7 @@ def named(name: str) -> Family:
 
 
 def from_file(file: Path) -> Family:
-    """The family of a Python file: its function `image`, and where it has them `derivative`, PARAMETERS, RANGES, X0.
+    """The family of a Python file: its function `image`, and where it has them `derivative`, `side`, PARAMETERS, ..
 
     Raises
     ------
@@ -284,4 +293,5 @@ def from_file(file: Path) -> Family:
     return Family(
         file.stem, module.image, get("X0", [0.0]), get("PARAMETERS", {}), get("derivative"), get("RANGES", {}),
         about=(module.__doc__ or "").strip().split("\n")[0], source=file.read_text(),
+        side=get("side"),
     )  # fmt: skip

@@ -107,7 +107,8 @@ def label(data: Any, name: str) -> str:
     """What a panel shows, with its unit; states by their own names, and switches where a scene has modes."""
     labels = data.attrs["labels"]
     if name in PLACES:
-        return f"{labels[PLACES[name] * (len(labels) // 2)]}\non the section"
+        words, bracket, unit = labels[PLACES[name] * (len(labels) // 2)].partition(" [")
+        return f"{words}\non the section{bracket}{unit}"
     return MODES.get(name, PANELS[name]) if data.attrs["modes"] else PANELS[name]
 
 

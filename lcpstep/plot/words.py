@@ -9,6 +9,7 @@ from lcpstep.dataset import UNITS
 
 DPI = 150
 FEW = 6  # parameters that a title has room for
+LONG = 90  # characters of a line of it
 
 
 def method_words(method: Any) -> str:
@@ -44,4 +45,5 @@ def scene_words(scene: Any) -> str:
 
 def title_of(scene: Any, what: str, method: Any) -> str:
     """Scene, what is shown, and by which method."""
-    return f"{scene_words(scene)}: {what}; {method_words(method)}"
+    words, more = scene_words(scene), f"{what}; {method_words(method)}"
+    return f"{words}: {more}" if len(words) + len(more) < LONG else f"{words}\n{more}"

@@ -325,3 +325,54 @@ def test_every_ready_map_runs_from_its_defaults(capsys):
         assert run(capsys, name, "--keep", 60)[0] == DONE
     with pytest.raises(UnknownName):
         named("tent")
+
+
+# --- border collisions of a map of one's own
+
+
+BENT = """import math
+
+PARAMETERS = {"a": 0.4, "k": %(k)r}
+X0 = [0.1, 0.0]
+
+
+def side(x, p):  # a curved border, which the fixed point meets in the origin where a = 1
+    return x[0] + 0.5 * x[0] * x[1]
+
+
+def image(x, p):
+    m, slope = p["a"] - 1.0, %(minus)r if side(x, p) < 0 else %(plus)r
+    bend = slope * side(x, p)
+    return [m + bend + x[1] + p["k"] * x[0] * x[1], -0.3 * x[0] + p["k"] * math.sin(x[1]) ** 2]
+"""
+
+
+@pytest.mark.parametrize(("minus", "plus"), [(0.4, -1.6), (0.3, -0.6), (1.6, 0.2), (-1.5, 0.5), (0.1, -2.9)])
+@pytest.mark.parametrize("k", [0.0, 0.2])
+def test_the_border_of_ones_own_map_is_found_and_classified(capsys, tmp_path, minus, plus, k):
+    file = tmp_path / "bent.py"
+    file.write_text(BENT % {"minus": minus, "plus": plus, "k": k})
+    status, out, _ = run(capsys, file, "--parameter", "a", "--near", 0.8, "--json")
+    assert status == DONE
+    found = json.loads(out)
+    assert found["value"] == pytest.approx(1.0, abs=1e-10)
+    assert found["x"] == pytest.approx([0.0, 0.0], abs=1e-10)
+    # side = x1 + .. at the origin, where bend = slope x1: companion matrices of trace `slope`, determinant 0.3
+    for name, slope in (("A_minus", minus), ("A_plus", plus)):
+        np.testing.assert_allclose(found["local"][name], [[slope, 1.0], [-0.3, 0.0]], atol=1e-8)
+    for name in ("B_minus", "B_plus", "C"):
+        assert found["local"][name] == pytest.approx([1.0, 0.0], abs=1e-8)
+    values = {"tau_minus": minus, "delta_minus": 0.3, "tau_plus": plus, "delta_plus": 0.3}
+    settings = [f"{name}={x}" for name, x in values.items()]
+    expected = json.loads(run(capsys, "border-collision", "--set", *settings, "--json")[1])
+    assert found["border_collision"] == expected["border_collision"]
+
+
+def test_a_map_without_a_border_is_named(capsys, tmp_path):
+    status, _, err = run(capsys, "logistic", "--near", 3)
+    assert status == USAGE
+    assert "logistic: has no border; give a function side(x, parameters)" in err
+    file = tmp_path / "own.py"
+    file.write_text("def side(x):\n    return x[0]\n\n\ndef image(x, p):\n    return x\n")
+    with pytest.raises(ValueError, match=r"side: expected a function of two arguments"):
+        from_file(file)
