@@ -239,7 +239,7 @@ def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:
         cells, landed = cells[~settled], landed[~settled]
 
 
-def homogeneous(label: Ints) -> Ints:
+def homogeneous(label: NDArray[Any]) -> NDArray[Any]:
     """The label of cells that share it with their eight neighbours, UNKNOWN elsewhere and at the edge."""
     result = np.full_like(label, UNKNOWN)
     level = (label[:, 1:-1] == label[:, :-2]) & (label[:, 1:-1] == label[:, 2:])
