@@ -210,8 +210,9 @@ def main() -> None:
         "impacts": impacts, "sweeps": lambda: sweeps(options.jobs, options.quick), "figures": figures,
         "lockstep": lockstep, "agreement": lambda: agreement(options.quick),
     }  # fmt: skip
-    results |= {name: measure[name]() for name in options.only}
-    file.write_text(json.dumps(results, indent=1))
+    for name in options.only:
+        results[name] = measure[name]()
+        file.write_text(json.dumps(results, indent=1))
     file.with_suffix(".md").write_text(report(results))
     print(report(results))
 

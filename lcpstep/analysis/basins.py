@@ -237,26 +237,26 @@ def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:
     """
     unlabelled = label[cells] == UNKNOWN
     cells, landed = cells[unlabelled], landed[unlabelled]
+    small = label.astype(np.int16)  # a quarter of what has to be read again and again
     while len(cells):
-        inner = np.append(homogeneous(label.reshape(grid.n_v, grid.n_q)).ravel(), UNKNOWN)
+        inner = np.append(homogeneous(small.reshape(grid.n_v, grid.n_q)).ravel(), np.int16(UNKNOWN))
         fates = inner[landed]
         fate = np.max(fates, axis=1)  # where several images are settled, they are on one attractor
         settled = fate >= 0
         if not np.any(settled):
             return
-        label[cells[settled]] = fate[settled]
+        label[cells[settled]] = small[cells[settled]] = fate[settled]
         cells, landed = cells[~settled], landed[~settled]
 
 
-def homogeneous(label: Ints) -> Ints:
+def homogeneous(label: NDArray[Any]) -> NDArray[Any]:
     """The label of cells that share it with their eight neighbours, UNKNOWN elsewhere and at the edge."""
-    result = np.full(label.shape, UNKNOWN)
-    same = np.ones((label.shape[0] - 2, label.shape[1] - 2), dtype=bool)
-    middle = label[1:-1, 1:-1]
-    for i in range(3):
-        for k in range(3):
-            same &= label[i : i + same.shape[0], k : k + same.shape[1]] == middle
-    result[1:-1, 1:-1] = np.where(same & (middle >= 0), middle, UNKNOWN)
+    result = np.full_like(label, UNKNOWN)
+    level = (label[:, 1:-1] == label[:, :-2]) & (label[:, 1:-1] == label[:, 2:])
+    upright = label[1:-1, 1:-1]
+    same = level[1:-1] & level[:-2] & level[2:]
+    same &= (upright == label[:-2, 1:-1]) & (upright == label[2:, 1:-1]) & (upright >= 0)
+    result[1:-1, 1:-1][same] = upright[same]
     return result
 
 

@@ -54,10 +54,9 @@ def _plane(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
         ax.plot(cycle.slip, cycle.torque, "ko", ms=4)
         for state, s, T in zip(cycle.states, cycle.slip, cycle.torque, strict=True):
             ax.annotate(state, (s, T), (3.0, 4.0), textcoords="offset points", fontsize=9)
-    ax.set(
-        xlabel="slip λ [-]", ylabel="brake torque T [N m]", xlim=(0.0, 1.0), ylim=(0.0, 1.15 * float(scene.p[T_MAX]))
-    )  # fmt: skip
-    _above(ax, "states entered")
+    ax.set(xlabel="slip λ [-]", ylabel="brake torque T [N m]", xlim=(0.0, 1.0))
+    ax.set_ylim(0.0, 1.15 * float(np.asarray(scene.p)[T_MAX]))
+    _above(ax, "")
     ax.grid(alpha=0.3)
 
 

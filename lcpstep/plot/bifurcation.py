@@ -91,7 +91,7 @@ def overlaid(
 def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
     """Points of one panel."""
     x, y = thinned(*points(data, name))
-    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 2.0, 4.0))
+    size = larger * float(np.clip(2400.0 / len(data[str(data.attrs["parameter"])]), 2.5, 4.0))
     ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
     ax.set_ylabel(label(data, name))
     if name in PHASES:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -217,7 +218,7 @@ def carried(chain: PiecewiseLinearMap, error: dict[str, float]) -> NormalForm:
         for index in np.ndindex(value.shape):
             moved = value.copy()
             moved[index] += PROBE * error[name]
-            entry = float(moved[0]) if name == "D" else moved
+            entry: Any = float(moved[0]) if name == "D" else moved
             for total, a, b in zip(off, normal_form(replace(chain, **{name: entry})), base, strict=True):
                 total += np.abs(a - b) / PROBE
     return NormalForm(*(x + ROUNDING * np.max(np.abs(y)) for x, y in zip(off, base, strict=True)))

@@ -33,7 +33,9 @@ CONTRADICTED = {
     4: "The accumulation points printed as 119.72 and 136.38 rpm are 0.0075 and 0.068 rpm off where the located "
     "event lies on the corner; sequences summed hop by hop in 110 digits have it at 119.712481039598 and "
     "136.312372392874 (`tests/cam_sequences.py`). O(2, 2), born at the flip, ends at once in a corner impact; "
-    "the chaotic attractor that follows it grows at 740.14 rpm or before.",
+    "the chaotic attractor that follows it grows at 740.13 rpm or before. "
+    "Isolated columns of the diagram 357.5-361.5 rpm are no transients: at 358.4524 and 359.1441 rpm "
+    "orbits of 23 and 11 periods, with one complete chattering sequence each, attract some of the starts.",
     5: "1.0052 and 0.4120 are off in their last digit: 1.00515 and 0.41207 follow from the period in closed "
     "form, by 40 digits. The normal form is y -> Ã± y + B̃ m with y = W x + (shift, 0) m and the border at y₁ "
     "= 0, W that of the observer form: continuity makes B̃ one vector for both sides. det Ã± = r² = 0.64, as "

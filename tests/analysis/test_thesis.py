@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from lcpstep.analysis.border_collision import diagram
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
 from lcpstep.thesis import FIGURES, cams, controller, maps
@@ -90,6 +91,26 @@ def test_scenarios_are_continuous_maps_with_the_matrices_they_name():
         for A, (trace, det) in ((f.A_minus, values[:2]), (f.A_plus, values[2:])):
             assert np.trace(A) == pytest.approx(trace)
             assert np.linalg.det(A) == pytest.approx(det, abs=1e-12)
+
+
+@pytest.mark.parametrize(("name", "values"), SCENARIOS.items())
+def test_scenarios_lead_to_what_they_are_named_for(name, values):
+    f, points = normal_form(*values), {"fixed point": 1, "period two": 2, "period three": 3}
+    for m, end in zip((-1.0, 1.0), name.split(" to "), strict=True):
+        (found,) = diagram(f, [m], drop=3000, keep=1500)
+        if end == "nothing":
+            assert len(found) == 0
+            continue
+        seen = len(np.unique(np.round(found, 9), axis=0))
+        assert seen == points.get(end, seen)
+        if end == "chaos":
+            direction, growth = np.array([1.0, 0.0]), 0.0
+            for x in found:
+                direction = (f.A_minus if f.C @ x + f.D * m < 0.0 else f.A_plus) @ direction
+                growth += np.log(np.linalg.norm(direction))
+                direction /= np.linalg.norm(direction)
+            assert growth / len(found) > 0.02
+            assert seen > 1000
 
 
 @pytest.mark.parametrize(
