@@ -40,4 +40,19 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located", "located-4", "located-exact", "moreau"),
     ),
+    "lifted off a corner, far from time zero": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(-0.193, 2.24), v0=(0.0, 0.0), t_span=(7140.0, 7140.0565), h=0.0565,
+            G=((1.0, 0.0), (0.0, -1.0)), offset=(0.193, 2.24), restitution=(0.0, 1.0),
+            K=((0.486, -0.119), (-0.119, 0.303)), constant=(-1.61, -0.347),
+        ),
+        ("located-tolerance", "located-4-tolerance", "moreau-tolerance"),
+    ),
+    "sliding on for thousands of steps": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(1.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 20.0), h=0.05, G=((0.0, 1.0),),
+            offset=(0.0,), restitution=0.5, K=((9.0, 0.0), (0.0, 0.0)), constant=(0.0, -9.81),
+        ),
+        ("located-tolerance",),
+    ),
 }  # fmt: skip
