@@ -165,7 +165,7 @@ class Attempts:
         self.saved = [a.copy() for a in self.arrays]
         self.row, self.under_way = record.rows[0].copy(), False
         control.real[SIZE_Q], control.real[SIZE_V] = largest(w.vec[Q]), largest(w.vec[V])
-        x[PAUSING] = 1.0
+        x[PAUSING], w.num[LAST] = 1.0, -1.0
 
     def attempts(self) -> int:
         """Take steps until the end of the span, full buffers, or a step that cannot be taken."""
@@ -269,6 +269,9 @@ class Attempts:
     def carry_on(self, start: float, anew: bool, close: float) -> None:
         """Begin a part at an offset: a step `anew`; else what has just fired has done so now."""
         x, last = self.x, self.w.num[LAST]
+        anew = (
+            anew and x[SIGMA] != 0.0
+        )  # after an event at its very beginning a step goes on: it is not forgotten
         x[UNDER_WAY] = 0.0 if anew else 1.0
         if anew:
             return
