@@ -55,4 +55,13 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-tolerance",),
     ),
+    "touched at the very beginning of a step": (
+        Description(
+            M=((0.662, 0.269), (0.269, 3.69)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.0135), h=0.0135,
+            G=((1.6, 0.4), (0.6, 0.5), (1.6, 0.4), (2.2, 0.9), (8.2, 3.1)),
+            offset=(0.0182, 0.0258, 0.0, 0.0626, 0.013877113161323678), restitution=(0.33, 0.37, 0.0, 0.26, 1.0),
+            amplitude=(0.194, 0.0, 0.194, 0.194, 0.194), phase=(0.0, 0.0, 0.0, 0.0, 3.07), omega=3.42,
+        ),
+        ("located-4-tolerance",),
+    ),
 }  # fmt: skip

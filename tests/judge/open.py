@@ -20,7 +20,7 @@ OPEN: dict[str, frozenset[str]] = {
     ),
     "located-exact": frozenset({LOG, HANG, SLOW, NO_STATES, IN_TWO}),
     "located-tolerance": frozenset({LOG, HANG, SLOW, LAW}),
-    "located-4-tolerance": frozenset({LOG, SLOW, LAW}),
+    "located-4-tolerance": frozenset({LOG, LAW}),
     "moreau": frozenset({NO_STATES}),
     "moreau-tolerance": frozenset({OTHER_EVENTS}),
 }
