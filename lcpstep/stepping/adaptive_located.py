@@ -112,6 +112,36 @@ def weigh(
     return judge(control, failed, apart_q, apart_v, q, v, happened, cut)
 
 
+def load(
+    num: Any,
+    mark: Any,
+    W: Any,
+    num_before: Any,
+    rows: Any,
+    row_before: Any,
+    place: int,
+    force: Any,
+    impulse: Any,
+) -> None:
+    """Kernel: mean forces that would keep each contact closed over the last piece, impulses since the step began.
+
+    `rows`: kept since, the first of them, which was `row_before`, before; impulses stand in them from `place` on.
+    """
+    for c in range(len(force)):
+        force[c] = num[FORCE_NOW, c]
+        if mark[STATUS, c] != CLOSED:
+            pull = num[ALPHA, c]
+            for d in range(len(force)):
+                if mark[STATUS, d] == CLOSED:
+                    pull += W[c, d] * num[FORCE_NOW, d]
+            force[c] = -pull / W[c, c] if W[c, c] > 0.0 else math.nan
+        impulse[c] = num[IMPULSE, c] - num_before[IMPULSE, c]
+        if len(rows) > 0:
+            impulse[c] -= row_before[place + c]
+        for k in range(len(rows)):
+            impulse[c] += rows[k, place + c]
+
+
 class Attempts:
     """A run of `Located` as `adaptive.advance` wants it.
 
@@ -130,12 +160,13 @@ class Attempts:
         self.sized = plan.trapezoidal and plan.stiff and not plan.small  # matrices are those of whole steps
         self.prepared: dict[int, Prepared] = {}
         self.taken = w  # the work space with the responses of the last part
-        self.weigh = compiled(weigh) if fast else weigh
+        self.weigh: Callable[..., int] = compiled(weigh) if fast else weigh
+        self.load: Callable[..., None] = compiled(load) if fast else load
         self.arrays = [w.vec, w.num, w.mark, x, count] + ([] if plan.constant else [w.G, w.MG, w.W, w.M])
         self.saved = [a.copy() for a in self.arrays]
         self.row, self.under_way = record.rows[0].copy(), False
         control.real[SIZE_Q], control.real[SIZE_V] = largest(w.vec[Q]), largest(w.vec[V])
-        x[PAUSING] = 1.0
+        x[PAUSING], w.num[LAST] = 1.0, -1.0
 
     def attempts(self) -> int:
         """Take steps until the end of the span, full buffers, or a step that cannot be taken."""
@@ -162,8 +193,14 @@ class Attempts:
 
     def attempt(self) -> tuple[int, int]:
         """One step, then two halves of it: the last code of the loop, and the verdict."""
-        c, start, end = self.control, float(self.control.real[INTO]), self.end()
-        until, entire = math.inf, end == step_size(c, int(c.whole[LEVEL]))
+        c = self.control
+        self.base, self.goal, self.h = (
+            float(base(c)),
+            float(goal(c)),
+            float(step_size(c, int(c.whole[LEVEL]))),
+        )
+        start, end = float(c.real[INTO]), self.end()
+        until, entire = math.inf, end == self.h
         for _ in range(4):
             one, half, two = self.compare(start, end, entire, until)
             if two.code != STOPPED or two.time in (until, 0.0):
@@ -193,11 +230,11 @@ class Attempts:
 
         `start`, `end`: since the base of the step, whose end this is where it is `entire`.
         """
-        last, even = goal(self.control) if entire else base(self.control) + end, entire and start == 0.0
+        last, even = self.goal if entire else self.base + end, entire and start == 0.0
         one = self.led(self.part((start, end), last, even and until == math.inf, until, 0))
         self.undo()
         middle = start + 0.5 * (end - start)
-        half = two = self.led(self.part((start, middle), base(self.control) + middle, even, 0.0, 1))
+        half = two = self.led(self.part((start, middle), self.base + middle, even, 0.0, 1))
         if half.code == FINISHED:
             two = self.led(self.part((middle, end), last, even, 0.0, 1))
             two = two._replace(time=middle - start + two.time)
@@ -205,12 +242,10 @@ class Attempts:
 
     def end(self) -> float:
         """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
-        c = self.control
-        end = step_size(c, int(c.whole[LEVEL]))
         if len(self.plan.corners) == 0:
-            return end
-        corner = find_corners(self.plan, now(c))[1]
-        return corner - base(c) if corner < goal(c) - self.plan.margin else end
+            return self.h
+        corner = find_corners(self.plan, now(self.control))[1]
+        return float(corner - self.base) if corner < self.goal - self.plan.margin else self.h
 
     def part(self, offsets: Offsets, last: float, even: bool, until: float, halved: int) -> int:
         """A part of a step, in a single piece up to a time if that is not 0; `even` where it is as long as a level's.
@@ -227,7 +262,7 @@ class Attempts:
         self.taken = w
         x[UNCHANGED], x[BLIND], x[GOAL] = 0.0, until, last
         self.carry_on(start, even and start == 0.0, COLLAPSE * p.h)
-        code = self.step(p, w, base(self.control))
+        code = self.step(p, w, self.base)
         if code == FINISHED:  # a contact's flight is followed without counting times
             x[SIGMA] = end
         self.elapsed = x[SIGMA] - start
@@ -236,6 +271,9 @@ class Attempts:
     def carry_on(self, start: float, anew: bool, close: float) -> None:
         """Begin a part at an offset: a step `anew`; else what has just fired has done so now."""
         x, last = self.x, self.w.num[LAST]
+        anew = (
+            anew and x[SIGMA] != 0.0
+        )  # after an event at its very beginning a step goes on: it is not forgotten
         x[UNDER_WAY] = 0.0 if anew else 1.0
         if anew:
             return
@@ -247,10 +285,9 @@ class Attempts:
 
     def in_time(self, entire: bool) -> None:
         """Nothing of a step comes after the multiple that it ends at, by rounding."""
-        c = self.control
-        end, last = base(c) + step_size(c, int(c.whole[LEVEL])), goal(c)
-        if entire and end > last:
+        if entire and self.base + self.h > self.goal:
             rows, events = (int(self.saved[4][k]) for k in (ROW, EVENT))
+            last = self.goal
             stamp(self.record, rows, int(self.count[ROW]), events, int(self.count[EVENT]), last, last)
 
     def led(self, code: int) -> Led:
@@ -260,7 +297,7 @@ class Attempts:
         if self.rough:
             gap, half = w.num[GAP].copy(), w.num[HALF].copy()
         if self.saved[3][CLOSED_NOW] > 0.0 and code in GOOD:
-            force, impulse = self.forces(), self.impulses()
+            force, impulse = self.loads()
         v = w.vec[V_STRUCK if code == STOPPED and self.x[BLIND] == 0.0 else V]
         closed = w.mark[STATUS] == CLOSED
         return Led(code, self.elapsed, w.vec[Q].copy(), v.copy(), gap, half, closed, force, impulse)
@@ -278,15 +315,17 @@ class Attempts:
                 deepest = max(deepest, error)
         return deepest
 
-    def forces(self) -> Array:
-        """Mean forces that would keep each contact closed over the last piece; unknown where it opened at its end."""
-        w, W = self.w, self.mobilities()
-        closed = w.mark[STATUS] == CLOSED
-        pressing = np.where(closed, w.num[FORCE_NOW], 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            force = np.where(closed, pressing, -(w.num[ALPHA] + W @ pressing) / np.diag(W))
-        force[self.opened_at_end()] = math.nan
-        return force
+    def loads(self) -> tuple[Array, Array]:
+        """Forces of the contacts over the last piece, unknown where one opens at its end; impulses of the step."""
+        n_c, first, last = self.w.num.shape[1], max(int(self.saved[4][ROW]) - 1, 0), int(self.count[ROW])
+        force, impulse = np.empty(n_c), np.empty(n_c)
+        rows, place = self.record.rows[first:last], LEAD + 2 * self.w.vec.shape[1]
+        self.load(
+            self.w.num, self.w.mark, self.mobilities(), self.saved[1], rows, self.row, place, force, impulse
+        )
+        if self.count[EVENT] > self.saved[4][EVENT]:
+            force[self.opened_at_end()] = math.nan
+        return force, impulse
 
     def opened_at_end(self) -> list[int]:
         """Contacts that have opened at the end of a piece, with a velocity, and not at its beginning."""
@@ -296,13 +335,6 @@ class Attempts:
     def mobilities(self) -> Array:
         """How the contacts' accelerations answer their forces, over the last piece."""
         return self.taken.WA[int(self.x[MADE_WITH])] if self.means and self.plan.constant else self.w.W
-
-    def impulses(self) -> Array:
-        """Of the contacts, since the start of the step."""
-        first, last, n_c = max(int(self.saved[4][ROW]) - 1, 0), int(self.count[ROW]), self.w.num.shape[1]
-        place = slice(LEAD + 2 * self.w.vec.shape[1], LEAD + 2 * self.w.vec.shape[1] + n_c)
-        kept = self.record.rows[first:last, place].sum(axis=0) - (self.row[place] if last > first else 0.0)
-        return np.asarray(self.w.num[IMPULSE] - self.saved[1][IMPULSE] + kept)
 
     def wrong(self, one: Led, half: Led, two: Led, length: float) -> float:
         """Error of the velocity by contacts that were closed, see `adaptive_forces`."""

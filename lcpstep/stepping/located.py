@@ -396,8 +396,11 @@ class _Run:
     def between(
         self, t: Array, q: Array, v: Array, jumps: NDArray[np.bool_], q_end: Array, v_end: Array
     ) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time: from the kept ones where these tell, by another run where they do not."""
-        if self.method.order == 2:
+        """States at any time: from the kept ones where these tell, by another run where they do not.
+
+        Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
+        """
+        if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
             return Bent(t, q, v, self.kept.all, jumps)
         return Again(self.method, self.scene, q_end, v_end)
 

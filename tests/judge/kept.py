@@ -63,5 +63,28 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
             general=True, spread=0.409, pendulum=1.64, b=(-0.792, -1.03, 0.765),
         ),
         ("event-driven",),
+    "lifted off a corner, far from time zero": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(-0.193, 2.24), v0=(0.0, 0.0), t_span=(7140.0, 7140.0565), h=0.0565,
+            G=((1.0, 0.0), (0.0, -1.0)), offset=(0.193, 2.24), restitution=(0.0, 1.0),
+            K=((0.486, -0.119), (-0.119, 0.303)), constant=(-1.61, -0.347),
+        ),
+        ("located-tolerance", "located-4-tolerance", "moreau-tolerance"),
+    ),
+    "sliding on for thousands of steps": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(1.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 20.0), h=0.05, G=((0.0, 1.0),),
+            offset=(0.0,), restitution=0.5, K=((9.0, 0.0), (0.0, 0.0)), constant=(0.0, -9.81),
+        ),
+        ("located-tolerance",),
+    ),
+    "touched at the very beginning of a step": (
+        Description(
+            M=((0.662, 0.269), (0.269, 3.69)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.0135), h=0.0135,
+            G=((1.6, 0.4), (0.6, 0.5), (1.6, 0.4), (2.2, 0.9), (8.2, 3.1)),
+            offset=(0.0182, 0.0258, 0.0, 0.0626, 0.013877113161323678), restitution=(0.33, 0.37, 0.0, 0.26, 1.0),
+            amplitude=(0.194, 0.0, 0.194, 0.194, 0.194), phase=(0.0, 0.0, 0.0, 0.0, 3.07), omega=3.42,
+        ),
+        ("located-4-tolerance",),
     ),
 }  # fmt: skip

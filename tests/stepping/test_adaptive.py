@@ -169,6 +169,26 @@ def test_times_go_on_and_end_as_asked_far_from_zero(method, start):
         assert np.array_equal(simulate(scene, method, keep=at).t, at)
 
 
+def swinging(t, q, v, p, out):
+    out[0] = 0.03 * np.sin(1.3 * t), 0.039 * np.cos(1.3 * t), -0.0507 * np.sin(1.3 * t)
+
+
+def test_what_rests_on_a_moving_table_stays_on_it_between_steps():
+    """It is carried without error, so that steps are long; between them it is where the table is."""
+    contacts = LinearContacts([[1.0]], [0.0], 0.5, motion=swinging)
+    scene = Scene(
+        LinearSystem([[1.0]], force=Harmonic([-9.81])),
+        contacts=contacts,
+        q0=[0.0],
+        v0=[0.039],
+        t_span=(0.0, 6.0),
+    )
+    m = simulate(scene, Located(0.8, tolerance=1e-6))
+    t = np.linspace(0.0, 6.0, 333)
+    assert np.max(np.diff(m.t)) > 0.2
+    assert np.max(np.abs(m.at(t)[0][:, 0] - 0.03 * np.sin(1.3 * t))) < 1e-9
+
+
 def test_bad_input_is_named():
     for bad in (0.0, -1.0, np.nan):
         with pytest.raises(ValueError, match="tolerance"):
