@@ -40,7 +40,7 @@ from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.located_piece import pressed
 from lcpstep.stepping.race import race
-from lcpstep.stepping.steps import WHOLE, check_steps, divided
+from lcpstep.stepping.steps import check_steps, divided, unresolved
 from lcpstep.stepping.theta import solve_single
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -378,7 +378,7 @@ class _Run:
             t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
         cut = len(bad) or self.half_done
         last = (float(t[-1]), q[-1], v[-1]) if cut and len(t) else (self.now, q_now, v_now)
-        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         count = self.count
         impulse, joint = np.split(impulse, [self.scene.n_c], axis=1)

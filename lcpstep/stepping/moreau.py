@@ -27,7 +27,7 @@ from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, WHOLE, check_steps, divided
+from lcpstep.stepping.steps import RESTING, check_steps, divided, unresolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -315,7 +315,7 @@ class _Run:
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
             impulses = np.vstack([impulses, self.state.impulse])
-        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         n_c, count = self.scene.n_c, self.count
         impulse, friction, joint = np.split(impulses, [n_c, impulses.shape[1] - self.scene.n_j], axis=1)

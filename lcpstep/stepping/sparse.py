@@ -29,7 +29,7 @@ from lcpstep.model import culprit, with_addresses
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, WHOLE, divided
+from lcpstep.stepping.steps import RESTING, divided, unresolved
 from lcpstep.stepping.theta import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
@@ -286,7 +286,7 @@ class Run:
         self.empty()
         kept = self.recorder.states()
         t = kept.t
-        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=kept.q, v=kept.v, impulse=kept.impulse,
