@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lcpstep.dynamics import gap_rounding, order_matters
 from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import pass_on
@@ -48,6 +49,7 @@ from lcpstep.stepping.located_work import (
     V_TRY,
     B,
     P,
+    Q,
     V,
     Z,
 )
@@ -68,7 +70,7 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
 
     Returns how many took part, -1 where the impact was not solved.
     """
-    n_s = choose_jumping(m, plan, w, x, t) if first == CORNER else choose_struck(plan, w, first)
+    n_s = choose_jumping(m, plan, w, x, t) if first == CORNER else choose_struck(m, plan, w, x, first)
     if n_s == 0:
         return 0
     if x[CLOSED_NOW] > 0:
@@ -93,11 +95,12 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
     return n_s
 
 
-def choose_struck(plan: Any, w: Any, first: int) -> int:
+def choose_struck(m: Any, plan: Any, w: Any, x: Any, first: int) -> int:
     """Contacts that fire now; their number.
 
-    Those that close with one speed land together, those that touched before are pushed together. Others whose gaps
-    happen to be zero at the same time are struck one after another, as they would be a little apart.
+    Those that close with one speed land together, those that touched before are pushed together, and so are those
+    of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
+    are struck one after another, as they would be a little apart.
     """
     for c in range(w.num.shape[1]):
         if w.num[FALL, c] > 0.0 and w.num[RATE, c] < 0.0 and (c == first or w.num[GAP, c] <= plan.slack):
@@ -110,11 +113,27 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
         w.num[BEFORE, c] = w.num[RATE, c]
         if c != first and w.mark[STATUS, c] == OPEN and w.num[RATE, c] < 0.0 and w.num[GAP, c] <= plan.slack:
             pushed = touched and w.mark[GROUNDED, c] >= GROUND and w.num[LAST, c] < 0.0
-            if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u):
+            if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u) or tied(m, plan, w, x, first, c):
                 w.mark[CHOSEN, n_s] = c
                 w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
                 n_s += 1
     return n_s
+
+
+def tied(m: Any, plan: Any, w: Any, x: Any, first: int, c: int) -> bool:
+    """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
+
+    Contacts that have struck at this instant already are in the midst of a sequence, which has an order.
+    """
+    for d in (first, c):
+        if w.num[LAST, d] >= 0.0 and x[SIGMA] - w.num[LAST, d] <= COLLAPSE * plan.h:
+            return False
+    if w.num[GAP, c] > gap_rounding(m, w.G, w.vec[Q], c, plan.h * speed_terms(plan, w, c)):
+        return False
+    r, W = m.restitution, w.W
+    return order_matters(
+        W[first, first], W[c, c], W[first, c], r[first], r[c], w.num[RATE, first], w.num[RATE, c]
+    )
 
 
 def choose_connected(w: Any, n_s: int) -> int:

@@ -63,6 +63,7 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
             general=True, spread=0.409, pendulum=1.64, b=(-0.792, -1.03, 0.765),
         ),
         ("event-driven",),
+    ),
     "lifted off a corner, far from time zero": (
         Description(
             M=((1.0, 0.0), (0.0, 1.0)), q0=(-0.193, 2.24), v0=(0.0, 0.0), t_span=(7140.0, 7140.0565), h=0.0565,
