@@ -6,7 +6,6 @@ from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls
 
 from lagrangian import LinearContacts, Scene
 from lcpstep.compiled import compiled
@@ -66,6 +65,8 @@ def closing_in(scene: Scene, t: float, q: Array, contacts: list[int]) -> list[in
     are weights y >= 0 with G^T y = 0 and g_t^T y < 0: what is left between the obstacles of the contacts with y > 0
     depends on no coordinate, and shrinks. Joints are equations, whose weights have either sign.
     """
+    from scipy.optimize import nnls
+
     G, rate = _rows(scene.contacts, scene, t, q, contacts)
     if scene.joints is not None:
         J, turn = _rows(scene.joints.as_contacts(), scene, t, q, list(range(scene.n_j)))

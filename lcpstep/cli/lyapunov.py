@@ -43,7 +43,8 @@ def run_lyapunov(options: argparse.Namespace) -> int:
     found = lyapunov(P, x, options.periods, options.transient)
     words = "chaotic" if found.chaotic else "not chaotic"
     if options.json:
-        finite = {k: v if math.isfinite(v) else str(v) for k, v in vars(found).items()}
+        numbers = {k: v for k, v in vars(found).items() if not isinstance(v, str)}
+        finite = {k: v if math.isfinite(v) else str(v) for k, v in numbers.items()}
         print(json.dumps({"scene": scene.name, "period": scene.period, "verdict": words} | finite, indent=2))
         return DONE
     print(

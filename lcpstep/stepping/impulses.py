@@ -103,7 +103,12 @@ def choose_struck(m: Any, plan: Any, w: Any, x: Any, first: int) -> int:
     are struck one after another, as they would be a little apart.
     """
     for c in range(w.num.shape[1]):
-        if w.num[FALL, c] > 0.0 and w.num[RATE, c] < 0.0 and (c == first or w.num[GAP, c] <= plan.slack):
+        # A gap within the slack may still be open: its speed is not yet the one that it will close with
+        closing = c == first or (
+            w.num[GAP, c] <= plan.slack
+            and abs(w.num[RATE, c] + w.num[FALL, c]) <= SAME_SPEED * w.num[FALL, c]
+        )
+        if w.num[FALL, c] > 0.0 and w.num[RATE, c] < 0.0 and closing:
             w.num[RATE, c] = -w.num[FALL, c]
     w.mark[CHOSEN, 0] = first
     u, n_s = w.num[RATE, first], 1
