@@ -1,5 +1,7 @@
 """The speed at which the follower first leaves the cam, found from the simulation by bisection."""
 
+from scipy.optimize import bisect
+
 from lagrangian import scenes
 from lcpstep import EventDriven, Kind, simulate
 
@@ -12,10 +14,7 @@ def leaves_the_cam(rpm: float) -> bool:
 
 def detachment_speed(low: float = 100.0, high: float = 130.0, digits: float = 1e-9) -> float:
     """First detachment [rpm]."""
-    while high - low > digits * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if leaves_the_cam(middle) else (middle, high)
-    return high
+    return bisect(lambda rpm: 1.0 if leaves_the_cam(rpm) else -1.0, low, high, rtol=digits)
 
 
 if __name__ == "__main__":

@@ -65,11 +65,18 @@ def _real(name: str, value: ArrayLike) -> Array:
     try:
         given = np.array(value)
         texts = given.dtype == object and any(isinstance(x, (str, bytes, bool)) for x in given.flat)
-        if given.dtype.kind not in "iufO" or texts or np.ma.is_masked(value):
+        if given.dtype.kind not in "iufO" or texts or _holds_truth(value) or np.ma.is_masked(value):
             raise TypeError
         return np.array(given, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # an integer beyond all floating-point numbers
         raise ValueError(f"{name}: expected real numbers, got {value!r}") from None
+
+
+def _holds_truth(value: Any) -> bool:
+    """Whether a list, or one inside it, has a truth value among its numbers, which numpy takes for 0 or 1."""
+    if isinstance(value, (list, tuple)):
+        return any(map(_holds_truth, value))
+    return isinstance(value, (bool, np.bool_))
 
 
 def vector(name: str, value: ArrayLike) -> Array:

@@ -12,6 +12,10 @@ Systems, section 2.14; T. Henzinger, The theory of hybrid automata (LICS 1996) f
 
 Functions of the user have the signature f(t, x, p, out): they fill `out` from the time t, the state x (n_x,) and the
 parameters p (n_p,).
+
+A map of states, x -> P(x), needs the mode that belongs to a state. Surfaces that part all modes tell it; other
+systems have a function `mode_of`, and one that remembers (a relay with hysteresis) keeps what it remembers as a state
+whose rate is zero, set by resets.
 """
 
 from __future__ import annotations
@@ -29,6 +33,7 @@ from lagrangian.checks import Array
 from lagrangian.pickling import Pickled
 
 Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
+ModeOf = Callable[[float, Any, Any], str]  # mode(t, x, p), its name
 RISING, FALLING, BOTH = 1, -1, 0
 
 
@@ -116,6 +121,8 @@ class HybridSystem:
     n_x : number of states
     modes : modes by name
     surfaces : switching surfaces; sliding on two of them at once is not described
+    mode_of : function mode(t, x, p) giving the name of the mode that a motion through a state is in, in plain Python;
+        Poincare maps need it, but where the modes are those of one surface, which tells them
 
     Raises
     ------
@@ -125,9 +132,12 @@ class HybridSystem:
     n_x: int
     modes: Mapping[str, Mode]
     surfaces: Sequence[Surface] = ()
+    mode_of: ModeOf | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
+        if self.mode_of is not None and not callable(self.mode_of):
+            raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
         object.__setattr__(self, "modes", dict(self.modes))
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
         if not self.modes:
@@ -156,9 +166,27 @@ class HybridSystem:
         """Names of all modes, those of sliding last."""
         return [*self.modes, *(surface.sliding for surface in self.surfaces)]
 
+    @property
+    def tells_modes(self) -> bool:
+        """Whether a state alone tells its mode: by `mode_of`, or by the one surface that parts all modes."""
+        return self.mode_of is not None or (len(self.surfaces) == 1 and len(self.modes) == 2)
+
+    def named_mode(self, t: float, x: Array, p: Array) -> str:
+        """The mode that `mode_of` gives, checked."""
+        assert self.mode_of is not None
+        name = self.mode_of(t, x, p)
+        if name not in self.names:
+            raise ValueError(
+                f"mode_of: expected one of {', '.join(self.names)} at t = {t:g}, x = {checks.shown(x)}, "
+                f"got {name!r}"
+            )
+        return name
+
     def trial(self, t: float, x: Array, p: Array) -> None:
         """Evaluate every function once; raises ValueError where one does not fill its `out`."""
         at = (t, x, p)
+        if self.mode_of is not None:
+            self.named_mode(*at)
         for name, mode in self.modes.items():
             evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
         for name, guards in self.guards().items():
@@ -190,6 +218,7 @@ class HybridScene(Pickled):
     period : period of what depends on time, math.inf where nothing does; guards are looked at 16 times in it at least
     name : a short name, for reports
     exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
+    labels : name of each state with its unit, for axes: ("position [m]", ...); x1, x2, .. where not given
 
     Raises
     ------
@@ -205,6 +234,7 @@ class HybridScene(Pickled):
     period: float = math.inf
     name: str = "hybrid scene"
     exact: Callable[[Array], Array] | None = None
+    labels: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
@@ -220,7 +250,21 @@ class HybridScene(Pickled):
             raise ValueError(f"t_span: expected t_start < t_end, got {self.t_span!r}")
         object.__setattr__(self, "t_span", (float(span[0]), float(span[1])))
         object.__setattr__(self, "period", checks.period(self.period))
+        labels = tuple(self.labels) or tuple(f"x{k + 1}" for k in range(self.n_x))
+        if len(labels) != self.n_x or not all(isinstance(x, str) for x in labels):
+            raise ValueError(f"labels: expected {self.n_x} names of states, got {self.labels!r}")
+        object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
+
+    @property
+    def n_x(self) -> int:
+        """Number of states."""
+        return self.system.n_x
+
+    @property
+    def corners(self) -> Array:
+        """Times of corners of the forcing: a system with modes has none, its guards are what is watched."""
+        return np.zeros(0)
 
     def started(self, x0: ArrayLike, mode: str, t_span: tuple[float, float] | None = None) -> HybridScene:
         """The same system from another state and mode; a motion in closed form is dropped."""

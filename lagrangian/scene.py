@@ -92,6 +92,24 @@ class Scene(Pickled):
         return self.system.n_q
 
     @property
+    def n_x(self) -> int:
+        """Number of states (q, v)."""
+        return 2 * self.n_q
+
+    @property
+    def x0(self) -> Array:
+        """State (q, v) at the start."""
+        return np.concatenate([np.asarray(self.q0), np.asarray(self.v0)])
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Name of each state with its unit, for axes."""
+        if self.n_q == 1:
+            return ("position [m]", "velocity [m/s]")
+        numbers = range(1, self.n_q + 1)
+        return tuple(f"position {k} [m]" for k in numbers) + tuple(f"velocity {k} [m/s]" for k in numbers)
+
+    @property
     def n_c(self) -> int:
         """Number of contacts."""
         return 0 if self.contacts is None else self.contacts.n_c
@@ -109,6 +127,8 @@ class Scene(Pickled):
         return self.contacts.state(float(t), *state, np.array(self.p))
 
     def _check_parts(self) -> None:
+        if not isinstance(self.parameters, Mapping):
+            raise TypeError(f"parameters: expected names and values, got {self.parameters!r}")
         checks.instance("system", self.system, LinearSystem, System)
         if self.contacts is not None:
             checks.instance("contacts", self.contacts, LinearContacts, Contacts)

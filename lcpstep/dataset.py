@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lagrangian import Scene
+from lagrangian import HybridScene, Scene
 from lcpstep.files import replacing
 from lcpstep.simulate import Method
 
@@ -35,7 +35,7 @@ def labelled(
     return data
 
 
-def provenance(scene: Scene, method: Method) -> dict[str, Any]:
+def provenance(scene: Scene | HybridScene, method: Method) -> dict[str, Any]:
     """Attributes that say what was computed, and how."""
     return {
         "scene": scene.name,

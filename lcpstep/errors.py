@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import cached_property
 from typing import Any
 
 
@@ -55,11 +56,24 @@ class SimulationError(LcpStepError):
 
 
 class SimulationInterrupted(Pickled, KeyboardInterrupt):
-    """The user's interrupt, with the part of the motion that was computed before in `trajectory`."""
+    """The user's interrupt, with the part of the motion that was computed before in `trajectory`.
 
-    def __init__(self, trajectory: Any) -> None:
+    `collect()` puts it together, which takes a while where it is long: when somebody asks for it.
+    """
+
+    def __init__(self, collect: Callable[[], Any]) -> None:
         super().__init__("interrupted; the motion so far is in the attribute `trajectory`")
-        self.trajectory = trajectory
+        self.collect: Callable[[], Any] | None = collect
+
+    @cached_property
+    def trajectory(self) -> Any:
+        """Everything up to the interrupt."""
+        found, self.collect = self.collect() if self.collect else None, None
+        return found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        _ = self.trajectory
+        return super().__reduce__()
 
 
 class StudyInterrupted(Pickled, KeyboardInterrupt):
@@ -68,6 +82,10 @@ class StudyInterrupted(Pickled, KeyboardInterrupt):
     def __init__(self, study: Any) -> None:
         super().__init__("interrupted; what was measured so far is in the attribute `study`")
         self.study = study
+
+
+class SweepInterrupted(Pickled, KeyboardInterrupt):
+    """The user's interrupt of a long computation; finished parts are kept where it was told to keep them."""
 
 
 class NotWritten(LcpStepError, OSError):

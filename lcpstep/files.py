@@ -12,6 +12,7 @@ from pathlib import Path
 from lcpstep.errors import NotWritten
 
 LONGEST = 64  # characters of a file's name in that of its draft
+DRAFTS: set[Path] = set()  # under way
 
 
 @contextmanager
@@ -29,6 +30,7 @@ def replacing(file: Path | str) -> Iterator[Path]:
     target = Path(os.path.realpath(file))
     special = target.exists() and not target.is_file()
     draft = target.with_name(f".{target.stem[:LONGEST]}.{uuid.uuid4().hex[:8]}.partial{target.suffix}")
+    DRAFTS.add(draft)
     try:
         try:
             yield target if special else draft
@@ -36,6 +38,7 @@ def replacing(file: Path | str) -> Iterator[Path]:
                 _settle(draft, target)
         finally:
             draft.unlink(missing_ok=True)
+            DRAFTS.discard(draft)
     except OSError as error:
         raise NotWritten(file, error) from error
 

@@ -1,8 +1,8 @@
-"""Smallest and largest gap of every contact, or of every joint, over the states of a motion."""
+"""Smallest and largest gap of every contact, or of every joint, over a motion; gaps that no motion keeps open."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from lcpstep.model import joint_model, model
 
 Array = NDArray[np.float64]
 PORTION = 1 << 20  # gaps at a time
+CERTAIN = 1e-9  # relative residual of a combination of gaps that is said to be none of the coordinates
 
 
 def lowest_and_highest(
@@ -55,3 +56,48 @@ def extremes(m: Any, t: Any, q: Any, v: Any, g: Any, low: Any, high: Any) -> Non
         gaps(m, t[k], q[k], v[k], g)
         for c in range(len(g)):
             low[c], high[c] = min(low[c], g[c]), max(high[c], g[c])
+
+
+def closing_in(scene: Scene, t: float, q: Array, contacts: list[int]) -> list[int]:
+    """Those of some closed contacts whose obstacles approach each other, so that no velocity keeps their gaps open.
+
+    By the lemma of J. Farkas (Theorie der einfachen Ungleichungen, 1902) G v + g_t >= 0 has no solution v where there
+    are weights y >= 0 with G^T y = 0 and g_t^T y < 0: what is left between the obstacles of the contacts with y > 0
+    depends on no coordinate, and shrinks. Joints are equations, whose weights have either sign.
+    """
+    from scipy.optimize import nnls
+
+    G, rate = _rows(scene.contacts, scene, t, q, contacts)
+    if scene.joints is not None:
+        J, turn = _rows(scene.joints.as_contacts(), scene, t, q, list(range(scene.n_j)))
+        G, rate = np.vstack([G, J, -J]), np.concatenate([rate, turn, -turn])
+    size = np.linalg.norm(G, axis=1)
+    G, rate = G / size[:, None], rate / size
+    fastest = float(np.max(np.abs(rate), initial=0.0))
+    if fastest == 0.0:
+        return []
+    weights, residual = nnls(np.vstack([G.T, rate / fastest]), np.append(np.zeros(scene.n_q), -1.0))
+    if residual > CERTAIN * np.sum(weights):
+        return []
+    return [c for c, y in zip(contacts, weights, strict=False) if y > 0.0]
+
+
+def _rows(constraints: Any, scene: Scene, t: float, q: Array, rows: list[int]) -> tuple[Array, Array]:
+    """Jacobian of some gaps, and their velocities at rest."""
+    at = t, np.array(q), np.zeros(len(q)), np.array(scene.p)
+    if isinstance(constraints, LinearContacts):
+        chosen: Any = cast(Any, constraints.G)[rows]
+        G = chosen.toarray() if constraints.sparse else chosen
+    else:
+        everything = np.zeros((constraints.n_c, len(q)))
+        constraints.jacobian(*at, everything)
+        G = everything[rows]
+    return np.array(G, dtype=float), constraints.state(*at)[1][rows]
+
+
+def no_way_out(scene: Scene, t: float, q: Array, contacts: list[int]) -> str:
+    """In words, why a problem of some closed contacts has no solution, where that is in the scene; else ""."""
+    between = closing_in(scene, t, q, contacts) if contacts else []
+    if not between:
+        return ""
+    return f"the obstacles of contacts {between} approach each other with nothing left between them"

@@ -151,7 +151,13 @@ def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, i
 
 
 def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
-    """Which callback has raised an exception, or is not finite at one of the times.
+    """Which callback has raised an exception, or is not finite at one of the times, in words."""
+    found = failing(scene, times, q, v)
+    return found or "the motion left the finite numbers, or a matrix is singular or not positive definite,"
+
+
+def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
+    """The callback that has raised an exception, or is not finite at one of the times; "" if none does.
 
     It is asked for at the state that the motion has reached, and at those that this leads to in a straight line.
     """
@@ -171,7 +177,7 @@ def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
         return str(error) + ";"
     if raised is not None:
         return f"{raised};"
-    return "the motion left the finite numbers, or a matrix is singular or not positive definite,"
+    return ""
 
 
 def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:

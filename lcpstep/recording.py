@@ -11,13 +11,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lagrangian import checks
 from lcpstep.compiled import by_address
 from lcpstep.trajectory import IMPACT_DTYPE
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 EVENT_CAPACITY = 4096
-# Places in a row: its time, whether the contact is closed, duration of the step that follows; then q, v, impulses
+# Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
+# duration of the step that follows; then q, v, impulses
 TIME, MODE, LENGTH, LEAD = range(4)
 
 
@@ -42,10 +44,10 @@ class Kept:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
             return cls(int(keep), False, nothing)
         try:
-            times = np.array(keep, dtype=float)
-        except (TypeError, ValueError):
+            times = np.array(checks.vector("keep", keep))
+        except ValueError:
             raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
-        if times.ndim != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
+        if np.ndim(keep) != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(
@@ -96,6 +98,22 @@ def write_event(event: Any, t: float, contact: int, before: float, after: float,
     """Kernel: one line of the impact log."""
     event[0], event[1], event[5] = t, contact, kind
     event[2], event[3], event[4] = before, after, p
+
+
+def in_order(events: Array, end: float) -> Array:
+    """Events in the order of time, within the span; those of one time in the order in which they were noted.
+
+    The end of a chattering sequence is noted, with the time at which it comes, where the rest of the sequence is
+    summed up: before events of other contacts that come earlier. What the contact itself does next ends the sequence.
+    """
+    time, contact = np.minimum(events[:, 0], end), events[:, 1]
+    ordered = np.column_stack([time, events[:, 1:]])
+    if np.all(np.diff(time) >= 0.0):
+        return ordered
+    for c in np.unique(contact):
+        own = contact == c
+        ordered[own, 0] = np.minimum.accumulate(time[own][::-1])[::-1]
+    return ordered[np.argsort(ordered[:, 0], kind="stable")]
 
 
 class States(NamedTuple):
@@ -151,9 +169,9 @@ class Recorder:
         """Dense output of the steps after the kept states."""
         return np.concatenate(self._parts["dense"])
 
-    def events(self) -> Any:
-        """The impact log, a record array of `trajectory.IMPACT_DTYPE`."""
-        events = np.concatenate(self._parts["events"])
+    def events(self, end: float) -> Any:
+        """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
+        events = in_order(np.concatenate(self._parts["events"]), end)
         log = np.empty(len(events), dtype=IMPACT_DTYPE)
         for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
             log[name] = column

@@ -67,7 +67,7 @@ def simulate(
 
     Raises
     ------
-    TypeError   scene is no Scene, or method no method
+    TypeError   scene is no Scene, method no method, or progress no function
     ValueError   keep is none of the above
     LcpStepError   the method does not treat the scene
     SimulationError   a callback or the motion became infinite or not-a-number; carries the motion so far
@@ -85,6 +85,8 @@ def simulate(
         raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
     if isinstance(method, type) or not hasattr(method, "run"):
         raise TypeError(f"method: expected for example lcpstep.Moreau(h=1e-4), got {method!r}")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: expected a function of the time reached, got {progress!r}")
     kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
     forget()
     if isinstance(scene, HybridScene):

@@ -13,16 +13,19 @@ import io
 import json
 import logging
 import os
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lagrangian import checks
-from lcpstep.errors import LcpStepError, SweepStopped
+from lcpstep.errors import LcpStepError, SweepInterrupted, SweepStopped
 from lcpstep.files import replacing
+from lcpstep.pace import until_given_up
 
 LOG = logging.getLogger(__name__)
 Arrays = dict[str, Any]  # named arrays
@@ -62,15 +65,17 @@ def sweep(
     ------
     ValueError   jobs is not positive
     SweepStopped   the executor died, or `out` holds another sweep; finished parts are kept
+    SweepInterrupted   a KeyboardInterrupt; finished parts are kept, and the pool's threads give the others up
     Exception   whatever work raises; finished parts are kept
     """
     store = Store(out, inputs)
     results = [[store.load(i, k) for k in range(len(chain))] for i, chain in enumerate(chains)]
     total = sum(len(chain) for chain in chains)
-    own = None
+    own, given_up = None, threading.Event()
     if executor is None:
         jobs = (os.cpu_count() or 1) if jobs is None else checks.count("jobs", jobs)
         own = executor = ThreadPoolExecutor(max_workers=jobs)
+        work = partial(until_given_up, given_up, work)
     running: dict[Future[Any], tuple[int, int]] = {}
 
     def take(future: Future[Any]) -> int:
@@ -89,20 +94,22 @@ def sweep(
             for future in sorted(done, key=lambda f: running[f]):
                 _submit(executor, work, chains, results, take(future), running)
         report(progress, results, total)
+    except KeyboardInterrupt:
+        given_up.set()
+        _keep_finished(running, take)
+        raise SweepInterrupted(f"interrupted; {_words(results, total, out)}") from None
     except Exception as error:
         _keep_finished(running, take)
         if _of_the_work(error):
             raise
-        finished = sum(part is not None for chain in results for part in chain)
-        kept = f"kept in {out}, the same call goes on from there" if out else "lost: no folder was given"
         raise SweepStopped(
-            f"the executor failed ({type(error).__name__}: {error}); {finished} of {total} parts are {kept}"
+            f"the executor failed ({type(error).__name__}: {error}); {_words(results, total, out)}"
         ) from error
     finally:
         for future in running:
             future.cancel()
         if own is not None:
-            own.shutdown(wait=True, cancel_futures=True)
+            own.shutdown(wait=not given_up.is_set(), cancel_futures=True)
         _keep_finished(running, take)
     return [[part[0] for part in chain if part is not None] for chain in results]
 
@@ -112,6 +119,12 @@ def _keep_finished(running: dict[Future[Any], tuple[int, int]], take: Callable[[
     for future in list(running):
         if future.done() and not future.cancelled() and future.exception() is None:
             take(future)
+
+
+def _words(results: list[list[Any]], total: int, out: Path | str | None) -> str:
+    """What there is of a sweep that could not go on."""
+    kept = f"kept in {out}, the same call goes on from there" if out else "lost: no folder was given"
+    return f"{sum(part is not None for chain in results for part in chain)} of {total} parts are {kept}"
 
 
 def report(progress: Callable[[int, int], None] | None, results: list[list[Any]], total: int) -> None:

@@ -72,7 +72,7 @@ class Trajectory:
     t : (n,)   times of the kept states [s]
     q, v : (n, n_q)   coordinates and velocities; v is the right limit, after an impact at that time
     impulse : (n, n_c)   impulse of each contact since the state before [N s], the contact force's included
-    impacts : record array (n_events,)
+    impacts : record array (n_events,), in the order of time
         Fields time [s], contact, before, after (gap velocities [m/s]), impulse [N s], kind (`Kind`).
     status : Status   DONE, or why the run ended early; `message` says it in words
     doubt : what is wrong with a run although it is DONE; also part of `message`, and "" where nothing is known

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from lagrangian.scenes import CATALOGUE
+from lagrangian.scenes import SCENES
 from lcpstep import EventDriven, cli
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
@@ -20,7 +20,7 @@ def test_scenes_are_listed_with_one_line_each(capsys):
     status, out, _ = run(capsys, "scenes", "--json")
     assert status == DONE
     listed = json.loads(out)
-    assert [x["scene"] for x in listed] == list(CATALOGUE)
+    assert [x["scene"] for x in listed] == list(SCENES)
     assert all(x["about"] and x["parameters"] for x in listed)
 
 

@@ -287,6 +287,64 @@ def test_an_error_of_the_progress_callback_is_not_swallowed():
         simulate(scenes.bouncing_ball(), Moreau(1e-2), progress=broken)
 
 
+# --- clumsy input
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("q0", {"q0": [True]}),
+        ("q0", {"q0": [[True]]}),
+        ("q0", {"q0": (np.True_,)}),
+        ("v0", {"v0": [False]}),
+        ("q0", {"q0": [1.0 + 2.0j]}),
+        ("q0", {"q0": np.ma.masked_array([1.0], mask=[True])}),
+        ("q0", {"q0": np.array(["1"], dtype=object)}),
+        ("q0", {"q0": [10**400]}),
+        ("t_span", {"t_span": (False, 1.0)}),
+        ("t_span", {"t_span": (0.0, True)}),
+        ("p", {"p": [1.0, True]}),
+        ("corners", {"corners": [True]}),
+    ],
+)
+def test_what_is_no_number_is_refused_by_name(name, values):
+    given = {"q0": 1.0, "v0": 0.0, "t_span": (0.0, 1.0)} | values
+    with pytest.raises(ValueError, match=rf"^{name}: expected real numbers, got "):
+        Scene(FALLING, **given)
+
+
+def test_what_stands_for_something_else_is_refused_by_name():
+    scene = Scene(FALLING, 1.0, 0.0, (0.0, 1.0))
+    for progress in (5, "a bar"):
+        with pytest.raises(TypeError, match=r"^progress: expected a function of the time reached"):
+            simulate(scene, Moreau(0.1), progress=progress)
+    for keep in ([0.0, True], ["0.1", "0.2"], [0.1j], None, [[0.1, 0.2]]):
+        with pytest.raises(ValueError, match=r"^keep: expected increasing times"):
+            simulate(scene, Moreau(0.1), keep=keep)
+    for parameters in (3, [1.0], "mass"):
+        with pytest.raises(TypeError, match=r"^parameters: expected names and values"):
+            replace(scene, parameters=parameters)
+    for part in ("system", "contacts", "joints"):
+        with pytest.raises(TypeError, match=rf"^{part}: expected a Linear"):
+            replace(scene, **{part: {}})
+    with pytest.raises(TypeError, match=r"^friction: expected a Coulomb"):
+        LinearContacts(G=1.0, friction=0.3)
+    with pytest.raises(TypeError, match=r"^projected: expected a bool"):
+        Moreau(0.1, projected="no")
+
+
+@pytest.mark.parametrize("q0", [np.array(1), np.array([1]), [1], np.float32(1.0), np.ma.masked_array([1.0])])
+def test_numbers_of_any_kind_are_taken(q0):
+    assert Scene(FALLING, q0, 0.0, (0.0, 1.0)).q0.tolist() == [1.0]
+
+
+def test_a_truth_value_among_numbers_of_a_matrix_is_refused():
+    with pytest.raises(ValueError, match=r"^M: expected real numbers"):
+        LinearSystem(M=[[1.0, 0.0], [0.0, True]])
+    with pytest.raises(ValueError, match=r"^G: expected real numbers"):
+        LinearContacts(G=[[True, 0.0]])
+
+
 # --- methods and solvers
 
 

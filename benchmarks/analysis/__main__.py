@@ -1,6 +1,8 @@
-"""Seconds for the studies of the cam-follower, and how far time-stepping is from event-driven in them.
+"""Seconds for the studies of the cam-follower and for every figure of the thesis; how far time-stepping is off.
 
-python -m benchmarks.analysis [--jobs N] [--quick]      writes results.md and results.json beside this file
+python -m benchmarks.analysis [--jobs N] [--quick] [--only PART ..]      writes results.md and results.json
+
+With --only the other parts stay as they were measured before.
 """
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,9 +25,13 @@ from lcpstep.analysis.basins import basins
 from lcpstep.analysis.bifurcation import bifurcation
 from lcpstep.analysis.likeness import likeness, sample
 from lcpstep.maps import periods
+from lcpstep.thesis import FIGURES, make
+from lcpstep.thesis.page import chapter_of
 
 HERE = Path(__file__).parent
 REPEATS = 3
+PARTS = ("impacts", "sweeps", "figures", "lockstep", "agreement")
+LONG = 3.0  # a figure that takes longer is made once [s]
 
 
 def timed(f: Callable[[], Any]) -> tuple[float, float, Any]:
@@ -84,6 +91,21 @@ def row(study: str, jobs: int, f: Callable[[], Any]) -> dict[str, Any]:
         "wall": time.perf_counter() - wall,
         "cpu": time.process_time() - cpu,
     }
+
+
+def figures() -> list[dict[str, Any]]:
+    """Seconds for each figure of the thesis with its data, kernels on disk; the second time where it is short."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in FIGURES:
+            for _ in range(2):
+                wall, cpu = time.perf_counter(), time.process_time()
+                make(name, Path(folder), overwrite=True)
+                found = {"wall": time.perf_counter() - wall, "cpu": time.process_time() - cpu}
+                if found["cpu"] > LONG:
+                    break
+            rows.append({"figure": name, "chapter": chapter_of(name), "shows": FIGURES[name].about, **found})
+    return rows
 
 
 def lockstep() -> dict[str, Any]:
@@ -152,6 +174,12 @@ def report(r: dict[str, Any]) -> str:
     ]
     lines += ["", "| study | threads | wall [s] | CPU [s] |", "|---|---|---|---|"]
     lines += [f"| {x['study']} | {x['jobs']} | {x['wall']:.1f} | {x['cpu']:.1f} |" for x in r["sweeps"]]
+    lines += ["", "| figure of the thesis | shows | wall [s] | CPU [s] |", "|---|---|---|---|"]
+    lines += [f"| {x['figure']} | {x['shows']} | {x['wall']:.1f} | {x['cpu']:.1f} |" for x in r["figures"]]
+    for words, chapters in (("chapters 2 to 6", range(2, 7)), ("chapter 7", (7,))):
+        part = [x for x in r["figures"] if x["chapter"] in chapters]
+        wall, cpu = (sum(x[name] for x in part) for name in ("wall", "cpu"))
+        lines.append(f"| all of {words} | | {wall:.1f} | {cpu:.1f} |")
     x = r["lockstep"]
     lines += [
         "", f"Time-stepping: {x['ns_per_step_single']:.1f} ns per step one run after another, "
@@ -173,13 +201,19 @@ def main() -> None:
     p = argparse.ArgumentParser(description=__doc__)
     p.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     p.add_argument("--quick", action="store_true", help="small grids, to see that it runs")
+    p.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, help="parts to measure (all)")
     options = p.parse_args()
-    results = {"cores": os.cpu_count(), "load": os.getloadavg()[0], "impacts": impacts()}
-    results |= {"sweeps": sweeps(options.jobs, options.quick), "lockstep": lockstep()}
-    results["agreement"] = agreement(options.quick)
-    name = "quick" if options.quick else "results"
-    (HERE / f"{name}.json").write_text(json.dumps(results, indent=1))
-    (HERE / f"{name}.md").write_text(report(results))
+    file = HERE / ("quick.json" if options.quick else "results.json")
+    results = json.loads(file.read_text()) if set(options.only) != set(PARTS) else {}
+    results |= {"cores": os.cpu_count(), "load": os.getloadavg()[0]}
+    measure: dict[str, Callable[[], Any]] = {
+        "impacts": impacts, "sweeps": lambda: sweeps(options.jobs, options.quick), "figures": figures,
+        "lockstep": lockstep, "agreement": lambda: agreement(options.quick),
+    }  # fmt: skip
+    for name in options.only:
+        results[name] = measure[name]()
+        file.write_text(json.dumps(results, indent=1))
+    file.with_suffix(".md").write_text(report(results))
     print(report(results))
 
 

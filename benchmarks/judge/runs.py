@@ -30,11 +30,15 @@ class Finding(NamedTuple):
 class Clock:
     """Bound on the CPU time of one run, of which machine code cannot be told: the system then ends the process."""
 
-    limit = 0.0  # seconds; 0: none
+    limit = 0.0  # seconds of a run, and of every so many steps of a long one; 0: none
+    steps = 1e5
+
+    def __init__(self, steps: float) -> None:
+        self.seconds = Clock.limit * max(1.0, steps / Clock.steps)
 
     def __enter__(self) -> None:
         if Clock.limit:
-            signal.setitimer(signal.ITIMER_PROF, Clock.limit)
+            signal.setitimer(signal.ITIMER_PROF, self.seconds)
 
     def __exit__(self, *error: object) -> None:
         if Clock.limit:
@@ -119,7 +123,7 @@ def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     scene, way = d.scene(), WAYS[name]
     started = time.process_time()
     try:
-        with Clock():
+        with Clock(d.length / (d.h * factor)):
             motion = simulate(scene, way.make(d.h, factor), keep=keep)
     except SimulationError as error:
         return Run(name, error.trajectory.status.name, str(error), error.trajectory, _since(started))

@@ -127,13 +127,19 @@ VARIANTS: dict[str, Callable[[Description, Any], Variant]] = {
 
 
 def fits(name: str, d: Description, method: str) -> bool:
-    """Whether a variant is the same question to a method; steps treat general systems by other formulas."""
+    """Whether a variant is the same question to a method; steps treat general systems by other formulas.
+
+    Of order two, they carry the force at their end over, found with the velocity foretold for it: where it depends on
+    velocities, a run begun anew differs by the order.
+    """
     round_joints = any(d.joint_bend)
+    carried = (d.general or d.nonlinear or bool(d.J)) and (bool(d.C) or d.spread != 0.0)
     return {
         "contacts": d.contacts > 1,
         "order": d.n > 1,
         "units": d.n > 1 and not d.curved and not round_joints,
         "time": not any(d.frame) and not (d.form and d.moving),
+        "rest": not (carried and method in ("located", "located-tolerance")),
         "general": method.startswith("event")
         and not (d.general or d.nonlinear or d.function or any(d.frame)),
         "curved": method.startswith("event") and d.contacts > 0 and not d.curved,

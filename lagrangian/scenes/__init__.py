@@ -21,6 +21,7 @@ from lagrangian.scenes.grazing import grazing
 from lagrangian.scenes.hybrid_abs import hybrid_abs
 from lagrangian.scenes.hybrid_oscillators import (
     bilinear_oscillator,
+    driven_bilinear_oscillator,
     dry_friction_oscillator,
     stick_slip_oscillator,
 )
@@ -190,8 +191,39 @@ CATALOGUE: dict[str, Entry] = {
     ),
 }
 
+WITH_MODES: dict[str, Entry] = {  # systems with modes: no contacts, so not for time-stepping
+    "bilinear-oscillator": Entry(
+        bilinear_oscillator,
+        hazard="the change of stiffness falls inside a step, and the order is lost",
+        answer="half waves of two sines; free period pi/sqrt(left) + pi/sqrt(right)",
+    ),
+    "driven-bilinear-oscillator": Entry(
+        driven_bilinear_oscillator,
+        hazard="the derivative of a period leaves out how the time of a switch moves",
+        answer="orbits by matching two driven harmonic motions at x = 0; multipliers with product exp(-c T)",
+    ),
+    "dry-friction-oscillator": Entry(
+        dry_friction_oscillator,
+        hazard="the sign of the friction flips at every step where the motion sticks",
+        answer="free: amplitude falls by 2 drag each half cycle; one multiplier is zero where it sticks",
+    ),
+    "stick-slip-oscillator": Entry(
+        stick_slip_oscillator,
+        hazard="release and capture fall inside a step; rounding leaves the block creeping on the belt",
+        answer="period 2 a/belt + pi + 2 atan(belt/a), a = static - kinetic; one multiplier is zero",
+    ),
+    "hybrid-abs": Entry(
+        hybrid_abs,
+        hazard="a switch of the controller is missed, or the wheel locks between two steps",
+        answer="a dead-beat cycle through (slip_max, torque_max): multiplier zero",
+    ),
+}
+SCENES: dict[str, Entry] = CATALOGUE | WITH_MODES  # all, by name
+
 __all__ = [
     "CATALOGUE",
+    "SCENES",
+    "WITH_MODES",
     "Entry",
     "ball_on_table",
     "bilinear_oscillator",
@@ -204,6 +236,7 @@ __all__ = [
     "column",
     "coulomb_oscillator",
     "double_pendulum",
+    "driven_bilinear_oscillator",
     "dry_friction_oscillator",
     "dyadic_ball",
     "elastic_ball",

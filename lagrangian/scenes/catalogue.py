@@ -7,24 +7,27 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import FunctionType
-from typing import Any, ParamSpec
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
 
 from lagrangian import checks
 from lagrangian.checks import Array
+from lagrangian.hybrid import HybridScene
 from lagrangian.scene import Scene
 
 P = ParamSpec("P")
+S = TypeVar("S", Scene, HybridScene)
 
 
-def checked(make: Callable[P, Scene]) -> Callable[P, Scene]:
+def checked(make: Callable[P, S]) -> Callable[P, S]:
     """Check the numbers given to a scene's function before any is used: finite, and in the range of their name.
 
     A restitution lies in [0, 1]; t_end is positive; what has a whole number as default takes whole numbers only.
     """
     signature = inspect.signature(make)
 
-    @functools.wraps(make)
-    def made(*arguments: P.args, **named: P.kwargs) -> Scene:
+    def made(*arguments: P.args, **named: P.kwargs) -> S:
         for name, value in signature.bind(*arguments, **named).arguments.items():
             default = signature.parameters[name].default
             if name == "restitution":
@@ -33,22 +36,26 @@ def checked(make: Callable[P, Scene]) -> Callable[P, Scene]:
                 checks.positive(name, value)
             elif isinstance(default, float):
                 checks.number(name, value)
+            elif isinstance(default, bool):
+                if not isinstance(value, (bool, np.bool_)):
+                    raise ValueError(f"{name}: expected True or False, got {value!r}")
             elif isinstance(default, int) and (isinstance(value, bool) or not hasattr(value, "__index__")):
                 raise ValueError(f"{name}: expected a whole number, got {value!r}")
         scene = make(*arguments, **named)
         if isinstance(scene.exact, FunctionType):  # made in `make`, so that pickle does not find it
-            exact = Exact(made, arguments, named, scene.exact)
+            exact = Exact(result, arguments, named, scene.exact)
             object.__setattr__(scene, "exact", exact)  # new a moment ago, and checked with the same motion
         return scene
 
-    return made
+    result: Callable[P, S] = functools.wraps(make)(made)
+    return result
 
 
 @dataclass(eq=False)
 class Exact:
     """The motion of a ready scene in closed form; pickled as the call that makes the scene."""
 
-    make: Callable[..., Scene]
+    make: Callable[..., Any]
     arguments: tuple[Any, ...]
     named: dict[str, Any]
     motion: Callable[[Array], tuple[Array, Array]] | None
@@ -56,7 +63,7 @@ class Exact:
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Q and v at these times."""
         if self.motion is None:
-            self.motion = self.make(*self.arguments, **self.named).exact.motion  # type: ignore[union-attr]
+            self.motion = self.make(*self.arguments, **self.named).exact.motion
         return self.motion(times)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -70,12 +77,12 @@ class Entry:
 
     Attributes
     ----------
-    make : function of the scene's parameters, all with defaults, that returns the scene
+    make : function of the scene's parameters, all with defaults, that returns the `Scene`, or the `HybridScene`
     hazard : what usually goes wrong, in one line
     answer : what is known of the motion exactly, or checkable without a solver, in one line
     """
 
-    make: Callable[..., Scene]
+    make: Callable[..., Any]
     hazard: str
     answer: str
 

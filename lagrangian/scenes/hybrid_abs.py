@@ -25,6 +25,7 @@ from typing import Any
 
 from lagrangian import checks
 from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.scenes.catalogue import checked
 
 ROADS = {"dry": (1.11, 23.99, 0.52), "wet": (0.687, 33.822, 0.347)}  # th1, th2, th3 [Osorio 7.5-7.6]
 MODELS = ("slip", "constant", "full")
@@ -32,6 +33,7 @@ SLOWEST = 1.0  # speed at which the full model stands [m/s]
 # Places in the parameters p
 TH1, TH2, TH3, INERTIA, MASS, RADIUS, GRAVITY, SPEED, RATE, T_MAX, T_MIN, SLIP_MAX, SLIP_MIN = range(13)
 SLIP, TORQUE, CAR_SPEED = range(3)  # places in the state
+LABELS = ("slip [-]", "brake torque [N m]", "speed [m/s]")
 
 
 def friction(slip: float, p: Any) -> float:
@@ -190,6 +192,7 @@ def machine(model: str, crossing: bool) -> HybridSystem:
     return HybridSystem(3 if model == "full" else 2, modes, surfaces)
 
 
+@checked
 def hybrid_abs(
     road: str = "dry",
     model: str = "slip",
@@ -252,4 +255,5 @@ def hybrid_abs(
         p=list(numbers.values()),
         parameters=numbers | {"road": road, "model": model},
         name="hybrid-abs",
+        labels=LABELS[: 3 if model == "full" else 2],
     )

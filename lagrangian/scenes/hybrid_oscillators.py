@@ -8,6 +8,7 @@ Systems, sections 2.13 and 2.14; R. I. Leine, H. Nijmeijer, Dynamics and Bifurca
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -16,7 +17,11 @@ import numpy as np
 from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.hybrid import FALLING, Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.scenes.catalogue import checked
 from lagrangian.scenes.dry_friction import coulomb_oscillator
+
+LABELS = ("position [-]", "velocity [-]")  # in the units of m = k = 1
+ON_THE_BELT = 1e-9  # difference of velocities that is none, relative to the belt's own
 
 
 def _position(t: float, x: Any, p: Any, out: Any) -> None:
@@ -35,6 +40,11 @@ def _bilinear_right(t: float, x: Any, p: Any, out: Any) -> None:
     out[0], out[1] = x[1], p[3] * math.cos(p[4] * t) - p[1] * x[0] - p[2] * x[1]
 
 
+def _bilinear_side(t: float, x: Any, p: Any) -> str:
+    return "right" if x[0] > 0.0 or (x[0] == 0.0 and x[1] > 0.0) else "left"
+
+
+@checked
 def bilinear_oscillator(
     left: float = 1.0,
     right: float = 9.0,
@@ -57,19 +67,39 @@ def bilinear_oscillator(
             "left": Mode(_bilinear_left, [Guard(_position, "right")]),
             "right": Mode(_bilinear_right, [Guard(_position, "left", FALLING)]),
         },
+        mode_of=_bilinear_side,
     )
     free = damping == 0.0 and amplitude == 0.0
-    side = "right" if x0 > 0.0 or (x0 == 0.0 and v0 > 0.0) else "left"
     return HybridScene(
         system,
         [x0, v0],
-        side,
+        _bilinear_side(0.0, (x0, v0), ()),
         (0.0, t_end),
         parameters={"left": left, "right": right, "damping": damping, "amplitude": amplitude, "omega": omega},
-        period=math.inf if free else 2.0 * math.pi / omega,
+        period=math.inf if amplitude == 0.0 else 2.0 * math.pi / omega,
         name="bilinear-oscillator",
         exact=partial(_two_half_waves, left=left, right=right, x0=x0, v0=v0) if free else None,
+        labels=LABELS,
     )
+
+
+@checked
+def driven_bilinear_oscillator(
+    left: float = 1.0,
+    right: float = 16.0,
+    damping: float = 0.2,
+    amplitude: float = 1.0,
+    omega: float = 2.3,
+    x0: float = 0.0,
+    v0: float = 0.0,
+    t_end: float = 60.0,
+) -> HybridScene:
+    """Oscillator whose stiffness is another on either side of x = 0, driven: x'' + c x' + k(x) x = F cos(omega t).
+
+    The period is that of the drive, F = 0 included. As given, two orbits are stable, O(1, 2) and O(3, 6).
+    """
+    scene = bilinear_oscillator(left, right, damping, amplitude, omega, x0, v0, t_end)
+    return replace(scene, name="driven-bilinear-oscillator", period=2.0 * math.pi / omega)
 
 
 def _two_half_waves(times: Array, left: float, right: float, x0: float, v0: float) -> Array:
@@ -92,6 +122,7 @@ def _drag_right(t: float, x: Any, p: Any, out: Any) -> None:
     out[0], out[1] = x[1], p[1] * math.sin(p[2] * t) - x[0] - p[0]
 
 
+@checked
 def dry_friction_oscillator(
     x0: float = 1.05, drag: float = 0.1, amplitude: float = 0.0, omega: float = 1.0, t_end: float = 20.0
 ) -> HybridScene:
@@ -118,6 +149,7 @@ def dry_friction_oscillator(
         period=math.inf if amplitude == 0.0 else 2.0 * math.pi / omega,
         name="dry-friction-oscillator",
         exact=partial(_joined, motion=coulomb_oscillator(x0, drag).exact) if amplitude == 0.0 else None,
+        labels=LABELS,
     )
 
 
@@ -127,12 +159,17 @@ def _joined(times: Array, motion: Any) -> Array:
     return np.stack([q[:, 0], v[:, 0]], axis=1)
 
 
+def _pull(t: float, x: Any, p: Any) -> float:
+    """Spring less drive: what the friction holds while the block sticks."""
+    return x[0] - p[3] * math.cos(p[4] * t)
+
+
 def _slower(t: float, x: Any, p: Any, out: Any) -> None:
-    out[0], out[1] = x[1], p[2] - x[0]
+    out[0], out[1] = x[1], p[2] - _pull(t, x, p)
 
 
 def _faster(t: float, x: Any, p: Any, out: Any) -> None:
-    out[0], out[1] = x[1], -p[2] - x[0]
+    out[0], out[1] = x[1], -p[2] - _pull(t, x, p)
 
 
 def _carried(t: float, x: Any, p: Any, out: Any) -> None:
@@ -144,26 +181,41 @@ def _over_belt(t: float, x: Any, p: Any, out: Any) -> None:
 
 
 def _pulled(t: float, x: Any, p: Any, out: Any) -> None:
-    out[0] = x[0] - p[1]
+    out[0] = _pull(t, x, p) - p[1]
 
 
 def _pushed(t: float, x: Any, p: Any, out: Any) -> None:
-    out[0] = x[0] + p[1]
+    out[0] = _pull(t, x, p) + p[1]
 
 
 def _on_belt(t: float, x: Any, p: Any, out: Any) -> None:
     out[0], out[1] = x[0], p[0]
 
 
+def _against_belt(t: float, x: Any, p: Any) -> str:
+    over, pull = x[1] - p[0], _pull(t, x, p)
+    if abs(over) > ON_THE_BELT * max(1.0, abs(p[0])):
+        return "slower" if over < 0.0 else "faster"
+    return "stick" if abs(pull) <= p[1] else "slower" if pull > 0.0 else "faster"
+
+
+@checked
 def stick_slip_oscillator(
-    belt: float = 0.2, static: float = 1.0, kinetic: float = 0.6, x0: float = 0.0, t_end: float = 40.0
+    belt: float = 0.2,
+    static: float = 1.0,
+    kinetic: float = 0.6,
+    x0: float = 0.0,
+    t_end: float = 40.0,
+    amplitude: float = 0.0,
+    omega: float = 1.0,
 ) -> HybridScene:
     """Block on a belt that runs with `belt`, held by a spring; static friction above the kinetic one.
 
     Carried by the belt from x0 on, it slips where the spring outweighs the static friction and sticks again at
-    x = 2 kinetic - static. With a = static - kinetic the period is 2 a/belt + pi + 2 atan(belt/a).
+    x = 2 kinetic - static. With a = static - kinetic the period is 2 a/belt + pi + 2 atan(belt/a). A drive
+    F cos(omega t) pulls at the block; with F = 0 there is none, and no period of it.
     """
-    for name, value in (("belt", belt), ("kinetic", kinetic), ("t_end", t_end)):
+    for name, value in (("belt", belt), ("kinetic", kinetic), ("omega", omega), ("t_end", t_end)):
         checks.positive(name, value)
     checks.number("static", static, least=kinetic)
     checks.number("x0", x0, least=-static, most=static)
@@ -174,15 +226,20 @@ def stick_slip_oscillator(
             "slower": Mode(_slower, [Guard(_over_belt, "stick", reset=_on_belt)]),
             "faster": Mode(_faster, [Guard(_over_belt, "stick", FALLING, reset=_on_belt)]),
         },
+        mode_of=_against_belt,
     )
+    numbers = {"belt": belt, "static": static, "kinetic": kinetic, "amplitude": amplitude, "omega": omega}
+    free = amplitude == 0.0
     return HybridScene(
         system,
         [x0, belt],
-        "stick",
+        _against_belt(0.0, (x0, belt), list(numbers.values())),
         (0.0, t_end),
-        parameters={"belt": belt, "static": static, "kinetic": kinetic},
+        parameters=numbers,
+        period=math.inf if free else 2.0 * math.pi / omega,
         name="stick-slip-oscillator",
-        exact=partial(_stick_slip, belt=belt, static=static, kinetic=kinetic, x0=x0),
+        exact=partial(_stick_slip, belt=belt, static=static, kinetic=kinetic, x0=x0) if free else None,
+        labels=LABELS,
     )
 
 

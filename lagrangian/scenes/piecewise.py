@@ -131,7 +131,9 @@ class Piecewise:
 
     def state(self, t: float) -> tuple[float, float]:
         """y and y' (right limit) at a time not before the start."""
-        while self._now <= t:
+        while self._now < t or (
+            self._now == t and self._pieces[-1][0] < t
+        ):  # what begins at t is known there
             self._advance()
         k = bisect.bisect_right(self._pieces, t, key=lambda piece: piece[0]) - 1
         t0, y0, v0, closed = self._pieces[max(k, 0)]

@@ -29,6 +29,7 @@ from lcpstep.simulate import simulate
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
+FINEST = 4.0 * np.finfo(float).eps  # relative, of a bisection
 ORDER = ("2", "3", "0", "1")  # states from (lambda_max, T_max) on
 OUTCOMES = ("limit cycle", "wheel lock", "equilibrium", "other")
 CYCLE, LOCK, EQUILIBRIUM, OTHER = range(4)
@@ -207,12 +208,9 @@ def edge(exists: Callable[[float], bool], inside: float, outside: float, width: 
     """Where a property that holds at `inside` and not at `outside` is lost, by bisection to a width."""
     if not exists(inside) or exists(outside):
         raise ValueError(f"edge: expected the cycle at {inside:g} and none at {outside:g}")
-    while abs(outside - inside) > width:
-        middle = 0.5 * (inside + outside)
-        if middle in (inside, outside):
-            break
-        inside, outside = (middle, outside) if exists(middle) else (inside, middle)
-    return 0.5 * (inside + outside)
+    from scipy.optimize import bisect
+
+    return float(bisect(lambda x: 1.0 if exists(x) else -1.0, inside, outside, xtol=0.5 * width, rtol=FINEST))
 
 
 def vanishing(scene: HybridScene, width: float = 2e-10, longest: float = 1e7) -> float:

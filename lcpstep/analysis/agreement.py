@@ -100,30 +100,19 @@ def summary(apart: Any) -> Summary:
     )  # fmt: skip
 
 
-def line_distance(a: Array, b: Array) -> float:
-    """1-Wasserstein distance of two samples on the line."""
-    x, step = _steps(a, b)
-    return float(np.sum(np.abs(step[:-1]) * np.diff(x)))
-
-
 def circle_distance(a: Array, b: Array) -> float:
-    """The same on the circle [0, 1); infinite where one of the two is empty."""
+    """1-Wasserstein distance of two samples on the circle [0, 1); infinite where one of the two is empty."""
     if len(a) == 0 or len(b) == 0:
         return 0.0 if len(a) == len(b) else float("inf")
-    x, step = _steps(a, b)
+    x = np.concatenate([a, b])
+    order = np.argsort(x, kind="stable")
+    weight = np.concatenate([np.full(len(a), 1.0 / len(a)), np.full(len(b), -1.0 / len(b))])
+    x, step = x[order], np.cumsum(weight[order])  # the difference of the distribution functions after each
     length = np.diff(x, append=x[0] + 1.0)
     order = np.argsort(step, kind="stable")
     half = int(np.searchsorted(np.cumsum(length[order]), 0.5))
     median = step[order[min(half, len(step) - 1)]]
     return float(np.sum(np.abs(step - median) * length))
-
-
-def _steps(a: Array, b: Array) -> tuple[Array, Array]:
-    """All points in order, and the difference of the distribution functions after each."""
-    x = np.concatenate([a, b])
-    order = np.argsort(x, kind="stable")
-    weight = np.concatenate([np.full(len(a), 1.0 / len(a)), np.full(len(b), -1.0 / len(b))])
-    return x[order], np.cumsum(weight[order])
 
 
 def _states(data: Any) -> Array:
@@ -149,7 +138,9 @@ def _compared(data: Any, reference: Any, k: int, tolerance: float, size: Array) 
 
 def _apart(a: Array, b: Array, size: Array) -> float:
     """States of all runs; the largest distance over the coordinates."""
-    return max(line_distance(a[..., i].ravel(), b[..., i].ravel()) / size[i] for i in range(len(size)))
+    from scipy.stats import wasserstein_distance
+
+    return max(wasserstein_distance(a[..., i].ravel(), b[..., i].ravel()) / size[i] for i in range(len(size)))
 
 
 def _names(data: Any, k: int, tolerance: float) -> str:

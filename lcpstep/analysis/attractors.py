@@ -2,8 +2,9 @@
 
 Runs from many states are followed until they have settled. A motion that comes back after n periods, with m impacts
 on the way, is an O(n, m); where infinitely many impacts (complete chattering) belong to it, that is said in place
-of m. One that does not come back is aperiodic: chaotic if its largest Lyapunov exponent is positive beyond its
-standard error. Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.2.3.
+of m. Of a system with modes the m events are its switches. One that does not come back is aperiodic: chaotic if its
+largest Lyapunov exponent is positive beyond its standard error. Source: G. Osorio, Complex Behavior in Impacting
+Systems, section 3.2.3.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
-from lcpstep.analysis.grid_error import APART, on_other_grids, spread
+from lcpstep.analysis.grid_error import APART, finer_method, on_other_grids, spread, wandered
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
 from lcpstep.analysis.listed import listed
 from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
@@ -32,6 +33,9 @@ TOLERANCE = 1e-6  # of a return, relative to the size of the motion
 LYAPUNOV_PERIODS = 400
 POINTS, CLOUD = 8000, 2000  # periods that an aperiodic attractor, and one of time-stepping, are sampled over
 STARTS, FORGET, KICK = 32, 60, 1e-9  # of these samples: runs, periods until they have parted, by what kick
+# Exponents of periodic motions by time-stepping: shares of h, runs on each, turns averaged over, and before
+GRIDS, RUNS, AVERAGED, FORGOTTEN = (1.0, 0.9, 0.8, 0.71, 0.6, 0.5), 2, 60, 40
+UNSURE = 0.5  # of an exponent: an error beyond which it is not told
 MOST, MOST_OF_MANY = 512, 64  # impacts of a period that are kept, of a periodic motion and of others
 
 
@@ -44,8 +48,9 @@ class Attractor:
     periods : n of an O(n, m), 0 where the motion is aperiodic
     impacts : m, impacts in n periods; their mean per period where the motion is aperiodic
     landings : how often in n periods the contact closes for good, after complete chattering or an impact without
-        rebound; in one period, on the average, where the motion is aperiodic
-    points : (k, 2 n_q)   states (q, v) on the section: n of them, or many where the motion is aperiodic
+        rebound; in one period, on the average, where the motion is aperiodic. Of a system with modes: how often
+        sliding begins
+    points : (k, 2 n_q)   states (q, v), or (k, n_x), on the section: n of them, or many where the motion is aperiodic
     cloud : (j, 2 n_q)   the same, but many for every motion by time-stepping, whose grid scatters them; for an
         aperiodic one each period is taken with a step of its own, between 0.9 h and h, for on one grid all runs come
         to a cycle that only the grid has
@@ -53,6 +58,7 @@ class Attractor:
     impact_number : (m,)   the number of each in its period, from 1
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
+    modes : whether the scene is one with modes, so that `impacts` are its switches and landings begin to slide
     """
 
     periods: int
@@ -66,12 +72,14 @@ class Attractor:
     cloud: Array
     lyapunov: Lyapunov
     share: float = 1.0
+    modes: bool = False
 
     @property
     def name(self) -> str:
         """O(n, m), O(n, chattering), chaotic, or aperiodic where chaos is not certain."""
         if self.periods:
-            return f"O({self.periods}, {'chattering' if self.landings else round(self.impacts)})"
+            endless = self.landings and not self.modes
+            return f"O({self.periods}, {'chattering' if endless else round(self.impacts)})"
         return "chaotic" if self.lyapunov.chaotic else "aperiodic"
 
 
@@ -94,7 +102,7 @@ class Attractors:
 
 
 def attractors(
-    scene: Scene,
+    scene: Scene | HybridScene,
     method: Method,
     starts: ArrayLike,
     *,
@@ -109,9 +117,9 @@ def attractors(
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period
-    method : lcpstep.EventDriven or lcpstep.Moreau
-    starts : (s, 2 n_q)   states (q, v) at the section; see `random_starts`
+    scene : lagrangian.Scene, or HybridScene, with a period
+    method : lcpstep.EventDriven or lcpstep.Moreau; EventDriven for a system with modes
+    starts : (s, 2 n_q)   states (q, v), or (s, n_x), at the section; see `random_starts`
     transient, window : periods dropped, and looked at
     longest : longest period n, in periods of the forcing, that is recognised; at most a half of the window
     phase : of the section, as a share of the period in [0, 1)
@@ -133,7 +141,7 @@ def attractors(
         scene, method, starts, transient + window, drop=transient, phase=phase, most=0, strict=True
     )
     done = np.flatnonzero(runs.status == Status.DONE)
-    settled = _settled(scene, method, runs, done, longest, phase, tolerance)
+    settled = _settled(scene, method, runs, done, longest, phase, tolerance, transient)
     groups = sorted(grouped(settled), key=len, reverse=True)
     label = np.full(len(runs.status), -1)
     found = []
@@ -154,8 +162,8 @@ def attractors(
 
 
 def _settled(
-    scene: Scene, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
-    tolerance: float | None,
+    scene: Any, method: Method, runs: Periods, done: NDArray[np.int64], longest: int, phase: float,
+    tolerance: float | None, transient: int,
 ) -> list[Settled]:  # fmt: skip
     """What each run that got to its end has settled to; what counts as a return the method's grid decides."""
     if isinstance(method, EventDriven) or tolerance is not None or len(done) == 0:
@@ -167,14 +175,21 @@ def _settled(
             result.append(Settled(int(i), runs.states[i], np.full(runs.final.shape[1], size), allowed, n))
         return result
     moved = spread(scene, method, runs.final[done], phase)
-    result = []
-    for k, i in enumerate(done):
-        allowed = max(float(APART * moved.radius[k]), TOLERANCE)
-        n = return_time(runs.states[i] / moved.scale[k], longest, allowed) if moved.forgets[k] else 0
-        # On its own grid an aperiodic motion may be caught by a cycle that only the grid has
-        states = runs.states[i] if n else moved.paths[k]
-        result.append(Settled(int(i), states, moved.scale[k], allowed, n))
-    return result
+    within = np.maximum(APART * moved.radius, TOLERANCE)
+    returns = [
+        return_time(runs.states[i] / moved.scale[k], longest, float(within[k])) if moved.forgets[k] else 0
+        for k, i in enumerate(done)
+    ]
+    # On its own grid an aperiodic motion may be caught by a cycle that only this grid has
+    restless = np.flatnonzero(np.array(returns) == 0)
+    states = [runs.states[i] for i in done]
+    if len(restless):
+        later = wandered(scene, method, runs.final[done[restless]], transient, phase)
+        for k, path in zip(restless, spread(scene, method, later, phase).paths, strict=True):
+            states[k] = path
+    return [
+        Settled(int(i), states[k], moved.scale[k], float(within[k]), returns[k]) for k, i in enumerate(done)
+    ]
 
 
 def with_new(known: Attractors, more: Attractors) -> Attractors:
@@ -232,6 +247,7 @@ def described(
         cloud=sample.states.reshape(-1, sample.states.shape[-1]),
         lyapunov=_growth(P, sample, x, n),
         share=share,
+        modes=isinstance(P.scene, HybridScene),
     )
 
 
@@ -258,11 +274,11 @@ def _sampled(P: PeriodMap, runs: Periods, members: list[int], n: int, points: in
 
 def _growth(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
     """Largest Lyapunov exponent per period: from the multipliers of a periodic motion, or along an aperiodic one."""
-    if not sample.tangents.shape[
-        1
-    ]:  # no closed form, and differences across the impacts of time-stepping say nothing
+    if not sample.tangents.shape[1]:  # no closed form
         if not isinstance(P.method, EventDriven):
-            return Lyapunov(math.nan, math.nan)
+            return Lyapunov(
+                math.nan, math.nan, reason="differences across the impacts of time-stepping say nothing"
+            )
         if not n:
             return lyapunov(P, x, LYAPUNOV_PERIODS)
         return _of_multipliers(image_and_derivative(P, x, n)[1], n)
@@ -272,27 +288,38 @@ def _growth(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
             J = factor @ J
         return _of_multipliers(J, n)
     if n:
-        return _of_scattered(P, sample, n)
+        return _of_scattered(P, sample.final[:RUNS], n)
     return growth_of_runs(sample.tangents)
 
 
-def _of_scattered(P: PeriodMap, sample: Periods, n: int) -> Lyapunov:
-    """From the impacts of runs that the grid of time-stepping scatters around a periodic motion.
+def _of_scattered(P: PeriodMap, starts: Array, n: int) -> Lyapunov:
+    """Of a periodic motion by time-stepping, from motions with steps of h/2 to h.
 
-    The derivative is that along the mean impacts of each run, which have lost the scatter; how far the growth along
-    the scattered runs is from it is its error. Both are of the motion as the grid has it.
+    Each grid scatters the impacts, and moves their mean; the derivative is that along the mean impacts of a run. What
+    the exponents on the grids differ by is their error. Where that is as large as a good part of the exponent the
+    motion has left the orbit too far for its derivative to be that of the orbit, and nothing is told.
     """
     parts = []
-    for i in range(len(sample.status)):
-        log, counts = mean_impacts(sample, i, n)
-        J = np.eye(2)
-        for factor in P.from_impacts(log[None], counts[None])[0]:
-            J = factor @ J
-        parts.append(_of_multipliers(J, n).largest)
+    for share in GRIDS:
+        finer = replace(P, method=finer_method(P.method, share))
+        run = finer.many(starts, (AVERAGED + FORGOTTEN) * n, FORGOTTEN * n, most=MOST)
+        for i in range(len(starts)):
+            log, counts = mean_impacts(run, i, n)
+            J = np.eye(2)
+            for factor in P.from_impacts(log[None], counts[None])[0]:
+                J = factor @ J
+            parts.append(_of_multipliers(J, n).largest)
     if -math.inf in parts:
         return Lyapunov(-math.inf, 0.0)
-    largest = float(np.mean(parts))
-    return Lyapunov(largest, abs(largest - growth_of_runs(sample.tangents).largest))
+    largest = float(np.median(parts))
+    error = float(np.max(np.abs(np.array(parts) - largest)))
+    if error > UNSURE * abs(largest):
+        reason = (
+            f"from {min(parts):.3g} to {max(parts):.3g} with steps of h/2 to h; the motion by time-stepping lies too "
+            f"far from the orbit: take a smaller h"
+        )
+        return Lyapunov(math.nan, error, reason=reason)
+    return Lyapunov(largest, error)
 
 
 def mean_impacts(sample: Periods, i: int, n: int) -> tuple[Array, NDArray[np.int64]]:

@@ -26,11 +26,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.attractors import Attractor, Attractors, attractors, random_starts, with_new
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
-from lcpstep.maps.batch import INSIDE, Targets, periods
+from lcpstep.maps.batch import INSIDE, Targets, periodic, periods
 from lcpstep.simulate import Method
 from lcpstep.sweep import Arrays, sweep
 
@@ -49,7 +49,7 @@ CONFIDENCE = 0.95
 
 
 def basins(
-    scene: Scene,
+    scene: Scene | HybridScene,
     lowest: ArrayLike,
     highest: ArrayLike,
     shape: tuple[int, int] = (200, 200),
@@ -69,7 +69,7 @@ def basins(
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period and one coordinate
+    scene : lagrangian.Scene with a period and one coordinate, or HybridScene with a period and two states
     lowest, highest : (2,)   corners of the rectangle of states (q, v) at the section
     shape : number of cells along q and along v
     method : EventDriven() where not given
@@ -90,8 +90,10 @@ def basins(
     ValueError   an empty or reversed rectangle, a grid without cells, more than one coordinate
     SweepStopped   the executor died; finished parts are kept in `out`
     """
-    if scene.n_q != 1:
-        raise ValueError(f"scene: expected one coordinate, {scene.name!r} has {scene.n_q}")
+    if scene.n_x != 2:
+        raise ValueError(
+            f"scene: expected two states, {scene.name!r} has {scene.n_x}: {', '.join(scene.labels)}"
+        )
     low, high = checks.array("lowest", lowest, (2,)), checks.array("highest", highest, (2,))
     if not np.all(low < high):
         raise ValueError(f"lowest, highest: expected an increasing range of q and of v, got {low} and {high}")
@@ -167,15 +169,23 @@ class Grid:
         return np.where(within, place[:, 0] + self.n_q * place[:, 1], -1)
 
 
-def outside(scene: Scene, x: Array, phase: float) -> Array:
-    """Those of the states (m, 2 n_q) that do not lie inside of the obstacle."""
+def outside(scene: Scene | HybridScene, x: Array, phase: float) -> Array:
+    """Those of the states (m, 2 n_q) that do not lie inside of the obstacle; all where there is none."""
+    if isinstance(scene, HybridScene):
+        return x
+    periodic(scene)
     t = phase * scene.period
     n = scene.n_q
     return x[[bool(np.all(scene.gap(t, y[:n], y[n:])[0] >= 0.0)) for y in x]]
 
 
 def neighbourhoods(
-    scene: Scene, method: Method, found: tuple[Attractor, ...], phase: float, longest: int, seed: int
+    scene: Scene | HybridScene,
+    method: Method,
+    found: tuple[Attractor, ...],
+    phase: float,
+    longest: int,
+    seed: int,
 ) -> tuple[Targets, Ints]:
     """Balls around the points of attractors that go there, judged by probes on them; and whose they are."""
     if not found:
@@ -227,26 +237,26 @@ def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:
     """
     unlabelled = label[cells] == UNKNOWN
     cells, landed = cells[unlabelled], landed[unlabelled]
+    small = label.astype(np.int16)  # a quarter of what has to be read again and again
     while len(cells):
-        inner = np.append(homogeneous(label.reshape(grid.n_v, grid.n_q)).ravel(), UNKNOWN)
+        inner = np.append(homogeneous(small.reshape(grid.n_v, grid.n_q)).ravel(), np.int16(UNKNOWN))
         fates = inner[landed]
         fate = np.max(fates, axis=1)  # where several images are settled, they are on one attractor
         settled = fate >= 0
         if not np.any(settled):
             return
-        label[cells[settled]] = fate[settled]
+        label[cells[settled]] = small[cells[settled]] = fate[settled]
         cells, landed = cells[~settled], landed[~settled]
 
 
-def homogeneous(label: Ints) -> Ints:
+def homogeneous(label: NDArray[Any]) -> NDArray[Any]:
     """The label of cells that share it with their eight neighbours, UNKNOWN elsewhere and at the edge."""
-    result = np.full(label.shape, UNKNOWN)
-    same = np.ones((label.shape[0] - 2, label.shape[1] - 2), dtype=bool)
-    middle = label[1:-1, 1:-1]
-    for i in range(3):
-        for k in range(3):
-            same &= label[i : i + same.shape[0], k : k + same.shape[1]] == middle
-    result[1:-1, 1:-1] = np.where(same & (middle >= 0), middle, UNKNOWN)
+    result = np.full_like(label, UNKNOWN)
+    level = (label[:, 1:-1] == label[:, :-2]) & (label[:, 1:-1] == label[:, 2:])
+    upright = label[1:-1, 1:-1]
+    same = level[1:-1] & level[:-2] & level[2:]
+    same &= (upright == label[:-2, 1:-1]) & (upright == label[2:, 1:-1]) & (upright >= 0)
+    result[1:-1, 1:-1][same] = upright[same]
     return result
 
 
@@ -254,7 +264,7 @@ def homogeneous(label: Ints) -> Ints:
 class _Study:
     """What every part knows."""
 
-    scene: Scene
+    scene: Scene | HybridScene
     method: Method
     grid: Grid
     targets: tuple[Targets, Ints]
@@ -304,7 +314,7 @@ class _Study:
         error = np.array([self.error(label, k, admissible) for k in range(len(names))]) + wrong
         attributes = {k: v for k, v in self.inputs(known).items() if k not in ("points", "attractors")}
         attributes |= {
-            "seed": seed, "sample": sample, "wrong_labels_upper_bound": wrong,
+            "labels": list(self.scene.labels), "seed": seed, "sample": sample, "wrong_labels_upper_bound": wrong,
             "unlabelled": float(np.sum(label == UNKNOWN)) / admissible,
         }  # fmt: skip
         cells = np.arange(max(g.n_q, g.n_v))

@@ -19,7 +19,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.listed import joined, listed
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
@@ -45,7 +45,7 @@ WINDOWS = {  # rpm of the cam-follower, as in the thesis
 
 
 def bifurcation(
-    make: Callable[..., Scene],
+    make: Callable[..., Scene | HybridScene],
     parameter: str,
     values: ArrayLike,
     *,
@@ -68,12 +68,12 @@ def bifurcation(
 
     Parameters
     ----------
-    make : make(**{parameter: value}) -> scene, for example `lagrangian.scenes.cam_follower`
+    make : make(**{parameter: value}) -> scene or scene with modes, for example `lagrangian.scenes.cam_follower`
     parameter, values : name and increasing values (n,) of the parameter
     method : EventDriven() where not given
     start : "fixed": every run from x0; "forward", "backward": the first from x0, each further one from where its
         neighbour ended; "random": `runs` runs a value from states drawn uniformly from `box`
-    x0 : (2 n_q,)   state (q, v) at the section; zero where not given
+    x0 : (2 n_q,)   state (q, v), or (n_x,), at the section; zero where not given
     box : (2, 2 n_q)   lowest and highest states of the random starts
     runs, seed : number of random starts at each value, and the seed that they are drawn with
     drop, keep : periods of the transient and of the record
@@ -84,10 +84,11 @@ def bifurcation(
 
     Returns
     -------
-    xarray.Dataset   on (run, <parameter>, period): q, v (with dimension `coordinate`), impacts (their number), ends
-        (chattering sequences and other landings); status on (run, <parameter>); corner_phase on (<parameter>,
-        corner). All impacts as one long list: impact_phase in [0, 1), impact_before, impact_after, and where each
-        belongs, impact_value (index of the parameter's value), impact_run, impact_period, impact_number; likewise
+    xarray.Dataset   on (run, <parameter>, period): q, v (with dimension `coordinate`), of systems with modes x (with
+        dimension `state`); impacts (their number; of switches where there are modes), ends (chattering sequences and
+        other landings; beginnings of sliding); status on (run, <parameter>); corner_phase on (<parameter>, corner).
+        All impacts as one long list: impact_phase in [0, 1), impact_before, impact_after, and where each belongs,
+        impact_value (index of the parameter's value), impact_run, impact_period, impact_number; likewise
         landing_phase, .., the ends of chattering sequences. Everything that it was made from is in the attributes.
 
     Raises
@@ -101,7 +102,7 @@ def bifurcation(
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")
     first = make(**{parameter: float(values[0])})
-    d = 2 * first.n_q
+    d = first.n_x
     study = _Study(
         make=make, parameter=parameter, values=values, method=method or EventDriven(), start=start,
         x0=checks.array("x0", np.zeros(d) if x0 is None else x0, (d,)), box=_box(box, d, start),
@@ -127,7 +128,7 @@ def _box(box: ArrayLike | None, d: int, start: str) -> Array:
     return result
 
 
-def _name(make: Callable[..., Scene]) -> str:
+def _name(make: Callable[..., Any]) -> str:
     """The same in every process, so that an interrupted run knows its own parts again."""
     if isinstance(make, partial):
         fixed = ", ".join(f"{key}={value!r}" for key, value in sorted(make.keywords.items()))
@@ -139,7 +140,7 @@ def _name(make: Callable[..., Scene]) -> str:
 class _Study:
     """What every part of the sweep knows; called with the indices of the values of the part."""
 
-    make: Callable[..., Scene]
+    make: Callable[..., Scene | HybridScene]
     parameter: str
     values: Array
     method: Method
@@ -189,7 +190,7 @@ class _Study:
             row[: len(found)] = found
         return table
 
-    def inputs(self, first: Scene) -> dict[str, Any]:
+    def inputs(self, first: Scene | HybridScene) -> dict[str, Any]:
         """What the result depends on."""
         names = ("start", "runs", "seed", "drop", "keep", "phase", "most")
         return provenance(first, self.method) | {
@@ -197,7 +198,7 @@ class _Study:
             "x0": self.x0.tolist(), "box": self.box.tolist(), **{name: getattr(self, name) for name in names},
         }  # fmt: skip
 
-    def dataset(self, first: Scene, parts: list[Arrays]) -> Any:
+    def dataset(self, first: Scene | HybridScene, parts: list[Arrays]) -> Any:
         """All parts in the order of the values."""
         order = np.argsort(np.concatenate([part["index"] for part in parts]))
         table = {
@@ -207,10 +208,17 @@ class _Study:
         lists = joined(
             [{k: x for k, x in part.items() if k.startswith(("impact_", "landing_"))} for part in parts]
         )
-        n, at = first.n_q, ("run", self.parameter, "period")
+        at = ("run", self.parameter, "period")
+        if isinstance(first, HybridScene):
+            states = {"x": ((*at, "state"), table["states"])}
+        else:
+            n = first.n_q
+            states = {
+                "q": ((*at, "coordinate"), table["states"][..., :n]),
+                "v": ((*at, "coordinate"), table["states"][..., n:]),
+            }
         variables = {
-            "q": ((*at, "coordinate"), table["states"][..., :n]),
-            "v": ((*at, "coordinate"), table["states"][..., n:]),
+            **states,
             "impacts": (at, table["impacts"]),
             "ends": (at, table["ends"]),
             "status": (at[:2], table["status"]),
@@ -218,5 +226,6 @@ class _Study:
             **{name: ((name.split("_")[0],), x) for name, x in lists.items()},
         }
         attributes = {k: v for k, v in self.inputs(first).items() if k not in ("values", "box")}
+        attributes |= {"labels": list(first.labels), "modes": int(isinstance(first, HybridScene))}
         attributes |= {"box": self.box.ravel()} if self.start == "random" else {}
         return labelled(variables, {self.parameter: self.values}, attributes)

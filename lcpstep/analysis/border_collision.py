@@ -179,6 +179,20 @@ def canonical_form(f: PiecewiseLinearMap) -> PiecewiseLinearMap:
     NotContinuous   the two sides do not meet on the border
     LcpStepError   the border does not see the whole state (O is singular)
     """
+    W = _to_observer_form(f)
+    inverse = np.linalg.inv(W)
+    return PiecewiseLinearMap(
+        A_minus=W @ np.asarray(f.A_minus) @ inverse,
+        A_plus=W @ np.asarray(f.A_plus) @ inverse,
+        B_minus=W @ np.asarray(f.B_minus),
+        B_plus=W @ np.asarray(f.B_plus),
+        C=np.asarray(f.C) @ inverse,
+        D=f.D,
+    )
+
+
+def _to_observer_form(f: PiecewiseLinearMap) -> Array:
+    """W of `canonical_form`."""
     gap, _ = f.gap()
     if gap > CONTINUOUS:
         raise NotContinuous(gap)
@@ -189,16 +203,33 @@ def canonical_form(f: PiecewiseLinearMap) -> PiecewiseLinearMap:
         raise LcpStepError("the map has no canonical form: its observability matrix is singular")
     coefficients = np.poly(A)
     T = sum(coefficients[k] * np.eye(d, k=-k) for k in range(d))
-    W = T @ O
-    inverse = np.linalg.inv(W)
-    return PiecewiseLinearMap(
-        A_minus=W @ A @ inverse,
-        A_plus=W @ np.asarray(f.A_plus) @ inverse,
-        B_minus=W @ np.asarray(f.B_minus),
-        B_plus=W @ np.asarray(f.B_plus),
-        C=C @ inverse,
-        D=f.D,
-    )
+    return np.asarray(T @ O)
+
+
+class NormalForm(NamedTuple):
+    """y -> A- y + B m for y_1 < 0 and A+ y + B m for y_1 > 0, with y = W x + shift m; see `normal_form`."""
+
+    A_minus: Array
+    A_plus: Array
+    B: Array
+    W: Array
+    shift: Array
+
+
+def normal_form(f: PiecewiseLinearMap) -> NormalForm:
+    """The same map with companion matrices and its border at y_1 = 0, whatever the parameter.
+
+    y = W x + d m takes the observer form, W of `canonical_form`, and moves the border by d = (D, 0, ..): then
+    B = W B- + d - A- d of the companion matrices, and continuity makes W B+ + d - A+ d the same vector.
+
+    Raises
+    ------
+    NotContinuous, LcpStepError   as `canonical_form`
+    """
+    g, W = canonical_form(f), _to_observer_form(f)
+    shift = np.append(f.D, np.zeros(len(W) - 1))
+    A = np.asarray(g.A_minus)
+    return NormalForm(A, np.asarray(g.A_plus), np.asarray(g.B_minus) + shift - A @ shift, W, shift)
 
 
 def diagram(

@@ -37,5 +37,7 @@ def branch_dataset(
         "special_after": (("special",), np.array([s.after for s in special], dtype=np.int64)),
     }
     values = np.array([way.points.p[k] for way, k in order])
-    attributes = provenance(scene, method) | {"parameter": parameter, "phase": down.phase, "range": p_range}
+    attributes = provenance(scene, method) | {
+        "parameter": parameter, "phase": down.phase, "range": p_range, "labels": list(scene.labels)
+    }  # fmt: skip
     return labelled(variables, {parameter: (("point",), values)}, attributes)

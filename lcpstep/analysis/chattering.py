@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +27,15 @@ from lcpstep.trajectory import Kind, Status
 Array = NDArray[np.float64]
 Family = Callable[[float], Scene]
 Phases = dict[tuple[int, str, int], float]
+Places = tuple[Phases, Array]  # of the followed events, and of the corners
 FORGOTTEN = 4  # periods after which a motion that sticks has forgotten its start
 ROOT = 1e-12  # relative accuracy of a crossing
-AT_CORNER = 1e-11  # of the period: an event this near to a corner lies on it
+AT_CORNER = 1e-11  # of the period: a release this near to a corner lies on it
 REACHED = 1e-7  # of the period: how near the event must come to the corner at the parameter found
+APART = 1e-7  # of the parameter: crossings nearer to each other than this may be missed in pairs
+TWICE, NEIGHBOURS = 1e-9, 64  # crossings of one event this near are one; among so many at about one parameter
+GOLDEN = 0.5 * (3.0 - 5.0**0.5)
+SAFE = 4.0  # by how much the bend of an event's way, seen at five places, is taken for larger between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,18 +117,19 @@ def corner_crossings(
     make: Family,
     p_range: tuple[float, float],
     *,
-    points: int = 200,
     impacts: int = 12,
     method: EventDriven | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[Crossing]:
     """Parameters at which a release, one of the first impacts, or an accumulation point lies on a corner.
 
+    The range is divided until over each part each event either keeps away from each corner by more than its way
+    bends, or passes it once; kinks and jumps are closed in upon to 1e-7 of the parameter.
+
     Parameters
     ----------
     make : p -> scene, at whose start the contact is closed
     p_range : (low, high)
-    points : of the grid on which sign changes are looked for
     impacts : how many impacts of each sequence are followed
     progress : called with the parameter reached
 
@@ -133,26 +140,32 @@ def corner_crossings(
 
     Raises
     ------
-    ValueError   an empty or reversed range, or fewer than two points
+    ValueError   an empty or reversed range
     """
     low, high = (checks.number("p_range", end) for end in p_range)
     if not low < high:
         raise ValueError(f"p_range: expected low < high, got {p_range!r}")
-    if checks.count("points", points) < 2:
-        raise ValueError(f"points: expected at least 2, got {points}")
     followed = _Followed(make, impacts, method)
     found: list[Crossing] = []
-    before: Phases = {}
-    grid = [float(p) for p in np.linspace(low, high, points)]
-    for k, p in enumerate(grid):
-        now = followed.phases(p)
-        if k > 0:
-            found += followed.crossings(grid[k - 1], p, before, now)
-            found += followed.ends(grid[k - 1], p, before, now) + followed.ends(p, grid[k - 1], now, before)
-        before = now
+    # Divided by the golden section at first: a crossing in the middle of the range lies on no place that is looked at
+    golden = low + GOLDEN * (high - low)
+    grids = [[float(p) for p in np.linspace(*ends, 5)] for ends in ((golden, high), (low, golden))]
+    waiting = [(grid, [followed.places(p) for p in grid]) for grid in grids]
+    while waiting:
+        p, at = waiting.pop()
+        if p[-1] - p[0] > APART * abs(p[-1]) and not plain(at):
+            middle = [0.5 * (a + b) for a, b in pairwise(p)]
+            fine = sorted([*p, *middle])
+            new = dict(zip(p, at, strict=True)) | {x: followed.places(x) for x in middle}
+            for part in (fine[4:], fine[:5]):  # the lower half is taken first
+                waiting.append((part, [new[x] for x in part]))
+            continue
+        for a, b, at_a, at_b in zip(p, p[1:], at, at[1:], strict=False):
+            found += followed.crossings(a, b, at_a, at_b)
+            found += followed.ends(a, b, at_a, at_b) + followed.ends(b, a, at_b, at_a)
         if progress is not None:
-            progress(p)
-    return sorted(found, key=lambda c: c.p)
+            progress(p[-1])
+    return told_once(sorted(found, key=lambda c: c.p))
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,18 +185,23 @@ class _Followed:
             found |= {(i, "impact", j + 1): float(x) for j, x in enumerate(s.impacts[: self.impacts])}
         return found
 
+    def places(self, p: float) -> Places:
+        """Phases of the followed events and of the corners."""
+        return self.phases(p), self.corners(p)
+
     def corners(self, p: float) -> Array:
         """Phases of the corners."""
         scene = self.make(p)
         return np.asarray(scene.corners) / scene.period
 
-    def crossings(self, a: float, b: float, at_a: Phases, at_b: Phases) -> list[Crossing]:
+    def crossings(self, a: float, b: float, at_a: Places, at_b: Places) -> list[Crossing]:
         """Events that are there at both ends of an interval, on the two sides of a corner."""
         found = []
-        for event in at_a.keys() & at_b.keys():
-            for c, (corner_a, corner_b) in enumerate(zip(self.corners(a), self.corners(b), strict=True)):
-                start, end = _distance(at_a[event], corner_a), _distance(at_b[event], corner_b)
-                if _off(start) * _off(end) <= 0.0 and abs(start - end) < 0.5 and _off(start) != _off(end):
+        for event in at_a[0].keys() & at_b[0].keys():
+            for c, (corner_a, corner_b) in enumerate(zip(at_a[1], at_b[1], strict=True)):
+                start, end = _distance(at_a[0][event], corner_a), _distance(at_b[0][event], corner_b)
+                off = _off(event, start), _off(event, end)
+                if off[0] * off[1] <= 0.0 and abs(start - end) < 0.5 and off[0] != off[1]:
                     p = self.located(event, c, a, b, start, end)
                     if p is not None:
                         found.append(Crossing(*event, c, p))
@@ -205,7 +223,7 @@ class _Followed:
             d = _distance(phase, self.corners(p)[c])
             return abs(d) - AT_CORNER if stays else d
 
-        stays = _off(start) == 0.0 or _off(end) == 0.0
+        stays = 0.0 in (_off(event, start), _off(event, end))
         try:
             p = float(brentq(distance, a, b, xtol=ROOT * abs(b), rtol=4.0 * np.finfo(float).eps))
             # Where it jumps once it has passed the corner, one side comes near
@@ -214,11 +232,11 @@ class _Followed:
             return None
         return p if near <= REACHED else None
 
-    def ends(self, a: float, b: float, at_a: Phases, at_b: Phases) -> list[Crossing]:
+    def ends(self, a: float, b: float, at_a: Places, at_b: Places) -> list[Crossing]:
         """Events on a corner where their sequence, which is there at a and not at b, ends to be."""
         found = []
-        for i in {event[0] for event in at_a} - {event[0] for event in at_b}:
-            there, gone, last = a, b, at_a
+        for i in {event[0] for event in at_a[0]} - {event[0] for event in at_b[0]}:
+            there, gone, last = a, b, at_a[0]
             while abs(there - gone) > ROOT * abs(b):
                 p = 0.5 * (there + gone)
                 now = self.phases(p)
@@ -234,11 +252,42 @@ class _Followed:
         return found
 
 
-def _distance(phase: float, corner: float) -> float:
+def told_once(found: list[Crossing]) -> list[Crossing]:
+    """Without those told twice, by both neighbours of a parameter at which the event was seen on the corner."""
+    kept: list[Crossing] = []
+    for c in found:
+        if not any(k[:4] == c[:4] and c.p - k.p <= TWICE * abs(c.p) for k in kept[-NEIGHBOURS:]):
+            kept.append(c)
+    return kept
+
+
+def plain(at: list[Places]) -> bool:
+    """Whether at five equally spaced parameters each event keeps to one side of each corner, or passes it once."""
+    events = at[0][0].keys()
+    if any(phases.keys() != events for phases, _ in at):
+        return False
+    if not events:
+        return True
+    phases = np.array([[found[event] for event in events] for found, _ in at])
+    d = _distance(phases[:, :, None], np.array([corners for _, corners in at])[:, None, :])
+    may_stay = np.array([event[1] == "release" for event in events])[:, None]
+    d = np.where(may_stay & (np.abs(d) <= AT_CORNER), 0.0, d)
+    steps = _distance(d[1:], d[:-1])
+    bend = SAFE * np.max(np.abs(np.diff(steps, axis=0)), axis=0)
+    away = (np.min(np.abs(d), axis=0) > bend) & ((np.min(d, axis=0) > 0.0) | (np.max(d, axis=0) < 0.0))
+    far = (
+        np.min(np.abs(d), axis=0) > np.max(np.abs(steps), axis=0) + bend
+    )  # where the distance turns about, too
+    once = np.min(np.abs(steps), axis=0) > bend
+    stays = np.all(d == 0.0, axis=0)
+    return bool(np.all(away | far | once | stays))
+
+
+def _distance(phase: Any, corner: Any) -> Any:
     """From a corner to an event, as share of the period in [-1/2, 1/2)."""
-    return float((phase - corner + 0.5) % 1.0 - 0.5)
+    return (phase - corner + 0.5) % 1.0 - 0.5
 
 
-def _off(distance: float) -> float:
+def _off(event: tuple[int, str, int], distance: float) -> float:
     """A distance of which rounding is taken for zero: a release may stay on a corner over a range of parameters."""
-    return 0.0 if abs(distance) <= AT_CORNER else distance
+    return 0.0 if event[1] == "release" and abs(distance) <= AT_CORNER else distance

@@ -70,6 +70,18 @@ def spread(scene: Scene, method: Method, states: Array, phase: float, seed: int 
     return Spread(scale, radius, forgets, np.concatenate(paths).transpose(1, 0, 2))
 
 
+def wandered(scene: Scene, method: Method, states: Array, n: int, phase: float, seed: int = 1) -> Array:
+    """Where the motions from the given states (m, d) have come to after n periods, each on a grid of its own.
+
+    A cycle that only one grid has, on a saddle that motions leave, is left: what remains is an attractor.
+    """
+    random = np.random.default_rng(seed)
+    for _ in range(n):
+        finer = finer_method(method, float(random.uniform(0.5, 1.0)))
+        states = periods(scene, finer, states, 1, phase=phase, most=0, strict=False).final
+    return states
+
+
 def on_other_grids(P: PeriodMap, starts: Array, n: int, drop: int, most: int, seed: int = 0) -> Periods:
     """Runs of n periods, each on a grid of its own; on one and the same grid all would come to one cycle of it."""
     random = np.random.default_rng(seed)

@@ -9,7 +9,7 @@ matrices; divide by the period for exponents per second. Source: G. Benettin et 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,12 +28,14 @@ class Lyapunov:
     """Largest exponent and the standard error of it, per iteration; -inf where deviations vanish.
 
     A landing on an obstacle (the contact closes for good) wipes out all deviations of one degree of freedom. Where
-    this is rare, `largest` is the growth between landings, of which there were `landings`.
+    this is rare, `largest` is the growth between landings, of which there were `landings`. Not-a-number where it is
+    not known, for the `reason` given.
     """
 
     largest: float
     error: float
     landings: int = 0
+    reason: str = ""
 
     @property
     def chaotic(self) -> bool:
@@ -52,7 +54,9 @@ def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
         lost = length == 0.0
         growth[:, k] = np.where(lost, math.nan, np.log(np.where(lost, 1.0, length)))
         directions = np.where(lost[:, None], np.eye(d)[0], directions / np.where(lost, 1.0, length)[:, None])
-    return mean_growth(growth[:, min(drop, n - 1) :].ravel(), m if m > 1 else BLOCKS)
+    growth = growth[:, min(drop, n - 1) :]
+    found = mean_growth(growth.T.ravel())  # in the order of time: runs may have come together
+    return found if m == 1 else replace(found, error=max(found.error, mean_growth(growth.ravel(), m).error))
 
 
 def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:

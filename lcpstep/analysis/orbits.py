@@ -1,6 +1,7 @@
 """Periodic orbits of a scene: by shooting, with their impacts, multipliers, and branches over a parameter.
 
-An orbit O(n, m) closes after n periods of the forcing and has m impacts on the way. Along a branch the impacts
+An orbit O(n, m) closes after n periods of the forcing and has m impacts on the way; of a system with modes, m
+switches. Along a branch the impacts
 that pass a corner of the forcing are located, and so is the grazing contact at which a branch ends. Source:
 G. Osorio, Complex Behavior in Impacting Systems, sections 2.8.2, 3.3.2 and 4.4.2.
 """
@@ -10,19 +11,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
 from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, periodic_point
 from lcpstep.analysis.predictor import Progress
-from lcpstep.analysis.variation import PeriodMap
+from lcpstep.analysis.variation import IMPACTS, PeriodMap
 from lcpstep.events import EventDriven
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.maps.batch import Periods
+from lcpstep.maps.modes import Placing
 from lcpstep.simulate import Method, fitted, simulate
-from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 SAMPLES = 64  # of the gap per period, between impacts
@@ -37,14 +40,16 @@ class PeriodicOrbit:
     Attributes
     ----------
     scene, method, phase : the question; the section is at t = phase x period
-    x : (n, 2 n_q)   states (q, v) on the section
-    time, before, after : (m,)   the impacts: time from the section's t on [s], gap velocities [m/s]
-    sticks : whether the contact closes for good on the way (chattering, or an impact without rebound)
-    multipliers : (2 n_q,)   largest modulus first
+    x : (n, 2 n_q)   states (q, v), or (n, n_x), on the section
+    time, before, after : (m,)   the impacts: time from the section's t on [s], gap velocities [m/s]; of a system with
+        modes the switches, with the rates of their guards
+    sticks : whether the contact closes for good on the way (chattering, or an impact without rebound); of a system
+        with modes, whether it slides
+    multipliers : (d,)   largest modulus first; one is zero where a system with modes slides
     residual : max |x after n periods - x|
     """
 
-    scene: Scene
+    scene: Scene | HybridScene
     method: Method
     phase: float
     x: Array
@@ -63,7 +68,8 @@ class PeriodicOrbit:
     @property
     def name(self) -> str:
         """O(n, m), or O(n, chattering) where infinitely many impacts belong to it."""
-        return f"O({self.periods}, {'chattering' if self.sticks else len(self.time)})"
+        endless = self.sticks and isinstance(self.scene, Scene)
+        return f"O({self.periods}, {'chattering' if endless else len(self.time)})"
 
     @property
     def stable(self) -> bool:
@@ -80,16 +86,19 @@ class PeriodicOrbit:
         corners = np.asarray(self.scene.corners) / self.scene.period
         return (self.phases[:, None] - corners[None, :] + 0.5) % 1.0 - 0.5
 
-    def run(self) -> Trajectory:
-        """The motion over its n periods, from the section on."""
+    def run(self) -> Any:
+        """The motion over its n periods, from the section on: a Trajectory, or a HybridTrajectory."""
         t_start = self.phase * self.scene.period
         span = (t_start, t_start + self.periods * self.scene.period)
         return simulate(_started(self.scene, self.x[0], span), self.method)
 
     def clearance(self) -> float:
         """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
+        if isinstance(self.scene, HybridScene):
+            return np.inf
         run = self.run()
-        times = np.linspace(*run.scene.t_span, SAMPLES * self.periods + 1)
+        start, end = run.scene.t_span
+        times = np.linspace(start, end, SAMPLES * self.periods + 1)
         gaps = np.array(
             [self.scene.gap(t, q, v)[0][0] for t, q, v in zip(times, *run.at(times), strict=True)]
         )
@@ -101,7 +110,7 @@ class PeriodicOrbit:
         from scipy.optimize import minimize_scalar
 
         def gap(t: float) -> float:
-            return float(self.scene.gap(t, *at(t))[0][0])
+            return float(cast(Scene, self.scene).gap(t, *at(t))[0][0])
 
         return float(
             minimize_scalar(gap, bounds=(a, b), method="bounded", options={"xatol": 1e-9 * (b - a)}).fun
@@ -109,14 +118,14 @@ class PeriodicOrbit:
 
 
 def periodic_orbit(
-    scene: Scene, x: ArrayLike, n: int = 1, *, method: Method | None = None, phase: float = 0.0
+    scene: Scene | HybridScene, x: ArrayLike, n: int = 1, *, method: Method | None = None, phase: float = 0.0
 ) -> PeriodicOrbit:
     """The periodic orbit near a guess, stable or not, by Newton's method on the stroboscopic map.
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period and one contact
-    x : (2 n_q,)   guess of the state (q, v) at the time phase x period
+    scene : lagrangian.Scene with a period and one contact, or HybridScene with a period
+    x : (2 n_q,)   guess of the state (q, v), or (n_x,), at the time phase x period
     n : periods of the forcing after which it repeats
     method : EventDriven() where not given. With Moreau derivatives are made of its impacts where the
         motion between them is known in closed form, and differenced elsewhere.
@@ -128,14 +137,14 @@ def periodic_orbit(
     NotConverged   no orbit near the guess
     """
     P = PeriodMap(scene, method or EventDriven(), phase)
-    x = checks.array("x", x, (2 * scene.n_q,))
+    x = checks.array("x", x, (scene.n_x,))
     return _described(P, periodic_point(P, x, n).points)
 
 
 def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
     """The orbit through points that are known to be periodic."""
     n = len(points)
-    run = P.follow(points[0], n)
+    run = P.follow(points[0], n, most=IMPACTS)
     J = image_and_derivative(P, points[0], n)[1]
     shown = np.isfinite(run.time[0])
     start = np.repeat(np.arange(n), run.time.shape[-1]).reshape(n, -1) * P.scene.period
@@ -146,7 +155,9 @@ def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
     )  # fmt: skip
 
 
-def _started(scene: Scene, x: Array, span: tuple[float, float]) -> Scene:
+def _started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
+    if isinstance(scene, HybridScene):
+        return scene.started(x, Placing(scene)(span[0], x), span)
     return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)
 
 
@@ -168,7 +179,7 @@ def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
     if span[1] <= span[0]:
         return orbit
     run = simulate(_started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
-    x = np.concatenate([run.q[-1], run.v[-1]])
+    x = run.x[-1] if isinstance(run, HybridTrajectory) else np.concatenate([run.q[-1], run.v[-1]])
     return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)
 
 
@@ -192,7 +203,7 @@ class OrbitBranch:
 
 
 def continue_orbit(
-    make: Callable[[float], Scene],
+    make: Callable[[float], Scene | HybridScene],
     orbit: PeriodicOrbit,
     p: float,
     p_range: tuple[float, float],
@@ -246,7 +257,8 @@ def continue_orbit(
 
     def character(value: float, x: Array) -> int:
         run = followed(value, tuple(x))
-        return -1 if np.any(run.ends) else int(np.sum(run.impacts))
+        endless = np.any(run.ends) and isinstance(orbit.scene, Scene)
+        return -1 if endless else int(np.sum(run.impacts))
 
     branch = continue_point(
         family,
@@ -294,11 +306,13 @@ def _soft(orbit: PeriodicOrbit) -> bool:
     speeds = np.abs(orbit.before)
     hardest = float(np.max(speeds, initial=0.0))
     if len(speeds) == 1:  # against the speed of the motion itself
-        hardest = float(np.max(np.abs(orbit.x[:, orbit.scene.n_q :])))
+        hardest = float(np.max(np.abs(orbit.x[:, orbit.scene.n_x // 2 :])))
     return len(speeds) > 0 and float(np.min(speeds)) < GRAZING * hardest
 
 
 def _grazes(orbit: PeriodicOrbit) -> bool:
     """Whether one contact of the orbit is much softer than the others, or is about to appear."""
+    if isinstance(orbit.scene, HybridScene):
+        return False
     height = float(np.ptp(orbit.x[:, 0])) + abs(float(orbit.x[0, 0]))
     return _soft(orbit) or orbit.clearance() < GRAZING**2 * max(height, 1e-300)

@@ -39,15 +39,13 @@ def fitted_order(h: ArrayLike, error: ArrayLike) -> Order | None:
     n = len(x)
     if n < 2 or np.ptp(x) == 0.0:
         return None
-    spread = x - x.mean()
-    slope = float(spread @ y / (spread @ spread))
-    if n == 2:
-        return Order(slope, -math.inf, math.inf, n)
     from scipy.special import stdtrit
+    from scipy.stats import linregress
 
-    residual = y - y.mean() - slope * spread
-    error_of_slope = math.sqrt(float(residual @ residual) / (n - 2) / float(spread @ spread))
-    half = float(stdtrit(n - 2, 0.5 + 0.5 * CONFIDENCE)) * error_of_slope
+    line = linregress(x, y)
+    slope, half = float(line.slope), math.inf
+    if n > 2:
+        half = float(stdtrit(n - 2, 0.5 + 0.5 * CONFIDENCE) * line.stderr)
     return Order(slope, slope - half, slope + half, n)
 
 

@@ -12,6 +12,8 @@ eqs. 3.42-3.43 (sign of F_x- there: by differences); A. Nordmark, P. Piiroinen, 
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -222,7 +224,7 @@ def _motion(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, flo
 
 
 class PeriodMap(StroboscopicMap):
-    """The stroboscopic map of an event-driven motion with its derivative by saltation matrices."""
+    """The stroboscopic map of an event-driven motion, modes or not, with its derivative by saltation matrices."""
 
     def jacobian(self, x: ArrayLike) -> Array:
         """DP(x), (2 n_q, 2 n_q)."""
@@ -233,7 +235,7 @@ class PeriodMap(StroboscopicMap):
         run = self.follow(x, drop + n, drop, most=IMPACTS, tangents=True)
         if run.tangents.shape[1]:
             return run.states[0], run.tangents[0]
-        before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (2 * self.scene.n_q,))
+        before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (self.scene.n_x,))
         points = [before, *run.states[0, :-1]]
         return run.states[0], np.array([self.differentiated(y) for y in points])
 
@@ -253,10 +255,12 @@ class PeriodMap(StroboscopicMap):
 
     def from_impacts(self, log: Array, counts: NDArray[np.int64]) -> Array:
         """Derivatives of periods with these impacts, (m, n, 2, 2); see `lcpstep.maps.tangent.along_logs`."""
-        return np.asarray(Follower(self.scene, EventDriven()).tangents_of(log, counts, self.time))
+        scene = cast(Scene, self.scene)  # those of time-stepping
+        return np.asarray(Follower(scene, EventDriven()).tangents_of(log, counts, self.time))
 
     def differentiated(self, x: Array) -> Array:
         """DP(x) by walking along the motion's events, or by differences where it has none to walk along."""
         if not isinstance(self.method, EventDriven):
             return differences(self, x)
-        return monodromy(self.scene, self.method, x, (self.time, self.time + self.scene.period))
+        scene = cast(Scene, self.scene)  # systems with modes have told theirs
+        return monodromy(scene, self.method, x, (self.time, self.time + self.scene.period))

@@ -20,6 +20,9 @@ from lcpstep.cli import (
     compare,
     corner,
     hard,
+    interrupt,
+    lyapunov,
+    maps,
     orbit,
     scenes,
     simulate,
@@ -27,7 +30,7 @@ from lcpstep.cli import (
     thesis,
 )
 from lcpstep.cli.common import FAILED, INTERRUPTED, USAGE
-from lcpstep.errors import LcpStepError, NotWritten, SimulationError, SimulationInterrupted
+from lcpstep.errors import LcpStepError, NotWritten, SimulationError
 
 COMMANDS = (
     compare,
@@ -39,7 +42,9 @@ COMMANDS = (
     bifurcation,
     basin,
     orbit,
+    lyapunov,
     corner,
+    maps,
     abs_,
     thesis,
 )
@@ -49,11 +54,12 @@ NO_SPACE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, None}  # None: a
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit status."""
     options = parser().parse_args(arguments)
+    interrupt.begin(options, sys.argv[1:] if arguments is None else arguments)
     try:
-        return int(options.run(options))
-    except (SimulationInterrupted, KeyboardInterrupt):
-        print("lcpstep: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        status = int(options.run(options))
+        return interrupt.report() if status == INTERRUPTED else status
+    except KeyboardInterrupt as stopped:
+        return interrupt.report(stopped)
     except SimulationError as error:
         print(f"lcpstep: {error}", file=sys.stderr)
         return FAILED
@@ -63,6 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (LcpStepError, ValueError, OSError) as error:  # OSError: a file or folder that cannot be written
         print(f"lcpstep: {error}", file=sys.stderr)
         return USAGE
+
+
+def command() -> None:
+    """The command as a process of its own: any Ctrl-C ends it within a second."""
+    sys.exit(interrupt.ending(main))
 
 
 def parser() -> argparse.ArgumentParser:

@@ -1,7 +1,5 @@
 """`python -m lcpstep.cli`."""
 
-import sys
+from lcpstep.cli import command
 
-from lcpstep.cli import main
-
-sys.exit(main())
+command()

@@ -28,6 +28,7 @@ from lcpstep.analysis.abs_cycle import (
     vanishing,
     with_thresholds,
 )
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text
 from lcpstep.errors import StudyInterrupted
 from lcpstep.events import EventDriven
@@ -198,6 +199,7 @@ def _basins(scene: HybridScene, options: argparse.Namespace) -> tuple[Basins, in
         try:
             return basins(scene, slip, torque, lambda done: bar.update(done - bar.n)), DONE
         except StudyInterrupted as stopped:
+            interrupt.answer()
             return stopped.study, INTERRUPTED
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import HybridScene
 from lcpstep.analysis.attractors import POINTS, Attractors, attractors, random_starts
 from lcpstep.analysis.basins import outside
 from lcpstep.analysis.likeness import Likeness, likeness, sample
@@ -75,16 +76,17 @@ def run_attractor(options: argparse.Namespace) -> int:
         rows[method_words(other)] = search(other).found
     title = f"{scene_words(scene)}: attractors, {options.starts} random starts, section at phase {options.phase:g}"
     corners = np.atleast_1d(np.asarray(scene.corners)) / scene.period
-    figure = pictures.attractors(rows, title, [float(c) for c in corners])
+    figure = pictures.attractors(rows, title, [float(c) for c in corners], scene.labels)
     finish(options, _dataset(scene, method, found, options.seed), figure, names)
     lines = [_row(name, a) for name, group in rows.items() for a in group]
     if options.json:
         text = {"attractors": lines, "likeness": {k: vars(x) for k, x in compared.items()}}
         print(json.dumps(text, indent=2))
         return DONE
+    event = "switches" if isinstance(scene, HybridScene) else "impacts"
     for r in lines:
         print(
-            f"{r['name']:20} share {r['share']:6.1%}   impacts per period {r['impacts_per_period']:8.4g}   "
+            f"{r['name']:20} share {r['share']:6.1%}   {event} per period {r['impacts_per_period']:8.4g}   "
             f"Lyapunov exponent per period {_exponent(r)}   {r['method'] if len(rows) > 1 else ''}".rstrip()
         )
     for name, x in compared.items():
@@ -96,9 +98,9 @@ def run_attractor(options: argparse.Namespace) -> int:
 
 
 def _exponent(r: dict[str, Any]) -> str:
-    """The exponent and its error; nothing where it is not known."""
-    if math.isnan(r["lyapunov"]):
-        return "not known"
+    """The exponent and its error; why, where it is not known."""
+    if r["lyapunov"] is None:
+        return f"not known: {r['lyapunov_reason']}"
     return f"{r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
 
 
@@ -113,10 +115,11 @@ def box(options: argparse.Namespace) -> list[list[float]]:
 
 
 def _row(method: str, a: Any) -> dict[str, Any]:
-    per_period = a.impacts / a.periods if a.periods else a.impacts
+    per_period, found = a.impacts / a.periods if a.periods else a.impacts, a.lyapunov
     return {
         "method": method, "name": a.name, "share": a.share, "impacts_per_period": per_period,
-        "lyapunov": a.lyapunov.largest, "lyapunov_error": a.lyapunov.error,
+        "lyapunov": None if math.isnan(found.largest) else found.largest,
+        "lyapunov_error": None if math.isnan(found.error) else found.error, "lyapunov_reason": found.reason,
     }  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from lcpstep.cli.studies import (
     PARTS,
     files,
     finish,
+    keeps_parts,
     method_of,
     parts_bar,
     stopped,
@@ -58,6 +59,7 @@ def run_basin(options: argparse.Namespace) -> int:
         if not low < high:
             raise ValueError(f"{name}: expected LOW < HIGH, got {low:g} {high:g}")
     names = files(options, "basins")
+    keeps_parts(options)
     with parts_bar("basins") as progress:
         data = basins(
             scene, [position[0], velocity[0]], [position[1], velocity[1]], tuple(options.grid),

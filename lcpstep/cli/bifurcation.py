@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lagrangian.scenes import CATALOGUE
+from lagrangian.scenes import SCENES
 from lcpstep import Moreau, dataset
 from lcpstep.analysis.agreement import Summary, agreement, summary, tolerance_of_stepping
 from lcpstep.analysis.bifurcation import IMPACTS_RECORDED, STARTS, WINDOWS, bifurcation
@@ -20,6 +20,7 @@ from lcpstep.cli.studies import (
     PARTS,
     files,
     finish,
+    keeps_parts,
     method_of,
     parts_bar,
     stopped,
@@ -81,7 +82,7 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     if options.rpm is not None and options.parameter == "rpm":
         raise ValueError("--rpm: it is the parameter that varies; give --range or --window")
     scene = study_scene(options)
-    known = CATALOGUE[options.scene].parameters
+    known = SCENES[options.scene].parameters
     if options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     steps = [Moreau(h=h, theta=options.theta, lcp=options.lcp) for h in options.compare or ()]
@@ -89,8 +90,9 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     if steps:
         dataset.check_new(options.out / AGREEMENT, options.overwrite)
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != options.parameter}
-    make = partial(CATALOGUE[options.scene].make, **fixed)
+    make = partial(SCENES[options.scene].make, **fixed)
     values = np.linspace(low, high, options.points)
+    keeps_parts(options)
     data = _diagram(options, make, values, method_of(options), options.out / PARTS)
     title = _title(options, scene, low, high)
     if steps:
@@ -121,12 +123,13 @@ def _print_counts(data: Any) -> None:
     failed = int((data["status"] != 0).sum())
     print(f"{data.sizes[parameter]} values, {failed} runs ended early")
     counts = data["impacts"].values
-    print(f"{data.sizes['impact']} impacts recorded, at most {int(counts.max(initial=0))} in a period")
+    event = "switches" if data.attrs["modes"] else "impacts"
+    print(f"{data.sizes['impact']} {event} recorded, at most {int(counts.max(initial=0))} in a period")
     cut = np.any(counts > most, axis=(0, 2))
     if np.any(cut):
         shown = ", ".join(f"{x:g}" for x in data[parameter].values[cut][:8])
         print(
-            f"only the first {most} impacts of a period are recorded at {int(cut.sum())} values of {parameter}: "
+            f"only the first {most} {event} of a period are recorded at {int(cut.sum())} values of {parameter}: "
             f"{shown}{', ..' if cut.sum() > 8 else ''}; --most raises that"
         )
 

@@ -8,19 +8,21 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lagrangian import Scene
-from lagrangian.scenes import CATALOGUE
+from lagrangian import HybridScene, Scene
+from lagrangian.scenes import SCENES
 from lcpstep import EventDriven, Located, Moreau
-from lcpstep.errors import UnknownName
+from lcpstep.cli import interrupt
+from lcpstep.cli.interrupt import INTERRUPTED as INTERRUPTED
+from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.files import replacing
 
-DONE, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130  # exit status
+DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
 DPI = 150  # of pictures
 
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
     """Which scene, how long, and its parameters."""
-    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(CATALOGUE)} (see: lcpstep scenes)")
+    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(SCENES)} (see: lcpstep scenes)")
     p.add_argument("--t-end", type=float, help="length of the simulation [s]; default: the scene's own")
     p.add_argument(
         "--set",
@@ -38,12 +40,26 @@ def stepping_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--lcp", default="lemke", help="complementarity solver: lemke, qp, qp:daqp, ... (lemke)")
 
 
-def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
-    """The scene that the options name; `more` sets further parameters of it."""
-    if options.scene not in CATALOGUE:
-        raise UnknownName("scene", options.scene, CATALOGUE)
-    entry = CATALOGUE[options.scene]
+def scene_with_contacts(options: argparse.Namespace, **more: Any) -> Scene:
+    """The scene that the options name, for tools that compare methods; one with modes has one method only."""
+    scene = scene_of(options, **more)
+    if isinstance(scene, HybridScene):
+        raise LcpStepError(
+            f"scene: {scene.name!r} has modes and no contacts, and is run by the event-driven method alone; "
+            f"see lcpstep simulate, attractor, bifurcation, basin, orbit"
+        )
+    return scene
+
+
+def scene_of(options: argparse.Namespace, **more: Any) -> Any:
+    """The scene that the options name, a `Scene` or a `HybridScene`; `more` sets further parameters of it."""
+    if options.scene not in SCENES:
+        raise UnknownName("scene", options.scene, SCENES)
+    entry = SCENES[options.scene]
     known = entry.parameters
+    for name in more:
+        if name not in known:
+            raise UnknownName(f"parameter of {options.scene}", name, known)
     values = dict(more)
     for setting in options.set:
         name, equals, value = setting.partition("=")
@@ -58,7 +74,11 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Scene:
 
 
 def number(name: str, value: str, kind: type[float] = float) -> float:
-    """The value of a parameter given as a text; kind: float, or int for a count."""
+    """The value of a parameter given as a text; kind: float, int for a count, or bool."""
+    if kind is bool:
+        if value.lower() not in ("true", "false"):
+            raise ValueError(f"--set: {name}: expected true or false, got {value!r}")
+        return value.lower() == "true"
     try:
         return kind(value)
     except ValueError:
@@ -87,6 +107,7 @@ def save_figure(figure: Any, file: Path) -> None:
     """Write a picture, or leave the one that is there as it is."""
     with replacing(file) as draft:
         figure.savefig(draft, dpi=DPI)
+    interrupt.wrote(file)
 
 
 def save_text(text: str, file: Path) -> None:
@@ -94,10 +115,11 @@ def save_text(text: str, file: Path) -> None:
     with replacing(file) as draft:
         file.parent.mkdir(parents=True, exist_ok=True)
         draft.write_text(text + "\n")
+    interrupt.wrote(file)
 
 
 @contextmanager
-def progress_bar(scene: Scene, title: str) -> Iterator[Callable[[float], None]]:
+def progress_bar(scene: Scene | HybridScene, title: str) -> Iterator[Callable[[float], None]]:
     """A bar over the scene's time span, on a terminal only."""
     from tqdm import tqdm
 

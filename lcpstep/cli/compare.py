@@ -18,7 +18,7 @@ from lcpstep.cli.common import (
     progress_bar,
     save_figure,
     scene_arguments,
-    scene_of,
+    scene_with_contacts,
     stepping_arguments,
 )
 from lcpstep.compare import Comparison, compare
@@ -70,7 +70,7 @@ def run_compare(options: argparse.Namespace) -> int:
     speeds = (options.rpm or [358.0, 660.0, 700.0]) if cam else [None]
     results: list[tuple[str, Comparison]] = []
     for rpm in speeds:
-        scene = scene_of(options, **({} if rpm is None else {"rpm": rpm}))
+        scene = scene_with_contacts(options, **({} if rpm is None else {"rpm": rpm}))
         title = scene.name if rpm is None else f"{rpm:g} rpm"
         with progress_bar(scene, title) as progress:
             results.append((title, compare(scene, moreau(options), event_driven(options), progress)))
@@ -127,7 +127,7 @@ def _table(rows: list[dict[str, Any]]) -> str:
 
 def _maps(options: argparse.Namespace) -> dict[str, Sections]:
     """Impact and stroboscopic maps of the cam-follower from both methods."""
-    scene = scene_of(options, rpm=options.map_rpm)
+    scene = scene_with_contacts(options, rpm=options.map_rpm)
     periods = options.map_periods
     found: dict[str, Sections] = {}
     methods: dict[str, Method] = {"time-stepping": moreau(options), "event-driven": event_driven(options)}
@@ -149,7 +149,7 @@ def _draw(
         "state-space.png": portraits(comparisons, titles),
     }
     if found:
-        scene = scene_of(options, rpm=options.map_rpm)
+        scene = scene_with_contacts(options, rpm=options.map_rpm)
         corners = [float(c) / scene.period for c in np.asarray(scene.corners)]
         title = f"cam-follower at {options.map_rpm:g} rpm, {options.map_periods} periods"
         figures[f"maps-{options.map_rpm:g}-rpm.png"] = maps(found, title, corners[FLANK_NOSE], corners)

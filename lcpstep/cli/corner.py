@@ -17,7 +17,7 @@ from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMa
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.corner_branches import FixedBranch, orbit_branches, uncertainty
 from lcpstep.analysis.corners import CornerImpact, agreement, corner_impact, estimate, local_map
-from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_of
+from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_with_contacts
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
 
@@ -69,7 +69,7 @@ def run_corner(options: argparse.Namespace) -> int:
         return _run_chattering(options)
 
     def make(value: float) -> Scene:
-        return scene_of(options, **{options.parameter: value})
+        return scene_with_contacts(options, **{options.parameter: value})
 
     start = make(options.start)
     x = np.concatenate([np.asarray(start.q0), np.asarray(start.v0)])
@@ -209,9 +209,9 @@ def _run_chattering(options: argparse.Namespace) -> int:
     low, high = options.chattering
 
     def make(value: float) -> Scene:
-        return scene_of(options, **{options.parameter: value, "q0": 0.0, "v0": 0.0})
+        return scene_with_contacts(options, **{options.parameter: value, "q0": 0.0, "v0": 0.0})
 
-    found: list[Crossing] = corner_crossings(make, (low, high), points=max(2, options.points))
+    found: list[Crossing] = corner_crossings(make, (low, high))
     rows = [c._asdict() for c in found]
     if options.out is not None:
         save_text(json.dumps(rows, indent=1), options.out / "chattering.json")
@@ -221,5 +221,5 @@ def _run_chattering(options: argparse.Namespace) -> int:
     print(f"{options.parameter:>14}  sequence  event         corner")
     for c in found:
         event = f"impact {c.number}" if c.event == "impact" else c.event
-        print(f"{c.p:14.7f}  {c.sequence + 1:8d}  {event:12}  {c.corner:6d}")
+        print(f"{c.p:14.9f}  {c.sequence + 1:8d}  {event:12}  {c.corner:6d}")
     return DONE

@@ -12,19 +12,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian.scenes import CATALOGUE
+from lagrangian import HybridScene
+from lagrangian.scenes import SCENES
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
+from lcpstep.analysis.fixed_points import periodic_point
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.cli.common import DONE, INTERRUPTED
+from lcpstep.cli import interrupt
+from lcpstep.cli.common import DONE, INTERRUPTED, save_figure
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
+from lcpstep.maps import SwitchMap, iterate
 from lcpstep.plot import orbits as pictures
-from lcpstep.plot.words import DPI, method_words, title_of
+from lcpstep.plot.words import method_words, title_of
 
 
 def add(commands: Any) -> None:
@@ -39,6 +43,11 @@ def add(commands: Any) -> None:
     )
     study_arguments(p)
     p.add_argument("--periods", type=int, default=1, help="periods of the forcing after which it repeats (1)")
+    p.add_argument(
+        "--mode",
+        metavar="NAME",
+        help="a mode of the scene: the orbit from one entry into it to the next, driven or not",
+    )
     p.add_argument("--guess", type=float, nargs="+", metavar="X", help="state (q, v) on the section")
     p.add_argument("--transient", type=int, default=500, help="periods to settle without a guess (500)")
     p.add_argument("--parameter", default="rpm", help="parameter of the branch (rpm)")
@@ -53,21 +62,22 @@ def add(commands: Any) -> None:
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     scene, method = study_scene(options), method_of(options)
-    known = CATALOGUE[options.scene].parameters
+    known = SCENES[options.scene].parameters
     if options.range is not None and options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
+    if options.mode is not None:
+        return _run_returns(options, scene, method)
     names = files(options, "branch") if options.range is not None else None
     drawn = options.out / "orbit.png"
     if options.draw:
         dataset.check_new(drawn, options.overwrite)
     guess = options.guess
     if guess is None:
-        x = np.concatenate([scene.q0, scene.v0])
         guess = (
             PeriodMap(scene, method, options.phase)
-            .follow(x, options.transient + 1, options.transient)
+            .follow(scene.x0, options.transient + 1, options.transient)
             .final[0]
         )
     orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
@@ -76,17 +86,36 @@ def run_orbit(options: argparse.Namespace) -> int:
         drawn.parent.mkdir(parents=True, exist_ok=True)
         kind = "stable" if orbit.stable else "unstable"
         title = title_of(scene, f"{orbit.name}, {kind}", method)
-        pictures.orbit(orbit, title).savefig(drawn, dpi=DPI)
+        save_figure(pictures.orbit(orbit, title), drawn)
         print(f"wrote {drawn}")
     return DONE if names is None else _run_branch(options, orbit, names)
 
 
+def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
+    """The orbit of a scene with modes on the section of entries into one of them."""
+    if options.range is not None or options.draw:
+        raise ValueError(
+            "--mode: prints the orbit on the entries into a mode; --range and --draw go without it"
+        )
+    P = SwitchMap(scene, method, options.mode)
+    x = P.entry() if options.guess is None else options.guess
+    found = periodic_point(P, iterate(P, x, options.transient)[-1], options.periods)
+    period = sum(P.duration(y) for y in found.points)
+    print(f"{'stable' if found.stable else 'unstable'}; period {period:.12g}, residual {found.residual:.2g}")
+    state = "phase [rad] and state" if P.driven else "state"
+    print(f"{state} on entering {options.mode}: " + "; ".join(str(y.tolist()) for y in found.points))
+    print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in found.multipliers))
+    return DONE
+
+
 def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[Path, Path]) -> int:
     """The branch through the orbit, both ways; what there is of it is saved where it is interrupted."""
+    import xarray  # noqa: F401  (saves it; an interrupt should not wait for that to be loaded)
+
     scene, parameter = orbit.scene, options.parameter
-    known = CATALOGUE[options.scene].parameters
+    known = SCENES[options.scene].parameters
     fixed = {k: v for k, v in scene.parameters.items() if k in known and k != parameter}
-    make = partial(CATALOGUE[options.scene].make, **fixed)
+    make = partial(SCENES[options.scene].make, **fixed)
     ways: list[OrbitBranch] = []
     with _points_bar(options, parameter) as progress:
         for forward in (False, True):
@@ -96,19 +125,21 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
             )  # fmt: skip
             ways.append(way)
             if way.points.ended == INTERRUPTED_WORD:
+                interrupt.answer()
                 break
     low, high = (float(x) for x in options.range)
     data = branch_dataset(ways, parameter, (low, high), scene, orbit.method)
     title = (
         f"{scene.name}: branch of {orbit.name}, {parameter} {low:g} to {high:g}; {method_words(orbit.method)}"
     )
-    finish(options, data, pictures.branch(data, title), names)
+    interrupted = ways[-1].points.ended == INTERRUPTED_WORD
+    finish(options, data, None if interrupted else pictures.branch(data, title), names)
     for way in ways:
         for s in way.special:
             shown = ", ".join(f"{m:.6g}" for m in s.multipliers)
             print(f"{s.kind:13} at {parameter} = {s.p:.10g}   multipliers {shown}")
         print(f"ended: {way.points.ended}")
-    return INTERRUPTED if ways[-1].points.ended == INTERRUPTED_WORD else DONE
+    return INTERRUPTED if interrupted else DONE
 
 
 @contextmanager
@@ -132,6 +163,8 @@ def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progres
 def _print(orbit: PeriodicOrbit) -> None:
     print(f"{orbit.name}, {'stable' if orbit.stable else 'unstable'}; residual {orbit.residual:.2g}")
     print("states on the section: " + "; ".join(str(x.tolist()) for x in orbit.x))
+    event, unit = ("switch", "") if isinstance(orbit.scene, HybridScene) else ("impact", " m/s")
+    rate = "rate of the guard" if event == "switch" else "gap velocity"
     for phase, before, after in zip(orbit.phases, orbit.before, orbit.after, strict=True):
-        print(f"impact at phase {phase:.12f}: gap velocity {before:.9g} -> {after:.9g} m/s")
+        print(f"{event} at phase {phase:.12f}: {rate} {before:.9g} -> {after:.9g}{unit}")
     print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in orbit.multipliers))

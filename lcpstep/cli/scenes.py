@@ -6,7 +6,7 @@ import argparse
 import json
 from typing import Any
 
-from lagrangian.scenes import CATALOGUE
+from lagrangian.scenes import SCENES
 from lcpstep.cli.common import DONE
 
 
@@ -29,7 +29,7 @@ def run_scenes(options: argparse.Namespace) -> int:
             "answer": entry.answer,
             "parameters": entry.parameters,
         }
-        for name, entry in CATALOGUE.items()
+        for name, entry in SCENES.items()
     ]
     if options.json:
         print(json.dumps(lines, indent=2))

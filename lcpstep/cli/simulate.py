@@ -11,7 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import HybridScene
 from lcpstep import energy, simulate
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
     DONE,
     FAILED,
@@ -25,6 +27,7 @@ from lcpstep.cli.common import (
     stepping_arguments,
 )
 from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.files import replacing
 from lcpstep.simulate import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
@@ -45,7 +48,11 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep simulate bouncing-ball --method event-driven --set restitution=0.5 --out ball.npz",
     )
     scene_arguments(p)
-    p.add_argument("--method", choices=list(METHODS), default="moreau", help="(moreau)")
+    p.add_argument(
+        "--method",
+        choices=list(METHODS),
+        help="(moreau; event-driven for a scene with modes, the one it has)",
+    )
     stepping_arguments(p)
     p.add_argument("--order", default="2", help="2, 4 or exact, located only (2)")
     p.add_argument(
@@ -64,6 +71,10 @@ def add(commands: Any) -> None:
 def run_simulate(options: argparse.Namespace) -> int:
     """`lcpstep simulate`."""
     scene = scene_of(options)
+    modes = isinstance(scene, HybridScene)
+    options.method = options.method or ("event-driven" if modes else "moreau")
+    if modes and options.energy:
+        raise ValueError(f"--energy: {scene.name!r} has modes, and no masses and forces to balance")
     method = METHODS[options.method](options)
     if options.out and options.out.suffix != ".npz":
         options.out = options.out.with_name(options.out.name + ".npz")
@@ -73,6 +84,7 @@ def run_simulate(options: argparse.Namespace) -> int:
         with progress_bar(scene, options.method) as progress:
             run = simulate(scene, method, keep=options.every, progress=progress)
     except (SimulationError, SimulationInterrupted) as stopped:
+        interrupt.answer()
         _save(options.out, stopped.trajectory)
         raise
     _save(options.out, run)
@@ -81,11 +93,41 @@ def run_simulate(options: argparse.Namespace) -> int:
 
         save_figure(overview(run), options.picture)
     balance = {"energy": _balance(run)} if options.energy else {}
-    print(json.dumps(_summary(run) | balance, indent=2) if options.json else _sentence(run, balance))
-    return DONE if run.status == Status.DONE and not run.doubt else FAILED
+    sentence = _modes_sentence(run) if modes else _sentence(run, balance)
+    print(json.dumps(_summary(run) | balance, indent=2) if options.json else sentence)
+    return DONE if run.status == Status.DONE and (modes or not run.doubt) else FAILED
 
 
-def _summary(run: Trajectory) -> dict[str, Any]:
+def _modes_summary(run: HybridTrajectory) -> dict[str, Any]:
+    entered, counts = np.unique(run.switches.target, return_counts=True)
+    return {
+        "scene": run.scene.name,
+        "parameters": dict(run.scene.parameters),
+        "method": repr(run.method),
+        "status": run.status.name,
+        "message": run.message,
+        "t_end": float(run.t[-1]),
+        "x_end": run.x[-1].tolist(),
+        "mode_end": str(run.mode[-1]),
+        "steps": run.counts.steps,
+        "force_evaluations": run.counts.force_evaluations,
+        "switches": {str(name): int(n) for name, n in zip(entered, counts, strict=True)},
+    }
+
+
+def _modes_sentence(run: HybridTrajectory) -> str:
+    s = _modes_summary(run)
+    to = ", ".join(f"{n} to {name}" for name, n in s["switches"].items())
+    return (
+        f"{s['scene']} by {s['method']}: {s['status']}, {s['message']}\n"
+        f"t = {s['t_end']:g} s, x = {s['x_end']}, mode {s['mode_end']}\n"
+        f"{s['steps']} steps; switches: {to or 'none'}"
+    )
+
+
+def _summary(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
+    if isinstance(run, HybridTrajectory):
+        return _modes_summary(run)
     kinds = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
     return {
         "scene": run.scene.name,
@@ -141,9 +183,14 @@ def _words(e: dict[str, Any]) -> str:
     )
 
 
-def _save(file: Path | None, run: Trajectory) -> None:
+def _save(file: Path | None, run: Trajectory | HybridTrajectory) -> None:
     if file is not None:
-        log = np.asarray(run.impacts)
-        arrays: dict[str, Any] = {"t": run.t, "q": run.q, "v": run.v, "impulse": run.impulse, "impacts": log}
+        arrays: dict[str, Any] = {"t": run.t}
+        if isinstance(run, HybridTrajectory):
+            arrays |= {"x": run.x, "mode": run.mode, "switches": np.asarray(run.switches)}
+        else:
+            log = np.asarray(run.impacts)
+            arrays |= {"q": run.q, "v": run.v, "impulse": run.impulse, "impacts": log}
         with replacing(file) as draft:
             np.savez_compressed(draft, **arrays, summary=json.dumps(_summary(run)))
+        interrupt.wrote(file)

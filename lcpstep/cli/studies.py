@@ -10,8 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from lagrangian import Scene
+from lagrangian import HybridScene
 from lcpstep import dataset
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
     FAILED,
     event_driven,
@@ -50,13 +51,17 @@ def method_of(options: argparse.Namespace) -> Method:
     return moreau(options) if options.method == "moreau" else event_driven(options)
 
 
-def study_scene(options: argparse.Namespace, **more: Any) -> Scene:
+def study_scene(options: argparse.Namespace, **more: Any) -> Any:
     """The scene that the options name, at the speed --rpm if it is given."""
     if options.rpm is not None:
         if options.scene != "cam-follower":
             raise ValueError("--rpm: only the cam-follower turns")
         more["rpm"] = options.rpm
-    return scene_of(options, **more)
+    scene = scene_of(options, **more)
+    stepping = options.method == "moreau" or bool(getattr(options, "compare", None))
+    if isinstance(scene, HybridScene) and stepping:
+        raise ValueError(f"--method, --compare: {scene.name!r} has modes, and is run by event-driven alone")
+    return scene
 
 
 def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:
@@ -69,11 +74,13 @@ def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:
 
 
 def finish(options: argparse.Namespace, data: Any, figure: Any, names: tuple[Path, Path]) -> None:
-    """Save data and picture, and drop the parts of the sweep, which are no longer needed."""
+    """Save data and picture, None for none, and drop the parts of the sweep, which are no longer needed."""
     dataset.save(data, names[0], overwrite=options.overwrite)
-    save_figure(figure, names[1])
+    interrupt.wrote(names[0])
+    if figure is not None:
+        save_figure(figure, names[1])
     shutil.rmtree(options.out / PARTS, ignore_errors=True)
-    for name in names:
+    for name in names[: 1 if figure is None else 2]:
         print(f"wrote {name}")
 
 
@@ -88,6 +95,17 @@ def stopped(run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Name
             return FAILED
 
     return guarded
+
+
+def keeps_parts(options: argparse.Namespace) -> None:
+    """A sweep begins: what is finished of it is kept part by part, and the same command goes on from there."""
+    folder = options.out / PARTS
+
+    def kept() -> str:
+        count = sum(1 for _ in folder.rglob("part-*.npz"))
+        return f"{count} finished parts in {folder}" if count else ""
+
+    interrupt.keeps(options, kept)
 
 
 @contextmanager

@@ -14,7 +14,16 @@ from lcpstep.analysis.errors import MEASURES
 from lcpstep.analysis.reference import find_reference
 from lcpstep.analysis.solvers import LEVELS, compare_solvers
 from lcpstep.analysis.work_precision import Study
-from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text, scene_arguments, scene_of
+from lcpstep.cli import interrupt
+from lcpstep.cli.common import (
+    DONE,
+    FAILED,
+    INTERRUPTED,
+    save_figure,
+    save_text,
+    scene_arguments,
+    scene_with_contacts,
+)
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulate import Method
 
@@ -67,12 +76,13 @@ def add(commands: Any) -> None:
 
 def run_study(options: argparse.Namespace) -> int:
     """`lcpstep study`."""
-    scene = scene_of(options)
+    scene = scene_with_contacts(options)
     if options.solvers is not None:
         return run_solvers(scene, options)
     span = scene.t_span[1] - scene.t_span[0]
     methods = [METHODS[name](options, span) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
+    interrupt.keeps(options, lambda: str(file) if file and file.exists() else "")
     from tqdm import tqdm
 
     with tqdm(bar_format="{desc}", disable=None, leave=False) as bar:
@@ -82,6 +92,7 @@ def run_study(options: argparse.Namespace) -> int:
                 horizon=options.horizon, repeats=options.repeats, save=file, progress=bar.set_description_str,
             )  # fmt: skip
         except StudyInterrupted as stopped:
+            interrupt.answer()
             _report(stopped.study, options)
             return INTERRUPTED
     _report(result, options)

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+from lcpstep.cli import interrupt
 from lcpstep.cli.common import DONE
 from lcpstep.errors import UnknownName
 from lcpstep.thesis import FIGURES, make
@@ -53,9 +54,15 @@ def run_thesis(options: argparse.Namespace) -> int:
     for name in wanted:  # before any work starts
         if name not in FIGURES:
             raise UnknownName("figure of the thesis", name, FIGURES)
+    finished: list[Path] = []
+    rest = list(wanted)
+    goes_on = ["--out", str(options.out), *(["--overwrite"] if options.overwrite else [])]
+    interrupt.keeps(options, lambda: ", ".join(map(str, finished)), lambda: ["thesis", *rest, *goes_on])
     for name in wanted:
         start = time.perf_counter()
         files = make(name, options.out, options.overwrite)
+        finished += files
+        rest.remove(name)
         shown = ", ".join(file.name for file in files)
         print(f"{name:12} {time.perf_counter() - start:6.1f} s   {shown}", flush=True)
     return DONE

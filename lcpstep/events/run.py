@@ -32,11 +32,12 @@ from lcpstep.events.bookkeeping import (
 )
 from lcpstep.faults import forget
 from lcpstep.model import ABSENT, Model, culprit, model, unrepeatable
+from lcpstep.pace import Pace
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 4096  # steps between two looks at the outside world
+PORTION = 4096  # steps between two looks at the outside world, at most
 # The scan for events must see every turn of the motion: intervals per period of each of its oscillations
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
 SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
@@ -60,6 +61,7 @@ class Run(ABC):
         self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
         self.count = np.zeros(N_COUNTERS, dtype=np.int64)
         self.count[MAX_EVENTS] = method.max_events
+        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
 
     @property
     @abstractmethod
@@ -94,7 +96,7 @@ class Run(ABC):
         try:
             while code in (FINISHED, BUFFER_FULL) and self.now < self.scene.t_span[1]:
                 try:
-                    code = self.advance(int(self.count[STEP]) + PORTION)
+                    code = self.advance(self.pace.goal(int(self.count[STEP])))
                 except Exception as error:  # a callback in plain Python; compiled code raises nothing
                     message = self.message(NOT_FINITE)
                     raise SimulationError(message, self.trajectory(Status.NOT_FINITE, message)) from error
@@ -102,7 +104,7 @@ class Run(ABC):
                 progress(self.now)
         except KeyboardInterrupt:
             message = f"interrupted {self.where}"
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, message)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, message)) from None
         result = self.trajectory(self.status_of[code], self.message(code))
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
@@ -127,8 +129,8 @@ class Run(ABC):
         s = self.recorder.states()
         return Trajectory(
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v,
-            impulse=np.ascontiguousarray(s.impulse[:, :n_c]), impacts=self.recorder.events(), status=status,
-            message=message,
+            impulse=np.ascontiguousarray(s.impulse[:, :n_c]),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=message,
             counts=Counts(
                 steps=int(count[STEP]), force_evaluations=int(count[FORCES]), events=int(count[EVENTS])
             ),

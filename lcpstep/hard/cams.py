@@ -27,11 +27,12 @@ def _left(solve: Solver, rpm: float, beta: float) -> float:
 
 def _lowest_speed(solve: Solver, beta: float) -> float:
     """Speed from which on the follower leaves the cam at the corner beta itself, by bisection [rpm]."""
-    low, high = 100.0, 150.0
-    while high - low > PRECISION * low:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if _left(solve, middle, beta) <= AT_ONCE else (middle, high)
-    return 0.5 * (low + high)
+    from scipy.optimize import bisect
+
+    def late(rpm: float) -> float:
+        return -1.0 if _left(solve, rpm, beta) <= AT_ONCE else 1.0
+
+    return float(bisect(late, 100.0, 150.0, rtol=PRECISION))
 
 
 @check("cam-follower", "first detachment, 114.979 rpm, relative", period=0.09, event_driven=1e-8)

@@ -1,7 +1,8 @@
 """Poincare maps: a motion with impacts as a map x -> P(x) that can be iterated.
 
-`StroboscopicMap`: the state once per period of the forcing. `ImpactMap`: from one impact to the next. Both take
-any scene and either integrator. `sections` looks at one long motion on both sections at once.
+`StroboscopicMap`: the state once per period of the forcing, of any scene by either integrator, and of one with modes.
+`ImpactMap`: from one impact to the next. `SwitchMap`: from one entry into a mode to the next. `formulas`: maps given
+by formulas. `sections` looks at one long motion on both sections at once.
 """
 
 from lcpstep.maps.batch import Periods, periods
@@ -9,6 +10,7 @@ from lcpstep.maps.impact import ImpactMap, NoReturn
 from lcpstep.maps.iteration import iterate
 from lcpstep.maps.sections import Sections, sections
 from lcpstep.maps.stroboscopic import StroboscopicMap
+from lcpstep.maps.switch import SwitchMap
 
 __all__ = [
     "ImpactMap",
@@ -16,6 +18,7 @@ __all__ = [
     "Periods",
     "Sections",
     "StroboscopicMap",
+    "SwitchMap",
     "iterate",
     "periods",
     "sections",

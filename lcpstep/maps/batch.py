@@ -1,7 +1,7 @@
 """Many runs of one scene over many periods of its forcing, by either integrator: states, impacts, how each ended.
 
 The one door to the fast ways: event-driven runs with closed-form flow (`follow`) and time-stepping in lockstep
-(`lockstep`); all other systems are simulated one period after another.
+(`lockstep`), and to systems with modes (`modes`); all other systems are simulated one period after another.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.errors import SimulationError
 from lcpstep.events import EventDriven
-from lcpstep.maps import follow, lockstep
+from lcpstep.maps import follow, lockstep, modes
 from lcpstep.simulate import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Kind, Status
@@ -32,6 +32,9 @@ ROUNDING = 64 * np.finfo(float).eps
 class Periods:
     """What became of m runs; `kept` periods of each were looked at.
 
+    Of a system with modes states are x (n_x,), and its switches stand for impacts: before and after are the rates of
+    the guard, `landed` the times at which sliding begins.
+
     Attributes
     ----------
     states : (m, kept, 2 n_q)   (q, v) at the end of each kept period
@@ -40,8 +43,8 @@ class Periods:
     landed : (m, kept, most)   times at which the contact closed for good in each period [s], the first ones: ends of
         chattering sequences (their accumulation points), and impacts without rebound
     impacts, ends : (m, kept)   number of impacts, and of these landings, in each period
-    tangents : (m, kept, 2, 2)   derivative of the state at the end of each kept period by that at its start;
-        (m, 0, 2, 2) where it was not asked for, or is not known in closed form
+    tangents : (m, kept, d, d)   derivative of the state at the end of each kept period by that at its start;
+        (m, 0, d, d) where it was not asked for, or is not known in closed form
     reached : (m,)   number of the target a run came near to, -1 for none
     taken : (m,)   periods taken
     final : (m, 2 n_q)   last state
@@ -71,8 +74,19 @@ class Targets:
     scale: Array
 
 
+def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None:
+    """Refuse a scene without a period, and say what would give it one."""
+    if math.isfinite(scene.period):
+        return
+    drive = scene.parameters.get("amplitude")
+    hint = "; it is driven where its parameter amplitude is not zero" if drive == 0.0 else ""
+    if isinstance(scene, HybridScene):
+        hint += "; lcpstep.maps.SwitchMap (lcpstep orbit --mode) takes returns to a mode"
+    raise ValueError(f"scene: {scene.name!r} has no period, and so no {what}{hint}")
+
+
 def periods(
-    scene: Scene,
+    scene: Scene | HybridScene,
     method: Method,
     starts: ArrayLike,
     n: int,
@@ -88,9 +102,9 @@ def periods(
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period
-    method : lcpstep.EventDriven or lcpstep.Moreau
-    starts : (m, 2 n_q) or (2 n_q,)   states (q, v) at the time phase x period
+    scene : lagrangian.Scene, or HybridScene, with a period
+    method : lcpstep.EventDriven or lcpstep.Moreau; EventDriven for a system with modes
+    starts : (m, 2 n_q) or (2 n_q,)   states (q, v), or (m, n_x), at the time phase x period
     n, drop : number of periods, and how many of them are dropped
     phase : of the section, as a share of the period in [0, 1)
     most : impacts kept of each period, and landings; the first ones, where there are more
@@ -105,12 +119,13 @@ def periods(
     ValueError   the scene has no period, or a number is out of range
     LcpStepError   what the method itself raises for this scene
     """
-    if not math.isfinite(scene.period):
-        raise ValueError(f"scene: {scene.name!r} has no period, and so no stroboscopic map")
+    periodic(scene)
     n = checks.count("n", n)
     if not 0 <= drop <= n:
         raise ValueError(f"drop: expected 0 <= drop <= n = {n}, got {drop}")
     task = _task(scene, starts, n, drop, section(phase) * scene.period, most, targets)
+    if isinstance(scene, HybridScene):
+        return _answer(modes.run_all(scene, method, task, tangents))
     fast: follow.Follower | lockstep.Lockstep | None = None
     if isinstance(method, EventDriven) and scene.n_c <= 1:
         fast = follow.Follower(scene, method)
@@ -122,16 +137,19 @@ def periods(
         if tangents and isinstance(fast, follow.Follower):
             task = task._replace(tangents=np.full((len(task.starts), n - drop, 2, 2), np.nan))
         fast.run(task, strict)
-        status = np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64)
+        task = task._replace(codes=np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64))
     else:
         one_by_one(scene, method, task, strict)
-        status = task.codes
     if tangents and not task.tangents.shape[1]:
         task = task._replace(tangents=_from_logs(scene, task))
+    return _answer(task)
+
+
+def _answer(task: follow.Task) -> Periods:
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
         landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
-        tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=status,
+        tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=task.codes,
     )  # fmt: skip
 
 
@@ -153,12 +171,19 @@ def section(phase: float) -> float:
 
 
 def _task(
-    scene: Scene, starts: ArrayLike, n: int, drop: int, t: float, most: int, targets: Targets | None
+    scene: Scene | HybridScene,
+    starts: ArrayLike,
+    n: int,
+    drop: int,
+    t: float,
+    most: int,
+    targets: Targets | None,
 ) -> follow.Task:
-    d = 2 * scene.n_q
+    d = scene.n_x
     x = np.array(starts, dtype=float, ndmin=2)
     if x.ndim != 2 or x.shape[1] != d or len(x) == 0:
-        raise ValueError(f"starts: expected states (q, v) of shape (m, {d}), got shape {np.shape(starts)}")
+        names = ", ".join(label.split(" [")[0] for label in scene.labels)
+        raise ValueError(f"starts: expected states ({names}) of shape (m, {d}), got shape {np.shape(starts)}")
     if not np.all(np.isfinite(x)):
         raise ValueError("starts: expected finite numbers")
     m, kept = len(x), n - drop
@@ -170,7 +195,7 @@ def _task(
         states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
         landings=np.full((m, kept, most), np.nan),
         counts=np.zeros((m, kept, 2), dtype=np.int64), reached=np.full(m, follow.UNREACHED, dtype=np.int64),
-        tangents=np.zeros((m, 0, 2, 2)), last=np.zeros(1), taken=np.zeros(m, dtype=np.int64),
+        tangents=np.zeros((m, 0, d, d)), last=np.zeros(1), taken=np.zeros(m, dtype=np.int64),
         final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
     )  # fmt: skip
 

@@ -37,6 +37,7 @@ from lcpstep.events.flight.run import flight_of, numbers, oscillator_of
 from lcpstep.events.run import STATUS
 from lcpstep.maps.tangent import along_events, along_logs, begin_tangent, carry
 from lcpstep.model import ABSENT, model
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 
 CODES = STATUS
@@ -46,6 +47,9 @@ KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what 
 UNREACHED = -1
 INSIDE = -1  # among the codes: a start inside of the obstacle
 IMPACTS, ENDS = 0, 1  # places in the counts of a period: impacts, chattering sequences or landings
+# Places in Place.whole: the run at hand, whether it has begun, its next period, the search for a cycle; periods taken
+RUN, RUN_BEGUN, PERIOD, AGE, POWER, KICKED, NOISY, TAKEN, N_WHOLE = range(9)
+PORTION = 65536  # periods between two looks at the outside world, at most
 
 
 @by_address
@@ -73,17 +77,41 @@ class Task(NamedTuple):
     strict: bool  # a start inside of the obstacle ends its run
 
 
-def follow(s: Any, aside: Any, x0: Any, record: Any, count: Any, task: Any) -> None:
-    """Kernel: every run in turn; aside: a flight to ask; x0: constants and first numbers of a flight."""
-    q, v = s.q, s.v
-    for i in range(len(task.starts)):
-        q[0], v[0] = task.starts[i, 0], task.starts[i, 1]
-        code, k, age, power, kicks, noisy, length, speed = FINISHED, 0, 0, 1, 0, 0, 0.0, 0.0
-        if task.strict and not admissible(s, x0, task.t_start):
-            code = INSIDE
-        old_q, old_v = q[0], v[0]
+@by_address
+class Place(NamedTuple):
+    """Where the kernel is, when it has returned before the end."""
+
+    whole: Any  # (N_WHOLE,)
+    real: Any  # (4,) old q and v; largest |q| and |v|
+
+
+def follow(s: Any, aside: Any, x0: Any, record: Any, count: Any, task: Any, place: Any, until: int) -> bool:
+    """Kernel: every run in turn; whether all are done, or so many periods have been taken.
+
+    aside : a flight to ask
+    x0 : constants and first numbers of a flight
+    """
+    q, v, whole, real = s.q, s.v, place.whole, place.real
+    for i in range(whole[RUN], len(task.starts)):
+        if whole[RUN_BEGUN] == 0:
+            q[0], v[0] = task.starts[i, 0], task.starts[i, 1]
+            code, k, age, power, kicks, noisy, length, speed = FINISHED, 0, 0, 1, 0, 0, 0.0, 0.0
+            if task.strict and not admissible(s, x0, task.t_start):
+                code = INSIDE
+            old_q, old_v = q[0], v[0]
+        else:
+            code, k, age, power = FINISHED, whole[PERIOD], whole[AGE], whole[POWER]
+            kicks, noisy = whole[KICKED], whole[NOISY]
+            old_q, old_v, length, speed = real[0], real[1], real[2], real[3]
+        whole[RUN_BEGUN] = 0
         while k < task.periods and code == FINISHED and task.reached[i] == UNREACHED:
+            if whole[TAKEN] >= until:
+                whole[RUN], whole[RUN_BEGUN], whole[PERIOD], whole[AGE], whole[POWER] = i, 1, k, age, power
+                whole[KICKED], whole[NOISY] = kicks, noisy
+                real[0], real[1], real[2], real[3] = old_q, old_v, length, speed
+                return False
             code = one_period(s, aside, x0, record, count, task, i, k - task.drop)
+            whole[TAKEN] += 1
             k += 1
             age += 1
             length, speed = max(length, abs(q[0])), max(speed, abs(v[0]))
@@ -109,6 +137,7 @@ def follow(s: Any, aside: Any, x0: Any, record: Any, count: Any, task: Any) -> N
                 task.reached[i] = near(task, q[0], v[0])
         task.final[i, 0], task.final[i, 1] = q[0], v[0]
         task.codes[i], task.taken[i] = code, k
+    return True
 
 
 def admissible(s: Any, x0: Any, t: float) -> bool:
@@ -195,7 +224,11 @@ class Follower:
         count[MAX_EVENTS] = self.method.max_events
         kernel = compiled(follow) if self.fast else follow
         under_way, aside = (flight_of(scene, self.model, x0.copy()) for _ in range(2))
-        kernel(under_way, aside, x0, record, count, task._replace(strict=strict))
+        task, place = task._replace(strict=strict), Place(np.zeros(N_WHOLE, dtype=np.int64), np.zeros(4))
+        pace, over = Pace(PORTION), False
+        while not over:
+            until = pace.goal(int(place.whole[TAKEN]))
+            over = kernel(under_way, aside, x0, record, count, task, place, until)
 
     def constants(self) -> Any:
         """Constants and first numbers of a flight."""

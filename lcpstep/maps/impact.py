@@ -25,8 +25,8 @@ TWO_PI = 2.0 * math.pi
 class NoReturn(LcpStepError):
     """A motion that did not come back to its section within the time limit; the point is in `x`."""
 
-    def __init__(self, x: Array, limit: float) -> None:
-        super().__init__(f"no impact within {limit:g} s after the one at x = {x.tolist()}")
+    def __init__(self, x: Array, limit: float, event: str = "impact") -> None:
+        super().__init__(f"no {event} within {limit:g} s after the one at x = {x.tolist()}")
         self.x = x
 
 
@@ -55,6 +55,10 @@ class ImpactMap:
     limit: float = 10.0
 
     def __post_init__(self) -> None:
+        if not isinstance(self.scene, Scene):
+            raise ValueError(
+                "scene: expected a lagrangian.Scene with a contact; for one with modes see SwitchMap"
+            )
         if not math.isfinite(self.scene.period):
             raise ValueError(f"scene: {self.scene.name!r} has no period, and so no phase of an impact")
         if self.scene.n_c != 1:

@@ -18,6 +18,7 @@ from lcpstep.compiled import by_address, compiled, inline
 from lcpstep.dynamics import external_force, obstacle
 from lcpstep.maps.follow import INSIDE, Task
 from lcpstep.model import model
+from lcpstep.pace import Pace
 from lcpstep.stepping.moreau import Moreau, plan
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided
@@ -28,6 +29,7 @@ Array = NDArray[np.float64]
 IMPACTS, ENDS = 0, 1  # places in the counts of a period
 OPEN, STRUCK, CLOSED = range(3)
 DONE, NOT_FINITE = 0, 1
+PORTION = 65536  # steps between two looks at the outside world, at most
 ROUNDING = 64 * np.finfo(float).eps
 CODES = {DONE: Status.DONE, NOT_FINITE: Status.NOT_FINITE}
 
@@ -49,11 +51,21 @@ class Lanes(NamedTuple):
 
 
 def advance(
-    m: Any, plan: Any, lanes: Any, task: Any, t0: float, side: float, first: int, last: int, k: int
+    m: Any,
+    plan: Any,
+    lanes: Any,
+    task: Any,
+    t0: float,
+    side: float,
+    first: int,
+    begin: int,
+    last: int,
+    k: int,
 ) -> None:
-    """Kernel: steps first .. last - 1 of all runs; their impacts are noted in the k-th kept period if k >= 0.
+    """Kernel: steps begin .. last - 1 of all runs; their impacts are noted in the k-th kept period if k >= 0.
 
-    side : t0, or just after it where that is a corner
+    t0, first : a time, and the step that begins there
+    side : the time at which step `begin` begins, or just after it where that is a corner
     """
     h, theta = plan.h, plan.theta
     A_f, A_q, A_v, A_g, W = plan.A_f[0, 0], plan.A_q[0, 0], plan.A_v[0, 0], plan.A_g[0, 0], plan.W[0, 0]
@@ -61,7 +73,7 @@ def advance(
     q, v, g, u, p, before = lanes.q, lanes.v, lanes.g, lanes.u, lanes.p, lanes.before
     external_force(m, side, lanes.q0, lanes.q0, lanes.force)
     f = lanes.force[0]
-    for step in range(first, last):
+    for step in range(begin, last):
         t_next = t0 + h * (step + 1 - first)
         external_force(m, t_next, lanes.q0, lanes.q0, lanes.force)
         f_next = lanes.force[0]
@@ -138,11 +150,17 @@ class Lockstep:
         if strict:
             task.codes[lanes.g < -ROUNDING * size] = INSIDE
         stretches = list(self.stretches(task.t_start, task.t_end))
+        pace, done = Pace(PORTION, len(x)), 0
         for period in range(task.periods):
             k = period - task.drop
             self.measure(lanes, task.t_start)
             for p, t0, first, last in stretches:
-                kernel(m, p, lanes, task, t0, start_side(self.scene, t0), first, last, k)
+                begin, side = first, start_side(self.scene, t0)
+                while begin < last:
+                    until = min(last, begin + pace.goal(done) - done)
+                    kernel(m, p, lanes, task, t0, side, first, begin, until, k)
+                    done += until - begin
+                    begin, side = until, t0 + p.h * (until - first)
             if k >= 0:
                 task.states[:, k, 0], task.states[:, k, 1] = lanes.q, lanes.v
         task.final[:, 0], task.final[:, 1] = lanes.q, lanes.v

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.errors import LcpStepError
-from lcpstep.maps.batch import IMPACTS_KEPT, INSIDE, Periods, periods, section
+from lcpstep.maps.batch import IMPACTS_KEPT, INSIDE, Periods, periodic, periods, section
 from lcpstep.simulate import Method
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Status
@@ -24,11 +24,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class StroboscopicMap:
-    """x = (q, v) -> its image one period later.
+    """x = (q, v) -> its image one period later; of a system with modes, x (n_x,).
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period; its initial state and span do not matter
+    scene : lagrangian.Scene, or HybridScene, with a period; its initial state and span do not matter
     method : lcpstep.EventDriven or lcpstep.Moreau. The time grid of the latter starts at the section, and its last
         step is shortened where h does not divide the period.
     phase : of the section, as a share of the period in [0, 1)
@@ -46,13 +46,12 @@ class StroboscopicMap:
     >>> orbit = iterate(P, [0.4, 0.4], 200)
     """
 
-    scene: Scene
+    scene: Scene | HybridScene
     method: Method
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        if not np.isfinite(self.scene.period):
-            raise ValueError(f"scene: {self.scene.name!r} has no period, and so no stroboscopic map")
+        periodic(self.scene)
         object.__setattr__(self, "phase", section(self.phase))
 
     @property
@@ -74,7 +73,7 @@ class StroboscopicMap:
         ValueError   x lies inside of the obstacle, or a number is out of range
         LcpStepError   the motion ended early
         """
-        x = checks.array("x", x, (2 * self.scene.n_q,))
+        x = checks.array("x", x, (self.scene.n_x,))
         stepped = isinstance(self.method, Moreau)
         run = periods(
             self.scene, self.method, x, n, drop=drop, phase=self.phase, most=most, strict=not stepped,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian.hybrid import HybridScene
-from lagrangian.scenes.hybrid_abs import holding_torque
+from lagrangian.scenes.hybrid_abs import T_MAX, holding_torque
 from lcpstep.analysis.abs_cycle import OUTCOMES, Basins, Bifurcation, Cycle, corner, peak
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -38,7 +38,7 @@ def overview(
 
 def _isocline(ax: Any, scene: HybridScene) -> None:
     slip = np.linspace(0.0, 1.0, 400)
-    ax.plot(slip, [holding_torque(s, scene.p) for s in slip], "k--", lw=0.8, label="isocline T = Psi(slip)")
+    ax.plot(slip, [holding_torque(s, scene.p) for s in slip], "k--", lw=0.8, label="isocline T = Ψ(λ)")
 
 
 def _orbit(ax: Any, scene: HybridScene, cycle: Cycle, **style: Any) -> None:
@@ -54,13 +54,9 @@ def _plane(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
         ax.plot(cycle.slip, cycle.torque, "ko", ms=4)
         for state, s, T in zip(cycle.states, cycle.slip, cycle.torque, strict=True):
             ax.annotate(state, (s, T), (3.0, 4.0), textcoords="offset points", fontsize=9)
-    ax.set(
-        title="state plane; numbers: the states entered",
-        xlabel="slip [-]",
-        ylabel="brake torque [N m]",
-        xlim=(0.0, 1.0),
-    )
-    ax.legend(fontsize=7)
+    ax.set(xlabel="slip λ [-]", ylabel="brake torque T [N m]", xlim=(0.0, 1.0))
+    ax.set_ylim(0.0, 1.15 * float(np.asarray(scene.p)[T_MAX]))
+    _above(ax, "")
     ax.grid(alpha=0.3)
 
 
@@ -69,25 +65,34 @@ def _series(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
         end = 2.0 * cycle.period
         t = np.linspace(0.0, end, 2000)
         x = simulate(scene.started(corner(scene), "2", (0.0, end)), EventDriven()).at(t)
-        ax.plot(t, x[:, 0], "C0-", label="slip [-]")
-        ax.plot(t, x[:, 1] / 1e4, "C3-", label="torque [10 kN m]")
-        ax.legend(fontsize=7)
-    ax.set(title="two periods", xlabel="time [s]")
+        ax.plot(t, x[:, 0], "C0-", label="λ [-]")
+        ax.plot(t, x[:, 1] / 1e4, "C3-", label="T [10 kN m]")
+    ax.set(xlabel="time [s]", xlim=(0.0, None))
+    _above(ax, "two periods")
     ax.grid(alpha=0.3)
 
 
 def _over(left: Any, right: Any, scene: HybridScene, over: Bifurcation | None) -> None:
     for ax in (left, right):
-        ax.axvline(peak(scene)[1], color="k", ls="--", lw=0.8, label="max Psi")
+        ax.axvline(peak(scene)[1], color="k", ls="--", lw=0.8, label="max Ψ")
         ax.set_xlabel("T_max [N m]")
         ax.grid(alpha=0.3)
     if over is not None:
         left.plot(over.torque_max, over.period, "C0.-", ms=3)
-        right.plot(over.torque_max, over.slip_low, "C0-", label="smallest slip")
-        right.plot(over.torque_max, over.slip_high, "C3-", label="largest slip")
-    left.set(title="period [s]")
-    right.set(title="amplitude of the slip [-]")
-    right.legend(fontsize=7)
+        right.plot(over.torque_max, over.slip_low, "C0-", label="smallest λ")
+        right.plot(over.torque_max, over.slip_high, "C3-", label="largest λ")
+    left.set(ylabel="period [s]", ylim=(0.0, None))
+    right.set(ylabel="slip λ [-]")
+    _above(left, "")
+    _above(right, "")
+
+
+def _above(ax: Any, title: str) -> None:
+    """Title and legend above the axes, side by side."""
+    ax.set_title(title, loc="left", fontsize=9)
+    ax.legend(
+        fontsize=7, loc="lower right", bbox_to_anchor=(1.02, 0.99), ncols=3, frameon=False, columnspacing=0.8
+    )
 
 
 def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | None, q: int) -> None:
@@ -102,10 +107,12 @@ def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | Non
     _isocline(ax, scene)
     if cycle is not None:
         _orbit(ax, scene, cycle, color="k", lw=0.8)
-    ax.set(title=f"from state {q}", xlabel="slip [-]", ylabel="brake torque [N m]")
-    if q == 0:
-        handles = [Patch(color=c, alpha=0.6, label=name) for c, name in zip(COLOURS, OUTCOMES, strict=True)]
-        ax.legend(handles=handles, fontsize=7, loc="lower right")
+    ax.set(xlabel="slip λ [-]", ylabel="brake torque T [N m]")
+    ax.set_title(f"basin of state {q}", loc="left", fontsize=9)
+    if q == 0 and found is not None:
+        seen = [k for k in range(len(OUTCOMES)) if np.any(found.labels == k)]
+        handles = [Patch(color=COLOURS[k], alpha=0.6, label=OUTCOMES[k]) for k in seen]
+        ax.figure.legend(handles=handles, fontsize=8, loc="outside lower center", ncols=len(seen))
 
 
 def stopping(run: HybridTrajectory, title: str) -> Any:

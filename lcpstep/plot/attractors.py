@@ -16,16 +16,21 @@ from lcpstep.plot.bifurcation import LETTERS
 
 Array = NDArray[np.float64]
 ORDINALS = 6  # impacts of a period with a colour of their own; later ones share the last
+LABELS = ("position [m]", "velocity [m/s]")
 FEW, MANY = 5.0, 2.0  # sizes of a few points, and of thousands
 
 
-def attractors(rows: Mapping[str, Sequence[Any]], title: str = "", corners: Sequence[float] = ()) -> Any:
+def attractors(
+    rows: Mapping[str, Sequence[Any]], title: str = "", corners: Sequence[float] = (),
+    labels: Sequence[str] = LABELS,
+) -> Any:  # fmt: skip
     """Figure of attractors (`lcpstep.analysis.attractors.Attractor`).
 
     Parameters
     ----------
     rows : attractors by the name of the method that found them
     corners : phases of the corners of the forcing, as shares of the period
+    labels : of the states, with their units
     """
     from matplotlib.figure import Figure
 
@@ -34,20 +39,21 @@ def attractors(rows: Mapping[str, Sequence[Any]], title: str = "", corners: Sequ
     grid = figure.subplots(len(rows), 2, sharex="col", sharey="col", squeeze=False)
     for (left, right), (method, found) in zip(grid, rows.items(), strict=True):
         impact_panel(left, found, corners)
-        section_panel(right, found)
-        left.set_title(f"impacts: {method}", fontsize=10)
+        section_panel(right, found, labels)
+        event = "switches" if any(a.modes for a in found) else "impacts"
+        left.set_title(f"{event}: {method}", fontsize=10)
         right.set_title(f"once per period: {method}", fontsize=10)
     return figure
 
 
 def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -> None:
-    """Phase and velocity after each impact, coloured by its number in the period."""
+    """Phase and velocity after each impact, coloured by its number in the period; rate before each switch."""
     from matplotlib import colormaps
 
     shades = colormaps["viridis"](np.linspace(0.0, 0.92, ORDINALS))
     phase, after, number = (
         np.concatenate([getattr(a, f"impact_{name}") for a in found] or [np.zeros(0)])
-        for name in ("phase", "after", "number")
+        for name in ("phase", "before" if any(a.modes for a in found) else "after", "number")
     )
     size = FEW if all(a.periods for a in found) else MANY
     for k in range(1, ORDINALS + 1):
@@ -59,22 +65,29 @@ def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -
         ax.axvline(corner, color="C0", lw=0.5, alpha=0.6, zorder=0.5)
         ax.annotate(LETTERS[k % len(LETTERS)], (corner, 1.0), (1.5, -4.0 - 7.0 * (k % 2)), va="top", fontsize=7,
                     xycoords=("data", "axes fraction"), textcoords="offset points", color="C0")  # fmt: skip
-    ax.set(xlabel="phase of the forcing [periods]", ylabel="gap velocity after [m/s]", xlim=(0.0, 1.0))
+    modes = any(a.modes for a in found)
+    event, rate = ("switch", "rate of the guard before") if modes else ("impact", "gap velocity after [m/s]")
+    ax.set(xlabel="phase of the forcing [periods]", ylabel=rate, xlim=(0.0, 1.0))
     ax.tick_params(labelbottom=True)
     ax.grid(alpha=0.3)
     if len(phase):
-        ax.legend(title="impact of the period", fontsize=8, title_fontsize=8, loc="upper left",
+        ax.legend(title=f"{event} of the period", fontsize=8, title_fontsize=8, loc="upper left",
                   bbox_to_anchor=(1.0, 1.0), frameon=False)  # fmt: skip
 
 
-def section_panel(ax: Any, found: Sequence[Any]) -> None:
-    """Position and velocity once per period, one colour an attractor."""
+def section_panel(ax: Any, found: Sequence[Any], labels: Sequence[str] = LABELS) -> None:
+    """Position and velocity once per period, or the first two states, one colour an attractor."""
+    across = len(labels) // 2
     for k, a in enumerate(found):
-        n = a.cloud.shape[1] // 2
         dots(
-            ax, a.cloud[:, 0], a.cloud[:, n], f"C{k}", FEW if a.periods else MANY, f"{a.name}: {a.share:.1%}"
+            ax,
+            a.cloud[:, 0],
+            a.cloud[:, across],
+            f"C{k}",
+            FEW if a.periods else MANY,
+            f"{a.name}: {a.share:.1%}",
         )
-    ax.set(xlabel="position [m]", ylabel="velocity [m/s]")
+    ax.set(xlabel=labels[0], ylabel=labels[across])
     ax.tick_params(labelbottom=True)
     ax.grid(alpha=0.3)
     ax.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)

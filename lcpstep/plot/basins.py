@@ -26,6 +26,7 @@ def basins(data: Any, title: str = "") -> Any:
         ax.plot(
             [], [], "s", color=shades[min(k + 2, len(shades) - 1)], label=f"{name}: {share:.4f} ± {error:.4f}"
         )
-    ax.legend(loc="upper right")
-    ax.set(title=title, xlabel="position [m]", ylabel="velocity [m/s]")
+    figure.legend(loc="outside lower center", ncols=3)
+    labels = data.attrs.get("labels", ("position [m]", "velocity [m/s]"))
+    ax.set(title=title, xlabel=labels[0], ylabel=labels[1])
     return figure

@@ -22,11 +22,19 @@ PANELS = {
     "accumulation": "accumulation points:\nphase [periods]",
     "impacts": "impacts per period",
 }
+MODES = {  # the same of a scene with modes
+    "phase": "phase of switches [periods]",
+    "speed": "rate of the guard\nbefore switches",
+    "accumulation": "sliding begins:\nphase [periods]",
+    "impacts": "switches per period",
+}
+PLACES = {"position": 0, "velocity": 1}  # of the first and the middle state
 USUAL = ("phase", "position")
 CHATTERING = ("accumulation", "impacts")
 PHASES = ("phase", "accumulation")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 MISSING = "C3"
+NARROW = 0.25  # of the period
 FINE = 4000  # places along an axis that can be told apart
 
 
@@ -83,16 +91,33 @@ def overlaid(
 def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
     """Points of one panel."""
     x, y = thinned(*points(data, name))
-    size = larger * float(np.clip(1200.0 / len(data[str(data.attrs["parameter"])]), 1.2, 4.0))
+    size = larger * float(np.clip(2400.0 / len(data[str(data.attrs["parameter"])]), 2.5, 4.0))
     ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
-    ax.set_ylabel(PANELS[name])
+    ax.set_ylabel(label(data, name))
     if name in PHASES:
-        ax.set_ylim(0.0, 1.0)
+        ax.set_ylim(phases_shown(y) if name == "accumulation" else (0.0, 1.0))
         corners(ax, data)
     if name == "impacts":
         ax.set_ylim(bottom=0.0)
     if name in ("phase", "speed", "impacts"):
         _warned(ax, data)
+
+
+def label(data: Any, name: str) -> str:
+    """What a panel shows, with its unit; states by their own names, and switches where a scene has modes."""
+    labels = data.attrs["labels"]
+    if name in PLACES:
+        words, bracket, unit = labels[PLACES[name] * (len(labels) // 2)].partition(" [")
+        return f"{words}\non the section{bracket}{unit}"
+    return MODES.get(name, PANELS[name]) if data.attrs["modes"] else PANELS[name]
+
+
+def phases_shown(phases: np.ndarray) -> tuple[float, float]:
+    """Limits of an axis of phases: the whole period, or where all are in a small part of it, that part."""
+    low, high = (float(np.min(phases)), float(np.max(phases))) if len(phases) else (0.0, 1.0)
+    if high - low > NARROW:
+        return 0.0, 1.0
+    return max(0.0, low - 0.5 * (high - low) - 0.01), min(1.0, high + 0.5 * (high - low) + 0.01)
 
 
 def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -104,6 +129,8 @@ def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
         return values[data[f"{kind}_value"].values], data[listed[name]].values
     if name == "impacts":
         y = np.where(data["status"].values[..., None] == 0, data["impacts"].values, np.nan)
+    elif data.attrs["modes"]:
+        y = data["x"].isel(state=PLACES[name] * (data.sizes["state"] // 2)).values
     else:
         y = data[{"position": "q", "velocity": "v"}[name]].isel(coordinate=0).values
     return np.broadcast_to(values[None, :, None], y.shape).ravel(), y.ravel()
@@ -126,7 +153,7 @@ def corners(ax: Any, data: Any) -> None:
     values = data[str(data.attrs["parameter"])].values
     for k, phase in enumerate(data["corner_phase"].values.T):
         ax.plot(values, phase, color="C0", lw=0.6, alpha=0.7, zorder=0.5)
-        if len(LETTERS) > k and np.isfinite(phase[-1]):
+        if len(LETTERS) > k and ax.get_ylim()[0] <= phase[-1] <= ax.get_ylim()[1]:
             ax.annotate(
                 LETTERS[k], (1.0, phase[-1]), (4.0 + 9.0 * (k % 2), 0.0), xycoords=("axes fraction", "data"),
                 textcoords="offset points", color="C0", fontsize=8, va="center",
@@ -137,10 +164,15 @@ def _warned(ax: Any, data: Any) -> None:
     """Marks along the top where impacts of a period are missing, and where runs ended early."""
     values = data[str(data.attrs["parameter"])].values
     most = int(data.attrs["most"])
+    event = "switches" if data.attrs["modes"] else "impacts"
     cut = np.any(data["impacts"].values > most, axis=(0, 2))
     early = np.any(data["status"].values != 0, axis=0)
     for which, mark, text in (
-        (cut, "v", f"more than {most} impacts a period: only the first {most} are shown"),
+        (
+            cut,
+            "v",
+            f"more than {most} {event} a period: only the first {most} are shown",
+        ),
         (early, "x", "a run ended early"),
     ):
         if np.any(which):

@@ -39,7 +39,7 @@ def diagrams(
     for ax, points, name in zip(axes, (local, full), ("local map", "full system"), strict=True):
         x = np.concatenate([np.full(len(y), v) for v, y in zip(values, points, strict=True)])
         y = np.concatenate([y[:, 0] for y in points])
-        ax.plot(x, y, "k.", ms=2.0)
+        ax.plot(x, y, "k.", ms=2.5, mew=0.0, rasterized=True)
         for branch in branches:
             if branch.local == (name == "local map"):
                 style = STABLE if branch.stable else UNSTABLE
@@ -48,7 +48,8 @@ def diagrams(
         ax.axvline(p, color="C0", lw=0.8)
         ax.set(title=name, xlabel=parameter_label(names[0]), xlim=(values[0], values[-1]))
         if branches:
-            ax.legend(fontsize=8, loc="best")
+            ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
+            ax.title.set(x=0.0, ha="left")
         ax.grid(alpha=0.3)
     axes[0].set_ylabel(names[1])
     shown = np.concatenate([y[:, 0] for y in full] + [local[int(np.argmin(np.abs(values - p)))][:, 0]])

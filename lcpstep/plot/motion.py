@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.compare import Comparison
+from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.trajectory import Kind, Trajectory
 
 SAMPLES = 4000  # of a curve
@@ -32,9 +33,10 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
         axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=_name(exact))
         axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=_name(fast))
         axes[2 * k].set(title=title, ylabel="position q [m]")
-        axes[2 * k].legend(loc="upper right", fontsize=8)
+        axes[2 * k].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8, frameon=False)
+        axes[2 * k].title.set(x=0.0, ha="left")
         distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]), "C3-", lw=0.7)
-        distance.set(ylabel="|difference| [m]", xlabel="time t [s]")
+        distance.set(ylabel="|Δq| [m]", xlabel="time t [s]")
         distance.set_ylim(bottom=max(c.sup_q, 1e-16) * DECADES)
         for ax in (axes[2 * k], distance):
             ax.set_xlim(exact.t[0], exact.t[-1])
@@ -71,10 +73,12 @@ def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
     ax.grid(alpha=0.3)
 
 
-def overview(run: Trajectory) -> Any:
-    """Position, velocity and impulses of one run over time."""
+def overview(run: Trajectory | HybridTrajectory) -> Any:
+    """Position, velocity and impulses of one run over time; of a system with modes, its states and its mode."""
     from matplotlib.figure import Figure
 
+    if isinstance(run, HybridTrajectory):
+        return _states_and_mode(run)
     figure = Figure(figsize=(10, 7), layout="constrained")
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
     t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
@@ -92,7 +96,29 @@ def overview(run: Trajectory) -> Any:
     return figure
 
 
-def _name(run: Trajectory) -> str:
+def _states_and_mode(run: HybridTrajectory) -> Any:
+    """One panel a state, and the mode as steps."""
+    from matplotlib.figure import Figure
+
+    n, names = run.scene.n_x, run.scene.system.names
+    figure = Figure(figsize=(10, 1.0 + 2.1 * (n + 1)), layout="constrained")
+    axes = figure.subplots(n + 1, 1, sharex=True)
+    jumps = np.nextafter(run.switches.time, run.t[0])
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps]))
+    x, modes = run.at(t), run.mode_at(t)
+    for ax, values, label in zip(axes, x.T, run.scene.labels, strict=False):
+        ax.plot(t, values, lw=1.0)
+        ax.set_ylabel(label)
+    seen = [name for name in names if name in set(modes.tolist())]
+    axes[-1].step(t, [seen.index(str(name)) for name in modes], where="post", lw=1.0)
+    axes[-1].set(yticks=range(len(seen)), yticklabels=seen, ylabel="mode", xlabel="time t [s]")
+    for ax in axes:
+        ax.grid(alpha=0.3)
+    axes[0].set_title(f"{run.scene.name}: {_name(run)}")
+    return figure
+
+
+def _name(run: Trajectory | HybridTrajectory) -> str:
     method = run.method
     if getattr(method, "tolerance", None) is not None:
         return f"{type(method).__name__}, tolerance {method.tolerance:g}"

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import HybridScene
 from lcpstep.analysis.orbits import PeriodicOrbit
 from lcpstep.plot.lift import absolute
-from lcpstep.plot.words import parameter_label
+from lcpstep.plot.words import names_of, parameter_label
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]
@@ -35,14 +36,14 @@ def branch(data: Any, title: str = "") -> Any:
     from matplotlib.figure import Figure
 
     parameter = str(data.attrs["parameter"])
-    figure = Figure(figsize=(11, 12), layout="constrained")
+    figure = Figure(figsize=(11, 10), layout="constrained")
     figure.suptitle(title)
-    grid = figure.add_gridspec(3, 1, height_ratios=[1.0, 0.8, 1.2])
+    grid = figure.add_gridspec(3, 1, height_ratios=[1.0, 0.8, 1.0])
     above = figure.add_subplot(grid[0])
     below = figure.add_subplot(grid[1], sharex=above)
     branch_lines(above, data)
     mark_special(above, data)
-    above.set(ylabel=f"position at phase {data.attrs['phase']:.4g} [m]")
+    above.set(ylabel=f"{data.attrs['labels'][0]}\nat phase {data.attrs['phase']:.4g}")
     above.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
     p, stable = data[parameter].values, data["stable"].values.astype(bool)
     for which, style in ((stable, STABLE), (~stable, UNSTABLE)):
@@ -108,9 +109,9 @@ def multiplier_plane(figure: Any, ax: Any, data: Any) -> None:
     real, imag = data["multiplier_real"].values, data["multiplier_imag"].values
     p = np.broadcast_to(data[parameter].values[:, None], real.shape)
     points = ax.scatter(real, imag, c=p, s=12, cmap="viridis", zorder=3)
-    figure.colorbar(points, ax=ax, label=parameter_label(parameter), shrink=0.7)
-    ax.set_aspect("equal")
-    ax.set(xlabel="real part", ylabel="imaginary part", title="multipliers")
+    figure.colorbar(points, ax=ax, label=parameter_label(parameter))
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set(xlabel="real part of the multipliers", ylabel="imaginary part")
 
 
 def orbit(found: PeriodicOrbit, title: str = "") -> Any:
@@ -120,33 +121,53 @@ def orbit(found: PeriodicOrbit, title: str = "") -> Any:
     T, n = found.scene.period, found.periods
     start = found.phase * T
     run = found.run()
-    jumps = run.impacts.time[run.impacts.kind == Kind.IMPACT]
+    modes = isinstance(found.scene, HybridScene)
+    jumps = run.switches.time if modes else run.impacts.time[run.impacts.kind == Kind.IMPACT]
     t = np.unique(
         np.concatenate([np.linspace(start, start + n * T, SAMPLES * n), jumps, np.nextafter(jumps, start)])
     )
-    q, v = run.at(t)
+    across = found.scene.n_x // 2
+    x = run.at(t) if modes else np.concatenate(run.at(t), axis=1)
     figure = Figure(figsize=(12, 4.5), layout="constrained")
     figure.suptitle(title)
     left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
-    motion_panel(left, found.scene, t, q, v)
+    if isinstance(found.scene, HybridScene):
+        modes_panel(left, found.scene, t, x, run.mode_at(t))
+    else:
+        motion_panel(left, found.scene, t, x[:, :across], x[:, across:])
     for time in jumps:
         left.axvline(time / T, color="0.85", lw=0.8, zorder=0)
-    state_panel(right, t, q[:, 0], v[:, 0], jumps)
-    right.plot(
-        found.x[:, 0], found.x[:, found.scene.n_q], "C3o", ms=4, label=f"section at phase {found.phase:.4g}"
-    )
-    right.legend(fontsize=8)
+    state_panel(right, t, x[:, 0], x[:, across], jumps)
+    right.set(xlabel=found.scene.labels[0], ylabel=found.scene.labels[across])
+    right.plot(found.x[:, 0], found.x[:, across], "C3o", ms=4, label=f"section at phase {found.phase:.4g}")
+    right.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure
 
 
 def motion_panel(ax: Any, scene: Any, t: Array, q: Array, v: Array) -> None:
     """Position over time in periods, with the obstacle where there is one coordinate and one contact."""
     position, surface = absolute(scene, t, q, v)
-    ax.plot(t / scene.period, position, "C0-", lw=1.3, label="body" if position.shape[1] == 1 else None)
+    body, obstacle = names_of(scene)
+    ax.plot(t / scene.period, position, "C0-", lw=1.3, label=body if position.shape[1] == 1 else None)
     if surface is not None:
-        ax.plot(t / scene.period, surface, "k-", lw=1.0, label="obstacle")
-        ax.legend(fontsize=8)
+        ax.plot(t / scene.period, surface, "k-", lw=1.0, label=obstacle)
+        ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
     ax.set(xlabel="time [periods]", ylabel="position [m]", xlim=(t[0] / scene.period, t[-1] / scene.period))
+    ax.grid(alpha=0.3)
+
+
+def modes_panel(ax: Any, scene: HybridScene, t: Array, x: Array, mode: Any) -> None:
+    """The first state over time in periods, one colour a mode."""
+    ends = np.flatnonzero(mode[1:] != mode[:-1]) + 1
+    names = list(dict.fromkeys(str(name) for name in mode))
+    shown: set[str] = set()
+    for piece in np.split(np.arange(len(t)), ends):
+        name, to = str(mode[piece[0]]), slice(piece[0], piece[-1] + 2)
+        ax.plot(t[to] / scene.period, x[to, 0], f"C{names.index(name)}-", lw=1.5,
+                label=None if name in shown else name)  # fmt: skip
+        shown.add(name)
+    ax.legend(title="mode", fontsize=8, title_fontsize=8)
+    ax.set(xlabel="time [periods]", ylabel=scene.labels[0], xlim=(t[0] / scene.period, t[-1] / scene.period))
     ax.grid(alpha=0.3)
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from lagrangian import HybridScene
 from lcpstep.dataset import UNITS
 
 DPI = 150
+FEW = 6  # parameters that a title has room for
+LONG = 90  # characters of a line of it
 
 
 def method_words(method: Any) -> str:
@@ -26,12 +29,21 @@ def parameter_label(name: str) -> str:
     return "cam speed [rpm]" if name == "rpm" else f"{name} [{unit}]" if unit else name
 
 
+def names_of(scene: Any) -> tuple[str, str]:
+    """What moves, and what it strikes."""
+    return ("follower", "cam") if "rpm" in scene.parameters else ("body", "obstacle")
+
+
 def scene_words(scene: Any) -> str:
-    """The scene, and how fast its cam turns."""
+    """The scene, and how fast its cam turns; of a scene with modes the parameters, where they are few."""
     rpm = scene.parameters.get("rpm")
+    if isinstance(scene, HybridScene) and len(scene.parameters) <= FEW:
+        values = ", ".join(f"{k} = {x:g}" for k, x in scene.parameters.items() if not isinstance(x, str))
+        return f"{scene.name} ({values})"
     return str(scene.name) if rpm is None else f"{scene.name} at {rpm:.9g} rpm"
 
 
 def title_of(scene: Any, what: str, method: Any) -> str:
     """Scene, what is shown, and by which method."""
-    return f"{scene_words(scene)}: {what}; {method_words(method)}"
+    words, more = scene_words(scene), f"{what}; {method_words(method)}"
+    return f"{words}: {more}" if len(words) + len(more) < LONG else f"{words}\n{more}"

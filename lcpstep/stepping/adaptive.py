@@ -21,7 +21,11 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from lagrangian import Scene
 from lcpstep.compiled import by_address, inline
+from lcpstep.model import failing
+from lcpstep.pace import Pace
+from lcpstep.recording import TIME
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 
 # Why a loop returned, besides its method's own reasons: to have its buffers emptied, and for good
@@ -33,19 +37,21 @@ FLAT = 3.0  # an error that half the step makes smaller by less than this comes 
 NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 FIRST = 1e-6  # of the span: the first step
-LOOK = 4096  # steps between two looks at the outside world
-# Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level
-POSITION, LEVEL, END, FINEST = range(4)
-# Places in Control.real; the last three: error of the attempt before, if that failed at the same place; the time
-# reached, rounded as that of the state kept there; how far beyond POSITION an event has cut the step
-START, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, REACHED, INTO = range(10)
+LOOK = 4096  # steps between two looks at the outside world, at most
+LOOKS_AHEAD = 17  # at the callbacks where no step is short enough
+# Places in Control.whole: start of the step, in finest steps; level of the step; end of the span; finest level;
+# attempts so far, and their number at the next look at the outside world
+POSITION, LEVEL, END, FINEST, TRIED, UNTIL = range(6)
+# Places in Control.real; the last two: error of the attempt before, if that failed at the same place; how far beyond
+# POSITION an event has cut the step
+START, STOP, SPAN, H_MAX, TOLERANCE, ENOUGH, SIZE_Q, SIZE_V, LAST, INTO = range(10)
 
 
 @by_address
 class Control(NamedTuple):
     """Where the run is, and what it allows."""
 
-    whole: Any  # (4,)
+    whole: Any  # (6,)
     real: Any  # (10,)
 
 
@@ -69,16 +75,18 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
     if least > 0.0:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
     first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
-    whole = np.array([0, first, coarse << finest, finest], dtype=np.int64)
+    whole = np.array([0, first, coarse << finest, finest, 0, 0], dtype=np.int64)
     enough = PLENTY * 0.5**order
-    real = np.array([start, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, start, 0.0])
+    real = np.array([start, end, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, 0.0])
     return Control(whole, real)
 
 
 def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
     """The whole span; 0, or why it could not be reached. `arrive` is called where the loop has returned to Python."""
+    pace = Pace(LOOK)
     while True:
         try:
+            c.whole[UNTIL] = pace.goal(int(c.whole[TRIED]))
             code = steps.attempts()
         except BaseException:
             steps.undo()
@@ -97,16 +105,39 @@ def step_size(c: Any, level: int) -> float:
 
 
 @inline
+def base(c: Any) -> float:
+    """The multiple of the step from which times are counted until the next one is reached [s]."""
+    return place(c, c.whole[POSITION])
+
+
+@inline
 def now(c: Any) -> float:
     """Time at which the step begins [s]."""
-    return c.real[START] + c.real[H_MAX] * (c.whole[POSITION] * 0.5 ** c.whole[FINEST]) + c.real[INTO]
+    return base(c) + c.real[INTO]
 
 
 @inline
 def goal(c: Any) -> float:
     """Time at which it ends unless an event cuts it [s]."""
-    position = c.whole[POSITION] + (1 << (c.whole[FINEST] - c.whole[LEVEL]))
-    return c.real[START] + c.real[H_MAX] * (position * 0.5 ** c.whole[FINEST])
+    return place(c, c.whole[POSITION] + (1 << (c.whole[FINEST] - c.whole[LEVEL])))
+
+
+@inline
+def place(c: Any, position: int) -> float:
+    """Time of a number of finest steps; the end of the span to the bit [s]."""
+    if position >= c.whole[END]:
+        return c.real[STOP]
+    return min(c.real[STOP], c.real[START] + c.real[H_MAX] * (position * 0.5 ** c.whole[FINEST]))
+
+
+def stamp(record: Any, row: int, rows: int, event: int, events: int, late: float, t: float) -> None:
+    """Kernel: what a step has kept and noted at `late` or after belongs to its end t, with which the next begins."""
+    for k in range(row, rows):
+        if record.rows[k, TIME] >= late:
+            record.rows[k, TIME] = t
+    for k in range(event, events):
+        if record.events[k, 0] >= late:
+            record.events[k, 0] = t
 
 
 @inline
@@ -126,7 +157,7 @@ def judge(
 ) -> int:
     """Whether a step to q, v whose errors are apart_q, apart_v is accepted; sets the next one's place and level.
 
-    `cut`: the time since its start after which it stopped, infinite where it went to the next multiple.
+    `cut`: the time since its base at which it stopped, infinite where it went to the next multiple.
     """
     level, x = c.whole[LEVEL], c.real
     size_q, size_v = max(x[SIZE_Q], largest(q)), max(x[SIZE_V], largest(v))
@@ -146,8 +177,6 @@ def judge(
         go_on(c, 0.0)
         return AGAIN
     x[SIZE_Q], x[SIZE_V], x[LAST] = size_q, size_v, math.inf
-    half = 0.5 * step_size(c, level)
-    x[REACHED] = (now(c) + half) + half
     if go_on(c, cut):
         return ACCEPTED
     fits = level > 0 and c.whole[POSITION] % (1 << (c.whole[FINEST] - level + 1)) == 0
@@ -158,11 +187,11 @@ def judge(
 
 @inline
 def go_on(c: Any, time: float) -> bool:
-    """Go on by a time, at most to the next multiple of the step; whether it lies still ahead."""
+    """Go on to a time since the base, at most to the next multiple of the step; whether it lies still ahead."""
     x, level = c.real, c.whole[LEVEL]
     h = step_size(c, level)
     rounding = NOISE * (abs(now(c)) + h)
-    x[INTO] += min(time, max(h - x[INTO], 0.0))
+    x[INTO] = max(x[INTO], min(time, h))
     if x[INTO] < h - rounding:
         return True
     c.whole[POSITION] += 1 << (c.whole[FINEST] - level)
@@ -188,6 +217,9 @@ def distance(x: Any, y: Any) -> float:
     return most
 
 
-def too_small(tolerance: float | None, where: str) -> str:
-    """A tolerance that no step meets, in words."""
-    return f"the tolerance {tolerance:g} cannot be met by any step {where}; expected a larger one"
+def too_small(method: Any, scene: Scene, t: float, q: Any, v: Any, where: str) -> str:
+    """A tolerance that no step meets, in words; and the callback that fails ahead in a straight line, if one does."""
+    text = f"the tolerance {method.tolerance:g} cannot be met by any step {where}"
+    ahead = np.linspace(t, max(t, min(t + method.h, scene.t_span[1])), LOOKS_AHEAD)
+    found = failing(scene, ahead, q, v)
+    return f"{text}; ahead of it {found.rstrip(';')}" if found else f"{text}; expected a larger one"

@@ -23,19 +23,21 @@ from lcpstep.stepping.adaptive import (
     GIVEN_UP,
     INTO,
     LEVEL,
-    LOOK,
     PAUSED,
-    REACHED,
     SIZE_Q,
     SIZE_V,
     TOO_SMALL,
+    TRIED,
+    UNTIL,
     Control,
+    base,
     distance,
     goal,
     judge,
     largest,
     now,
     over,
+    stamp,
     step_size,
 )
 from lcpstep.stepping.adaptive_forces import hidden, late
@@ -53,6 +55,7 @@ from lcpstep.stepping.located_work import (
     FORCE_NOW,
     FORCES,
     GAP,
+    GOAL,
     HALF,
     IMPULSE,
     LAST,
@@ -78,6 +81,7 @@ from lcpstep.stepping.located_work import (
 
 Array = NDArray[np.float64]
 Prepared = tuple[Plan, Work]
+Offsets = tuple[float, float]  # from the base of a step to the beginning and the end of a part [s]
 Step = Callable[[Plan, Work, float], int]  # one step from a time; the code of the loop
 EARLY = 1 / 32  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -108,6 +112,36 @@ def weigh(
     return judge(control, failed, apart_q, apart_v, q, v, happened, cut)
 
 
+def load(
+    num: Any,
+    mark: Any,
+    W: Any,
+    num_before: Any,
+    rows: Any,
+    row_before: Any,
+    place: int,
+    force: Any,
+    impulse: Any,
+) -> None:
+    """Kernel: mean forces that would keep each contact closed over the last piece, impulses since the step began.
+
+    `rows`: kept since, the first of them, which was `row_before`, before; impulses stand in them from `place` on.
+    """
+    for c in range(len(force)):
+        force[c] = num[FORCE_NOW, c]
+        if mark[STATUS, c] != CLOSED:
+            pull = num[ALPHA, c]
+            for d in range(len(force)):
+                if mark[STATUS, d] == CLOSED:
+                    pull += W[c, d] * num[FORCE_NOW, d]
+            force[c] = -pull / W[c, c] if W[c, c] > 0.0 else math.nan
+        impulse[c] = num[IMPULSE, c] - num_before[IMPULSE, c]
+        if len(rows) > 0:
+            impulse[c] -= row_before[place + c]
+        for k in range(len(rows)):
+            impulse[c] += rows[k, place + c]
+
+
 class Attempts:
     """A run of `Located` as `adaptive.advance` wants it.
 
@@ -126,26 +160,28 @@ class Attempts:
         self.sized = plan.trapezoidal and plan.stiff and not plan.small  # matrices are those of whole steps
         self.prepared: dict[int, Prepared] = {}
         self.taken = w  # the work space with the responses of the last part
-        self.weigh = compiled(weigh) if fast else weigh
+        self.weigh: Callable[..., int] = compiled(weigh) if fast else weigh
+        self.load: Callable[..., None] = compiled(load) if fast else load
         self.arrays = [w.vec, w.num, w.mark, x, count] + ([] if plan.constant else [w.G, w.MG, w.W, w.M])
         self.saved = [a.copy() for a in self.arrays]
-        self.row, self.under_way, self.reached = record.rows[0].copy(), False, now(control)
+        self.row, self.under_way = record.rows[0].copy(), False
         control.real[SIZE_Q], control.real[SIZE_V] = largest(w.vec[Q]), largest(w.vec[V])
-        x[PAUSING] = 1.0
+        x[PAUSING], w.num[LAST] = 1.0, -1.0
 
     def attempts(self) -> int:
         """Take steps until the end of the span, full buffers, or a step that cannot be taken."""
-        for _ in range(LOOK):
+        while self.control.whole[TRIED] < self.control.whole[UNTIL]:
             if over(self.control):
                 return FINISHED
             left = len(self.record.rows) - self.count[ROW]
             if left < len(self.record.times) - self.count[NEXT_TIME] + 8:
                 return PAUSED
+            self.control.whole[TRIED] += 1
             self.store()
             code, verdict = self.attempt()
             full = code == BUFFER_FULL and self.saved[4][EVENT] + self.saved[4][ROW] > 0
             if verdict == ACCEPTED:
-                self.control.real[REACHED], self.x[UNDER_WAY] = self.reached, 0.0
+                self.x[UNDER_WAY] = 0.0
             else:
                 self.undo()
             self.under_way = False
@@ -157,10 +193,16 @@ class Attempts:
 
     def attempt(self) -> tuple[int, int]:
         """One step, then two halves of it: the last code of the loop, and the verdict."""
-        c, start, end = self.control, now(self.control), self.end()
-        until, entire = math.inf, end == goal(c)
+        c = self.control
+        self.base, self.goal, self.h = (
+            float(base(c)),
+            float(goal(c)),
+            float(step_size(c, int(c.whole[LEVEL]))),
+        )
+        start, end = float(c.real[INTO]), self.end()
+        until, entire = math.inf, end == self.h
         for _ in range(4):
-            one, half, two = self.compare(start, end, entire and c.real[INTO] == 0.0, until)
+            one, half, two = self.compare(start, end, entire, until)
             if two.code != STOPPED or two.time in (until, 0.0):
                 break
             self.undo()
@@ -168,6 +210,7 @@ class Attempts:
             early = self.alike or self.saved[3][CLOSED_NOW] > 0.0
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, math.inf
+        self.in_time(entire)
         wrong_q = wrong_v = 0.0
         if two.time == 0.0:  # an event before anything moved
             one = two
@@ -178,56 +221,74 @@ class Attempts:
             return two.code, AGAIN
         failed = one.code not in GOOD or two.code not in GOOD
         happened = two.code == STOPPED or self.count[EVENT] > self.saved[4][EVENT]
-        cut = math.inf if entire and two.code == FINISHED else two.time
+        cut = math.inf if entire and two.code == FINISHED else self.x[SIGMA]
         verdict = self.weigh(c, failed, one.q, one.v, two.q, two.v, wrong_q, wrong_v, happened, cut)
         return two.code, verdict
 
-    def compare(self, start: float, end: float, even: bool, until: float) -> tuple[Led, Led, Led]:
-        """A single piece up to a time; from the same start a half, and both halves, at most to an event."""
-        one = self.led(self.part(start, end, even and until == math.inf, until, 0))
+    def compare(self, start: float, end: float, entire: bool, until: float) -> tuple[Led, Led, Led]:
+        """A single piece up to a time; from the same start a half, and both halves, at most to an event.
+
+        `start`, `end`: since the base of the step, whose end this is where it is `entire`.
+        """
+        last, even = self.goal if entire else self.base + end, entire and start == 0.0
+        one = self.led(self.part((start, end), last, even and until == math.inf, until, 0))
         self.undo()
         middle = start + 0.5 * (end - start)
-        code = self.part(start, middle, even, 0.0, 1)
-        half = self.led(code)
-        two = half
-        if code == FINISHED:
-            two = self.led(self.part(middle, end, even, 0.0, 1))
+        half = two = self.led(self.part((start, middle), self.base + middle, even, 0.0, 1))
+        if half.code == FINISHED:
+            two = self.led(self.part((middle, end), last, even, 0.0, 1))
             two = two._replace(time=middle - start + two.time)
         return one, half, two
 
     def end(self) -> float:
-        """Where the step ends that begins now: at the next multiple, or at a corner before it."""
-        start, end = now(self.control), goal(self.control)
+        """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
         if len(self.plan.corners) == 0:
-            return end
-        corner = find_corners(self.plan, start)[1]
-        return corner if corner < end - self.plan.margin else end
+            return self.h
+        corner = find_corners(self.plan, now(self.control))[1]
+        return float(corner - self.base) if corner < self.goal - self.plan.margin else self.h
 
-    def part(self, start: float, end: float, even: bool, until: float, halved: int) -> int:
-        """From start to end, in a single piece up to a time if that is not 0; `even` where this is a whole step."""
-        level, x = int(self.control.whole[LEVEL]) + (halved if even else 0), self.x
+    def part(self, offsets: Offsets, last: float, even: bool, until: float, halved: int) -> int:
+        """A part of a step, in a single piece up to a time if that is not 0; `even` where it is as long as a level's.
+
+        Times are counted from the base of the step, so that what happens at one instant has one time whichever part
+        it ends. `last`: the time at the end of the part.
+        """
+        (start, end), x, level = offsets, self.x, int(self.control.whole[LEVEL]) + (halved if even else 0)
         if level not in self.prepared:
             self.prepared[level] = self.make(step_size(self.control, level))
         p, w = self.make(end - start) if self.sized and not even else self.prepared[level]
+        if end != p.h:
+            p = p._replace(h=end)
         self.taken = w
-        t, x[UNCHANGED], x[BLIND], x[UNDER_WAY] = start, 0.0, until, 0.0
-        before = 0.0
-        if not even:  # the end of a longer step
-            before = max(p.h - (end - start), 0.0)
-            t, x[UNDER_WAY], x[END] = end - p.h, 1.0, 0.0
-            self.carry_on(before, COLLAPSE * p.h)
-        code = self.step(p, w, t)
-        self.elapsed = end - start if code == FINISHED else x[SIGMA] - before
-        self.reached = t + p.h if code == FINISHED else t + x[SIGMA]
+        x[UNCHANGED], x[BLIND], x[GOAL] = 0.0, until, last
+        self.carry_on(start, even and start == 0.0, COLLAPSE * p.h)
+        code = self.step(p, w, self.base)
+        if code == FINISHED:  # a contact's flight is followed without counting times
+            x[SIGMA] = end
+        self.elapsed = x[SIGMA] - start
         return code
 
-    def carry_on(self, sigma: float, close: float) -> None:
-        """Begin a part of a step at sigma: what has just fired has done so now."""
-        last = self.w.num[LAST]
-        just = (last >= 0.0) & (self.x[SIGMA] - last <= close)
-        last[:] = np.where(just, sigma, -1.0)
-        self.w.num[TURNED] += sigma - self.x[SIGMA]
-        self.x[SIGMA] = sigma
+    def carry_on(self, start: float, anew: bool, close: float) -> None:
+        """Begin a part at an offset: a step `anew`; else what has just fired has done so now."""
+        x, last = self.x, self.w.num[LAST]
+        anew = (
+            anew and x[SIGMA] != 0.0
+        )  # after an event at its very beginning a step goes on: it is not forgotten
+        x[UNDER_WAY] = 0.0 if anew else 1.0
+        if anew:
+            return
+        if x[SIGMA] != start:
+            just = (last >= 0.0) & (x[SIGMA] - last <= close)
+            last[:] = np.where(just, start, -1.0)
+            self.w.num[TURNED] += start - x[SIGMA]
+        x[SIGMA], x[END] = start, 0.0
+
+    def in_time(self, entire: bool) -> None:
+        """Nothing of a step comes after the multiple that it ends at, by rounding."""
+        if entire and self.base + self.h > self.goal:
+            rows, events = (int(self.saved[4][k]) for k in (ROW, EVENT))
+            last = self.goal
+            stamp(self.record, rows, int(self.count[ROW]), events, int(self.count[EVENT]), last, last)
 
     def led(self, code: int) -> Led:
         """Where the part that has just been taken led."""
@@ -236,7 +297,7 @@ class Attempts:
         if self.rough:
             gap, half = w.num[GAP].copy(), w.num[HALF].copy()
         if self.saved[3][CLOSED_NOW] > 0.0 and code in GOOD:
-            force, impulse = self.forces(), self.impulses()
+            force, impulse = self.loads()
         v = w.vec[V_STRUCK if code == STOPPED and self.x[BLIND] == 0.0 else V]
         closed = w.mark[STATUS] == CLOSED
         return Led(code, self.elapsed, w.vec[Q].copy(), v.copy(), gap, half, closed, force, impulse)
@@ -254,15 +315,17 @@ class Attempts:
                 deepest = max(deepest, error)
         return deepest
 
-    def forces(self) -> Array:
-        """Mean forces that would keep each contact closed over the last piece; unknown where it opened at its end."""
-        w, W = self.w, self.mobilities()
-        closed = w.mark[STATUS] == CLOSED
-        pressing = np.where(closed, w.num[FORCE_NOW], 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            force = np.where(closed, pressing, -(w.num[ALPHA] + W @ pressing) / np.diag(W))
-        force[self.opened_at_end()] = math.nan
-        return force
+    def loads(self) -> tuple[Array, Array]:
+        """Forces of the contacts over the last piece, unknown where one opens at its end; impulses of the step."""
+        n_c, first, last = self.w.num.shape[1], max(int(self.saved[4][ROW]) - 1, 0), int(self.count[ROW])
+        force, impulse = np.empty(n_c), np.empty(n_c)
+        rows, place = self.record.rows[first:last], LEAD + 2 * self.w.vec.shape[1]
+        self.load(
+            self.w.num, self.w.mark, self.mobilities(), self.saved[1], rows, self.row, place, force, impulse
+        )
+        if self.count[EVENT] > self.saved[4][EVENT]:
+            force[self.opened_at_end()] = math.nan
+        return force, impulse
 
     def opened_at_end(self) -> list[int]:
         """Contacts that have opened at the end of a piece, with a velocity, and not at its beginning."""
@@ -272,13 +335,6 @@ class Attempts:
     def mobilities(self) -> Array:
         """How the contacts' accelerations answer their forces, over the last piece."""
         return self.taken.WA[int(self.x[MADE_WITH])] if self.means and self.plan.constant else self.w.W
-
-    def impulses(self) -> Array:
-        """Of the contacts, since the start of the step."""
-        first, last, n_c = max(int(self.saved[4][ROW]) - 1, 0), int(self.count[ROW]), self.w.num.shape[1]
-        place = slice(LEAD + 2 * self.w.vec.shape[1], LEAD + 2 * self.w.vec.shape[1] + n_c)
-        kept = self.record.rows[first:last, place].sum(axis=0) - (self.row[place] if last > first else 0.0)
-        return np.asarray(self.w.num[IMPULSE] - self.saved[1][IMPULSE] + kept)
 
     def wrong(self, one: Led, half: Led, two: Led, length: float) -> float:
         """Error of the velocity by contacts that were closed, see `adaptive_forces`."""
@@ -300,6 +356,7 @@ class Attempts:
         """Keep the state at the start of a step, and the last row, which an event at its time changes."""
         for saved, a in zip(self.saved, self.arrays, strict=True):
             np.copyto(saved, a)
+        self.row.fill(0.0)
         if self.count[ROW] > 0:
             np.copyto(self.row, self.record.rows[self.count[ROW] - 1])
         self.under_way = True

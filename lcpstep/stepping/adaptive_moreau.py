@@ -29,19 +29,22 @@ from lcpstep.stepping.adaptive import (
     LEAST_SHARE,
     LEVEL,
     LEVELS,
-    LOOK,
     PAUSED,
     SIZE_Q,
     SIZE_V,
     SPAN,
     TOO_SMALL,
+    TRIED,
+    UNTIL,
     Control,
     distance,
+    goal,
     judge,
     largest,
     now,
     over,
     resolved,
+    stamp,
     step_size,
 )
 from lcpstep.stepping.adaptive_switches import Switches, begin, note, unseen
@@ -131,7 +134,7 @@ def run(
     c: Any,
 ) -> int:
     """Steps until the end of the span, full buffers, or a step that cannot be taken; says why it returned."""
-    for _ in range(LOOK):
+    while control.whole[TRIED] < control.whole[UNTIL]:
         if over(control):
             return FINISHED
         if len(record.rows) - count[ROW] < len(saved.times) - count[NEXT_TIME] + 4:
@@ -139,6 +142,7 @@ def run(
         level = control.whole[LEVEL]
         if levels.ready[level] == 0 or levels.ready[level + 1] == 0:
             return WANTED
+        control.whole[TRIED] += 1
         code = attempt(model, levels, state, motion, record, count, control, saved, c)
         full, done = code == LOG_FULL and saved.count[EVENT] > 0, saved.done
         verdict = AGAIN
@@ -194,7 +198,7 @@ def attempt(
         before(motion, saved, slow)
         halves = 1 if part > 0 else 0
         plan = plan_of(levels, control.whole[LEVEL] + halves, h * 0.5**halves)
-        start, k = (t + plan.h if part == 2 else t), count[STEP]
+        start, k, rows, events = (t + plan.h if part == 2 else t), count[STEP], count[ROW], count[EVENT]
         if c is None:
             code = run_contacts(model, plan, state, record, count, start, k, k + 1, False, False)
         else:
@@ -203,8 +207,12 @@ def attempt(
             return code
         after(motion, saved, plan.h, slow)
         note(saved.switches, part, plan.h, plan, state, saved.num[PART_RATE], slow, c)
+        end = start + plan.h
+        if part == 2 and end != goal(control):
+            stamp(record, rows, count[ROW], events, count[EVENT], end, goal(control))
+            end = goal(control)
         if part > 0:
-            keep_times(levels.theta, motion, record.rows, count, saved, start, start + plan.h)
+            keep_times(levels.theta, motion, record.rows, count, saved, start, end)
     if count[EVENT] > saved.count[EVENT]:
         done[HAPPENED] = 1.0
     done[APART_Q] = max(done[APART_Q], distance(saved.vec[ONE_Q], motion.q))

@@ -21,6 +21,7 @@ from lcpstep.stepping.located_work import (
     CHOSEN,
     CLOSED,
     END,
+    FALL,
     FORCE_NOW,
     FREE,
     GAP_T,
@@ -59,6 +60,8 @@ def hold(m: Any, plan: Any, w: Any, x: Any, record: Any, place: int, t: float, c
     n_k = choose_resting(w, x)
     if n_k == 0:
         return True
+    for c in range(w.num.shape[1]):
+        w.num[FALL, c] = 0.0
     rest = x[END] - x[SIGMA]
     W = w.WA[place] if plan.constant else w.W
     MG = w.AG[place] if plan.constant else w.MG

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from lcpstep.dynamics import gap_rounding, order_matters
 from lcpstep.stepping.corners import choose_jumping
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import pass_on
@@ -26,6 +27,7 @@ from lcpstep.stepping.located_work import (
     CORNER,
     END,
     EVENTS,
+    FALL,
     GAP,
     GROUND,
     GROUNDED,
@@ -47,15 +49,15 @@ from lcpstep.stepping.located_work import (
     V_TRY,
     B,
     P,
+    Q,
     V,
     Z,
 )
 from lcpstep.stepping.magnitudes import faint, speed_terms
 from lcpstep.stepping.refine import solve_chosen
-from lcpstep.stepping.switches import AT_ONCE_FAST, COLLAPSE, log, release, stick, turn
+from lcpstep.stepping.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, log, release, stick, turn
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
-SHORT_TOGETHER = 1e-4  # the same where other closed contacts take part
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 IN_A_ROW = (
@@ -68,7 +70,7 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
 
     Returns how many took part, -1 where the impact was not solved.
     """
-    n_s = choose_jumping(m, plan, w, x, t) if first == CORNER else choose_struck(plan, w, first)
+    n_s = choose_jumping(m, plan, w, x, t) if first == CORNER else choose_struck(m, plan, w, x, first)
     if n_s == 0:
         return 0
     if x[CLOSED_NOW] > 0:
@@ -93,12 +95,21 @@ def strike(m: Any, plan: Any, w: Any, x: Any, record: Any, first: int, t: float,
     return n_s
 
 
-def choose_struck(plan: Any, w: Any, first: int) -> int:
+def choose_struck(m: Any, plan: Any, w: Any, x: Any, first: int) -> int:
     """Contacts that fire now; their number.
 
-    Those that close with one speed land together, those that touched before are pushed together. Others whose gaps
-    happen to be zero at the same time are struck one after another, as they would be a little apart.
+    Those that close with one speed land together, those that touched before are pushed together, and so are those
+    of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
+    are struck one after another, as they would be a little apart.
     """
+    for c in range(w.num.shape[1]):
+        # A gap within the slack may still be open: its speed is not yet the one that it will close with
+        closing = c == first or (
+            w.num[GAP, c] <= plan.slack
+            and abs(w.num[RATE, c] + w.num[FALL, c]) <= SAME_SPEED * w.num[FALL, c]
+        )
+        if w.num[FALL, c] > 0.0 and w.num[RATE, c] < 0.0 and closing:
+            w.num[RATE, c] = -w.num[FALL, c]
     w.mark[CHOSEN, 0] = first
     u, n_s = w.num[RATE, first], 1
     touched = w.mark[GROUNDED, first] >= GROUND and w.num[LAST, first] < 0.0
@@ -107,11 +118,27 @@ def choose_struck(plan: Any, w: Any, first: int) -> int:
         w.num[BEFORE, c] = w.num[RATE, c]
         if c != first and w.mark[STATUS, c] == OPEN and w.num[RATE, c] < 0.0 and w.num[GAP, c] <= plan.slack:
             pushed = touched and w.mark[GROUNDED, c] >= GROUND and w.num[LAST, c] < 0.0
-            if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u):
+            if pushed or abs(w.num[RATE, c] - u) <= SAME_SPEED * abs(u) or tied(m, plan, w, x, first, c):
                 w.mark[CHOSEN, n_s] = c
                 w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
                 n_s += 1
     return n_s
+
+
+def tied(m: Any, plan: Any, w: Any, x: Any, first: int, c: int) -> bool:
+    """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
+
+    Contacts that have struck at this instant already are in the midst of a sequence, which has an order.
+    """
+    for d in (first, c):
+        if w.num[LAST, d] >= 0.0 and x[SIGMA] - w.num[LAST, d] <= COLLAPSE * plan.h:
+            return False
+    if w.num[GAP, c] > gap_rounding(m, w.G, w.vec[Q], c, plan.h * speed_terms(plan, w, c)):
+        return False
+    r, W = m.restitution, w.W
+    return order_matters(
+        W[first, first], W[c, c], W[first, c], r[first], r[c], w.num[RATE, first], w.num[RATE, c]
+    )
 
 
 def choose_connected(w: Any, n_s: int) -> int:
@@ -185,6 +212,7 @@ def push(plan: Any, w: Any, x: Any, d: int, p: float) -> None:
         change = w.W[c, d] * p
         if change != 0.0:
             w.num[RATE, c] += change
+            w.num[FALL, c] = 0.0
             u = abs(w.num[RATE, c])
             touches = u <= SMALL * abs(change) and w.num[GAP, c] <= plan.slack
             if touches and u <= ROUNDING * speed_terms(plan, w, c):
@@ -221,6 +249,7 @@ def after_impact(
         stick(w, record, count, x, c, t + T)
         return
     w.num[RATE, c] = -r * before if r > 0.0 else 0.0
+    w.num[FALL, c] = w.num[RATE, c] if plan.plain and plan.steady else 0.0
     log(record, count, t, c, before, w.num[RATE, c], p, IMPACT)
     if r == 0.0:
         stick(w, record, count, x, c, t)

@@ -65,6 +65,31 @@ class Parabolic(Between):
         return q_at, v_at
 
 
+@dataclass(frozen=True, eq=False)
+class Bent(Parabolic):
+    """The same, whose velocity meets that of the next state, but where it has jumped there.
+
+    As within a step: v + s a + (s / h)^2 (v_next - v - h a), where the parabola alone would leave a gap of order two.
+
+    Parameters
+    ----------
+    jumps : (n,) whether the velocity may have jumped at a kept state
+    """
+
+    jumps: NDArray[np.bool_]
+
+    def within(self, times: Array, i: Any) -> tuple[Array, Array]:
+        """The states in the steps from rows i of the kept ones."""
+        q_at, v_at = super().within(times, i)
+        t, q, v = self.t, self.q, self.v
+        length = (t[i + 1] - t[i])[:, None]
+        end = 2.0 * (q[i + 1] - q[i]) / length - v[i]  # where the parabola's velocity arrives
+        share = np.where(
+            (self.jumps[i + 1] | (times == t[-1]))[:, None], 0.0, (times - t[i])[:, None] / length
+        )
+        return q_at, v_at + share * share * (v[i + 1] - end)
+
+
 def before(t: Array, times: Array) -> NDArray[np.intp]:
     """Places of the states from which the given times are reached."""
     return np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))

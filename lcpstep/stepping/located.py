@@ -17,9 +17,11 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp.kernel import solver
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import (
     adaptive,
@@ -31,7 +33,7 @@ from lcpstep.stepping import (
 )
 from lcpstep.stepping import located_loop as loop
 from lcpstep.stepping import located_work as work
-from lcpstep.stepping.interpolation import Parabolic
+from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.joint_tasks import CULPRIT
 from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_event import straighten
@@ -39,11 +41,11 @@ from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.located_piece import pressed
 from lcpstep.stepping.race import race
-from lcpstep.stepping.steps import WHOLE, check_steps, divided
+from lcpstep.stepping.steps import check_steps, divided, unresolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 16384  # steps between two looks at the outside world
+PORTION = 16384  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within a step that failed
 SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 ORDERS = (2, 4, "exact")
@@ -156,7 +158,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> work.Plan:
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return work.Plan(
-        h=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
+        h=h, made_for=h, trapezoidal=trapezoidal, joined=scene.n_j > 0, stiff=stiff, steady=steady,
         plain=bool(trapezoidal and m.flat and not moves(m)), constant=bool(trapezoidal and m.flat),
         small=n_q <= SMALL, slack=work.ROUNDING * float(size or 1.0), per_step=method.max_per_step,
         many=MANY if method.order == 2 else MANY_EXACTLY,
@@ -245,6 +247,7 @@ class _Run:
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
         self.count = np.zeros(work.N_COUNTERS, dtype=np.int64)
         self.totals = {"events": 0}
+        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
         self.t0, self.first, self.half_done = scene.t_span[0], 0, False
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
@@ -261,7 +264,7 @@ class _Run:
                 else:
                     status = self.adapted(tolerance, progress)
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
@@ -291,13 +294,13 @@ class _Run:
         )  # fmt: skip
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[work.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[work.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
             self.count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
 
         try:
-            arrive()
+            self.count[work.EVENTS_LEFT] = self.method.max_events
             return STATUS[adaptive.advance(steps, control, arrive, progress)]
         except Exception as error:  # a callback in plain Python; compiled code raises nothing
             raise self.failed() from error
@@ -326,7 +329,7 @@ class _Run:
         self.t0, self.first = t0, first
         code = work.FINISHED
         while count[work.STEP] < last and code in (work.FINISHED, work.BUFFER_FULL):
-            goal = min(last, int(count[work.STEP]) + PORTION)
+            goal = min(last, self.pace.goal(int(count[work.STEP])))
             try:
                 count[work.EVENTS_LEFT] = self.method.max_events - self.totals["events"]
                 code = self.steps(self.plan, self.work, t0, first, goal)
@@ -364,36 +367,39 @@ class _Run:
         kept, w = self.recorder.states(), self.work
         c, c_t = carried.displaced(self.scene, self.model, self.now)
         q_now, v_now, impulse_now = w.vec[work.Q] - c, w.vec[work.V] - c_t, self.impulse()
-        t, q, v, impulse = kept.t, kept.q, kept.v, kept.impulse
+        t, q, v, impulse, jumps = kept.t, kept.q, kept.v, kept.impulse, kept.mode > 0.0
         if len(self.kept.times) == 0 and self.now > t[-1] and not self.half_done:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
-            impulse = np.vstack([impulse, impulse_now])
+            impulse, jumps = np.vstack([impulse, impulse_now]), np.append(jumps, True)
         bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
         if len(bad):  # the step that failed has left its numbers behind
             t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
         cut = len(bad) or self.half_done
         last = (float(t[-1]), q[-1], v[-1]) if cut and len(t) else (self.now, q_now, v_now)
-        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         count = self.count
         impulse, joint = np.split(impulse, [self.scene.n_c], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status, *last),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status, *last),
             counts=Counts(
                 steps=int(count[work.STEP]), lcp_calls=int(count[work.LCP_CALLS]),
                 force_evaluations=int(count[work.FORCES]), events=self.totals["events"],
             ),
-            dense=self.between(t, q, v, *last[1:]),
+            dense=self.between(t, q, v, jumps[: len(t)], *last[1:]),
             joint_impulse=joint,
         )  # fmt: skip
 
     def between(
-        self, t: Array, q: Array, v: Array, q_end: Array, v_end: Array
+        self, t: Array, q: Array, v: Array, jumps: NDArray[np.bool_], q_end: Array, v_end: Array
     ) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time: from the kept ones where these tell, by another run where they do not."""
-        if self.method.order == 2:
-            return Parabolic(t, q, v, self.kept.all)
+        """States at any time: from the kept ones where these tell, by another run where they do not.
+
+        Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
+        """
+        if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
+            return Bent(t, q, v, self.kept.all, jumps)
         return Again(self.method, self.scene, q_end, v_end)
 
     def impulse(self) -> Array:
@@ -408,23 +414,25 @@ class _Run:
         if status == Status.DONE and cut == 0:
             return "reached the end of the span"
         if status == Status.DONE:
-            bound = f"max_per_step = {self.method.max_per_step} events"
-            return f"reached the end of the span; {cut} times one plastic impact ended a step after {bound}"
+            events = f"events without end, or more than max_per_step = {self.method.max_per_step} in a step"
+            return f"reached the end of the span; {cut} times one plastic impact stood for {events}"
         where = f"at t = {t:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {where}"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, t, q, v, where)
         if status == Status.JOINTS_FAILED:
             return f"joint {self.work.joints.own.order[CULPRIT]} contradicts others {where}"
         if status == Status.PROJECTION_FAILED:
-            return f"no position near satisfies joint {self.work.joints.own.order[CULPRIT]} {where}"
+            joint = self.work.joints.own.order[CULPRIT]
+            return f"no position near satisfies joint {joint} {where}; try a smaller h"
         if status == Status.LCP_FAILED:
             n = int(self.count[work.MEMBERS])
             contacts = sorted(self.work.mark[work.CHOSEN, :n].tolist())
-            return f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together {where}"
+            words = f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together"
+            return f"{no_way_out(self.scene, t, q, contacts) or words} {where}"
         return f"{culprit(self.scene, np.linspace(t, self.now + self.plan.h, TRIALS), q, v)} {where}"
 
 

@@ -70,7 +70,7 @@ def event(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int, coun
             return NOT_FINITE
         count[FORCES] += 1
     if record.on_events or record.every == 1:
-        keep(w, record, count, now)
+        keep(w, record, count, now, 1.0)
     return FINISHED
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from lcpstep.compiled import inline
 from lcpstep.dense import assign
 from lcpstep.dynamics import gap_rates
-from lcpstep.recording import LEAD, write_row
+from lcpstep.recording import LEAD, MODE, write_row
 from lcpstep.recording import TIME as ROW_TIME
 from lcpstep.stepping.located_joints import (
     take_back,
@@ -15,9 +16,11 @@ from lcpstep.stepping.located_joints import (
 from lcpstep.stepping.located_work import (
     A_FROM,
     CHANGE,
+    EPS,
     GAP_T,
     IMPULSE,
     IMPULSE_FROM,
+    LATE,
     NEXT_TIME,
     Q_FROM,
     Q_TRY,
@@ -47,6 +50,12 @@ def keep_times(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, now: 
         write_joints(w, record.rows[count[ROW]])
         count[ROW] += 1
         count[NEXT_TIME] += 1
+
+
+@inline
+def just_after(plan: Any, t: float) -> float:
+    """Up to where times asked for are the end t of a step, but for rounding."""
+    return t + LATE * plan.h + 4.0 * EPS * abs(t)
 
 
 def remember(w: Any) -> None:
@@ -92,13 +101,14 @@ def keep_between(
         refactor(m, w, base + tau)
 
 
-def keep(w: Any, record: Any, count: Any, t: float) -> None:
-    """Keep the current state; states at one time share a row."""
+def keep(w: Any, record: Any, count: Any, t: float, jump: float) -> None:
+    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here."""
     if count[ROW] > 0 and record.rows[count[ROW] - 1, ROW_TIME] == t:
         count[ROW] -= 1
+        jump = max(jump, record.rows[count[ROW], MODE])
         for c in range(w.num.shape[1]):
             w.num[IMPULSE, c] += record.rows[count[ROW], LEAD + 2 * w.vec.shape[1] + c]
         take_back(w, record.rows[count[ROW]])
-    write_row(record.rows[count[ROW]], t, 0.0, w.vec[Q], w.vec[V], w.num[IMPULSE])
+    write_row(record.rows[count[ROW]], t, jump, w.vec[Q], w.vec[V], w.num[IMPULSE])
     write_joints(w, record.rows[count[ROW]])
     count[ROW] += 1

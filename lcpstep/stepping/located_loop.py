@@ -21,7 +21,7 @@ from lcpstep.stepping.located_joints import (
     joints_failed,
     turn_with_joints,
 )
-from lcpstep.stepping.located_keep import keep, keep_times
+from lcpstep.stepping.located_keep import just_after, keep, keep_times
 from lcpstep.stepping.located_piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.located_work import (
     ALPHA,
@@ -43,6 +43,7 @@ from lcpstep.stepping.located_work import (
     FREE,
     GAP,
     GAP_T,
+    GOAL,
     GROUND,
     GROUNDED,
     HALF,
@@ -50,7 +51,6 @@ from lcpstep.stepping.located_work import (
     HITS,
     IDLE,
     LAST,
-    LATE,
     LCP_FAILED,
     LOW,
     NEXT_FORCE,
@@ -77,6 +77,7 @@ from lcpstep.stepping.located_work import (
     Q,
     V,
 )
+from lcpstep.stepping.magnitudes import acceleration_terms
 from lcpstep.stepping.race import race
 from lcpstep.stepping.settle import endless, settle
 from lcpstep.stepping.smooth import (
@@ -107,16 +108,16 @@ def begin(m: Any, plan: Any, w: Any, x: Any, record: Any, count: Any, t: float) 
     for c in range(w.num.shape[1]):
         if w.num[GAP, c] <= plan.slack:
             w.num[GAP, c], w.mark[GROUNDED, c] = 0.0, GROUND
-            size = abs(w.num[GAP_T, c])
+            size = abs(w.num[GAP_T, c]) + plan.h * acceleration_terms(m, w, c)
             for i in range(w.vec.shape[1]):
                 size += abs(w.G[c, i] * w.vec[V, i])
             if abs(w.num[RATE, c]) <= 64 * EPS * size:
                 w.num[RATE, c], w.mark[STATUS, c] = 0.0, CLOSED
                 x[CLOSED_NOW] += 1
     if len(record.times) == 0:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 0.0)
     elif record.times[0] == t:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 0.0)
         count[NEXT_TIME] = 1
     return FINISHED
 
@@ -139,8 +140,9 @@ def run(
         code = step(model, plan, w, x, record, count, t)
         if code != FINISHED:
             return code
-        t_next = t0 + plan.h * (count[STEP] + 1 - first)
-        keep_times(model, plan, w, x, record, count, t_next + LATE * plan.h, t_next + LATE * plan.h)
+        t_next = x[GOAL] if x[PAUSING] == 1.0 else t0 + plan.h * (count[STEP] + 1 - first)
+        late = just_after(plan, t_next)
+        keep_times(model, plan, w, x, record, count, late, late)
         count[STEP] += 1
         x[UNDER_WAY] = 0.0
         if not finite(w):
@@ -149,7 +151,7 @@ def run(
         if code != FINISHED:
             return code
         if record.every > 0 and count[STEP] % record.every == 0:
-            keep(w, record, count, t_next)
+            keep(w, record, count, t_next, 0.0)
     return FINISHED
 
 

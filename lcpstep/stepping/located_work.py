@@ -15,13 +15,13 @@ N_COUNTERS = 10
 # Places in the array of the loop's numbers: time since the start of the step, end of the smooth interval in the
 # step, the interval of time without corners, events in this step, whether a step is under way,
 # how many contacts are closed, whether the gaps have the accelerations of the piece before, the place of the matrices
-# that the piece was made with, whether an open contact may touch at rest, whether events go on at one instant, how
-# often that has been settled in this step, the time from the base of a piece at which its contact forces were
-# decided; what steps by a tolerance ask for: 1 to stop after an event, and how far a single piece goes in which
-# events are not looked for (0: they are)
+# that the piece was made with, whether an open contact may touch at rest, the stretch of time that events without end
+# are settled over (0: there are none), how often that has been done in this step, the time from the base of a piece
+# at which its contact forces were decided; what steps by a tolerance ask for: 1 to stop after an event, how far a
+# single piece goes in which events are not looked for (0: they are), and the time at the end of the step
 SIGMA, END, LOW, HIGH, EVENTS, UNDER_WAY, CLOSED_NOW, UNCHANGED, MADE_WITH = range(9)
-TOUCHING, STALLED, SETTLED, AHEAD, PAUSING, BLIND = range(9, 15)
-N_NUMBERS = 15
+TOUCHING, STALLED, SETTLED, AHEAD, PAUSING, BLIND, GOAL = range(9, 16)
+N_NUMBERS = 16
 # Kinds of events, the values of `trajectory.Kind`
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 OPEN, CLOSED = 0, 1
@@ -86,8 +86,12 @@ NEXT_ZERO = 24
 TURNED = (
     25  # time since the start of the step at which a contact last struck, closed or opened, and how often
 )
-TURNS = 26  # it has done so with hardly any time between
-N_NUM = 27
+TURNS = 26  # it has done so with hardly any time between,
+HOPS = 27  # or with little time between, beside contacts that are closed, and hardly moving
+FALL = (
+    28  # speed at which a gap that falls freely from its last impact will close; 0: something else acts on it
+)
+N_NUM = 29
 # Rows of Work.mark, a whole number per contact
 STATUS = 0  # OPEN or CLOSED
 GROUNDED = 1  # 0, GROUND or LEFT
@@ -121,6 +125,7 @@ class Plan(NamedTuple):
     """Constants of a run."""
 
     h: float
+    made_for: float  # length of pieces that the matrices in the places WHOLE are made for: h, but in parts of a step
     trapezoidal: bool  # a linear system without joints, which moves by the trapezoidal rule
     joined: bool  # there are joints
     stiff: bool  # C or K is not zero

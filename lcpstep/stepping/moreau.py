@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks
 from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp import check_method, solve_lcp
 from lcpstep.lcp.kernel import solver
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import Model, culprit, model, models
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import adaptive, adaptive_moreau, constrained, interpolation, sparse
 from lcpstep.stepping import theta as loop
@@ -26,11 +28,11 @@ from lcpstep.stepping.constrained import Constraints
 from lcpstep.stepping.features import constraints, enlarged, frictional
 from lcpstep.stepping.newton import Newton
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, WHOLE, check_steps, divided
+from lcpstep.stepping.steps import RESTING, check_steps, divided, unresolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
-PORTION = 65536  # steps between two looks at the outside world
+PORTION = 65536  # steps between two looks at the outside world, at most
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class Moreau:
 
     Raises
     ------
+    TypeError   projected is neither True nor False
     ValueError   h or the tolerance is not positive, theta lies outside [0, 1], or the solver's name is unknown
     LcpStepError   a tolerance is given with another solver than "lemke"
     MissingSolver   the solver is not installed
@@ -72,6 +75,7 @@ class Moreau:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
         check_method(self.lcp)
+        checks.instance("projected", self.projected, bool)
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
             if self.lcp != "lemke":
@@ -182,6 +186,7 @@ class _Run:
         )
         self.slack = RESTING * float(size or 1.0)
         self.totals = {"steps": 0, "events": 0}
+        self.pace = Pace(PORTION, scene.n_q + len(self.state.impulse))
 
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
@@ -191,7 +196,7 @@ class _Run:
             self.begin(self.model, self.state, self.recorder.buffers, self.count, t_start, side)
             status = self.even(progress) if tolerance is None else self.adapted(tolerance, progress)
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)
@@ -216,7 +221,7 @@ class _Run:
         count, external, solved = self.count, self.method.lcp != "lemke", False
         self.plan, self.t0, self.first = p, t0, first
         while count[loop.STEP] < last:
-            goal = min(last, int(count[loop.STEP]) + PORTION)
+            goal = min(last, self.pace.goal(int(count[loop.STEP])))
             code = loop.FINISHED
             while count[loop.STEP] < goal:
                 try:
@@ -260,7 +265,7 @@ class _Run:
         )
 
         def arrive() -> None:
-            self.t0, self.first = float(control.real[adaptive.REACHED]), int(self.count[loop.STEP])
+            self.t0, self.first = float(adaptive.now(control)), int(self.count[loop.STEP])
             self.plan = self.plan._replace(h=adaptive.step_size(control, int(control.whole[adaptive.LEVEL])))
             self.empty()
 
@@ -309,13 +314,13 @@ class _Run:
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, self.state.q]), np.vstack([v, self.state.v])
             impulses = np.vstack([impulses, self.state.impulse])
-        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         n_c, count = self.scene.n_c, self.count
         impulse, friction, joint = np.split(impulses, [n_c, impulses.shape[1] - self.scene.n_j], axis=1)
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status),
             counts=Counts(
                 steps=int(count[loop.STEP]), lcp_calls=int(count[loop.LCP_CALLS]),
                 force_evaluations=int(count[loop.FORCES]), events=self.totals["events"],
@@ -339,14 +344,15 @@ class _Run:
         if status == Status.INTERRUPTED:
             return f"interrupted {where}"
         if status == Status.LCP_FAILED:
-            return f"{self.method.lcp} found no solution for the contacts {self.active} {where}"
+            words = f"{self.method.lcp} found no solution for the contacts {self.active}"
+            return f"{no_way_out(self.scene, self.now + self.plan.h, s.q, self.active) or words} {where}"
         if status == Status.JOINTS_FAILED:
             joints = np.flatnonzero(self.extra[0].failed).tolist()
             return f"joints {joints} contradict each other {step} {where}"
         if status == Status.PROJECTION_FAILED:
-            return f"no position near satisfies all joints and contacts {step} {where}"
+            return f"no position near satisfies all joints and contacts {step} {where}; try a smaller h"
         if status == Status.STEP_TOO_SMALL:
-            return adaptive.too_small(self.method.tolerance, where)
+            return adaptive.too_small(self.method, self.scene, self.now, s.q, s.v, where)
         if status == Status.NEWTON_FAILED:
             return f"Newton's iteration did not converge within {loop.MAX_ITERATIONS} steps {where}; try a smaller h"
         return f"{culprit(self.scene, (self.now, self.now + self.plan.h), s.q, s.v)} {where}"

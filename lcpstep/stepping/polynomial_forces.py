@@ -107,5 +107,5 @@ def decide(
             0.5 * (product(w.G, w.vec[A], c) + w.num[BIAS, c]) if w.mark[STATUS, c] == OPEN else 0.0
         )
     if count[EVENT] > before and (record.on_events or record.every == 1):
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
     return True

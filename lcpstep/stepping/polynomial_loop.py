@@ -14,7 +14,7 @@ from lcpstep.dynamics import gap_rates, product
 from lcpstep.recording import write_row
 from lcpstep.stepping.corners import at_corner, find_corners, obstacles_move
 from lcpstep.stepping.impulses import strike
-from lcpstep.stepping.located_keep import keep
+from lcpstep.stepping.located_keep import just_after, keep
 from lcpstep.stepping.located_loop import begin_step, finite
 from lcpstep.stepping.located_piece import penetrates
 from lcpstep.stepping.located_work import (
@@ -34,6 +34,7 @@ from lcpstep.stepping.located_work import (
     GAP,
     GAP_T,
     GAP_TRY,
+    GOAL,
     GROUND,
     GROUNDED,
     HALF,
@@ -41,7 +42,6 @@ from lcpstep.stepping.located_work import (
     IDLE,
     IMPULSE,
     LAST,
-    LATE,
     LCP_FAILED,
     LEFT,
     LOW,
@@ -101,10 +101,9 @@ def run(
         code = step(model, plan, w, x, z, record, count, t0 + plan.h * (count[STEP] - first))
         if code != FINISHED:
             return code
-        t_next = t0 + plan.h * (count[STEP] + 1 - first)
-        while (
-            count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < t_next + LATE * plan.h
-        ):
+        t_next = x[GOAL] if x[PAUSING] == 1.0 else t0 + plan.h * (count[STEP] + 1 - first)
+        late = just_after(plan, t_next)
+        while count[NEXT_TIME] < len(record.times) and record.times[count[NEXT_TIME]] < late:
             keep_now(w, record, count, record.times[count[NEXT_TIME]], w.vec[Q], w.vec[V])
             count[NEXT_TIME] += 1
         count[STEP] += 1
@@ -112,7 +111,7 @@ def run(
         if not finite(w):
             return NOT_FINITE
         if record.every > 0 and count[STEP] % record.every == 0:
-            keep(w, record, count, t_next)
+            keep(w, record, count, t_next, 0.0)
     return FINISHED
 
 
@@ -191,7 +190,7 @@ def lose_force(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, c: int,
     release(m, plan, w, record, count, x, c, t, 0.0)
     w.mark[GROUNDED, c] = LEFT
     if record.on_events or record.every == 1:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
 
 
 @inline
@@ -274,7 +273,7 @@ def touch(m: Any, plan: Any, w: Any, x: Any, z: Any, record: Any, t: float, c: i
             for i in range(w.vec.shape[1]):
                 w.vec[V, i] += w.MG[d, i] * error / W
     if record.on_events or record.every == 1:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
     return FINISHED
 
 

@@ -19,6 +19,7 @@ from lcpstep.stepping.located_work import (
     BEFORE,
     CLOSE_HITS,
     EVENT,
+    FALL,
     FIRST_CONTACT,
     FIRST_COORDINATE,
     GAP,
@@ -96,7 +97,7 @@ def keep_impact(w: Any, record: Any, count: Any, t: float, tau: float) -> None:
         count[ROW] -= 1
         for d in range(num.shape[1]):
             num[IMPULSE, d] += record.rows[count[ROW], LEAD + 2 * n + d]
-    write_row(record.rows[count[ROW]], t + tau, 0.0, vec[Q_TRY], vec[V_TRY], num[IMPULSE])
+    write_row(record.rows[count[ROW]], t + tau, 1.0, vec[Q_TRY], vec[V_TRY], num[IMPULSE])
     count[ROW] += 1
 
 
@@ -131,7 +132,7 @@ def hit(m: Any, w: Any, c: int, tau: float, end: float) -> None:
     """The impact of contact c at tau; position and velocity of its bodies agree with its gap to the last digit."""
     vec, num, mark, G, MG, W, r = w.vec, w.num, w.mark, w.G, w.MG, w.W, m.restitution[c]
     first, last = mark[FIRST_COORDINATE, c], mark[LAST_COORDINATE, c] + 1
-    u = num[RATE, c] + 2.0 * (tau - num[SINCE, c]) * num[HALF, c]
+    u = -num[FALL, c] if num[FALL, c] > 0.0 else num[RATE, c] + 2.0 * (tau - num[SINCE, c]) * num[HALF, c]
     p = -(1.0 + r) * u / W[c, c]
     g, leaves = m.offset[c], r * u
     for i in range(first, last):
@@ -152,7 +153,7 @@ def hit(m: Any, w: Any, c: int, tau: float, end: float) -> None:
     num[LAST, c] = num[SINCE, c] = tau
     num[BEFORE, c], num[P, c] = u, p
     num[IMPULSE, c] += p
-    num[GAP, c], num[RATE, c] = 0.0, -r * u
+    num[GAP, c], num[RATE, c], num[FALL, c] = 0.0, -r * u, -r * u
     num[NEXT_ZERO, c] = next_zero(num, c, end)
     for d in range(mark[FIRST_CONTACT, c], mark[LAST_CONTACT, c] + 1):
         if d != c and W[d, c] != 0.0:
@@ -162,7 +163,7 @@ def hit(m: Any, w: Any, c: int, tau: float, end: float) -> None:
             change = -W[d, c] * leaves / W[c, c]
             if abs(change) <= ROUNDING * abs(num[RATE, d]):
                 num[RATE, d] += change
-            num[SINCE, d] = tau
+            num[SINCE, d], num[FALL, d] = tau, 0.0
             num[NEXT_ZERO, d] = next_zero(num, d, end)
 
 

@@ -124,7 +124,10 @@ def first_landing(m: Any, plan: Any, w: Any, x: Any, z: Any, t: float, end: floa
                 return NOWHERE, b
             if w.mark[STATUS, c] != OPEN:
                 continue
-            hop = part == 1 and z.num[GAP_FROM, c] <= 0.0
+            hop = w.num[GAP, c] <= 0.0 and z.num[GAP_FROM, c] <= plan.slack
+            if hop and z.num[GAP_TO, c] <= plan.slack:  # finer than positions tell
+                mean, _ = hop_at(m, plan, w, x, z, t, b, c)
+                z.num[GAP_TO, c] = b * mean
             low = b
             if z.num[GAP_TO, c] > 0.0:
                 if hop or not (z.num[RATE_FROM, c] < 0.0 < z.num[RATE_TO, c]):

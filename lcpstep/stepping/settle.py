@@ -21,6 +21,7 @@ from lcpstep.stepping.joint_tasks import IMPULSE as JOINT_IMPULSE
 from lcpstep.stepping.located_joints import hold_joints, pass_on, turn_with_joints, write_joints
 from lcpstep.stepping.located_keep import keep
 from lcpstep.stepping.located_work import (
+    ACCUMULATION,
     ALPHA,
     BEFORE,
     BIAS,
@@ -29,6 +30,7 @@ from lcpstep.stepping.located_work import (
     CUT,
     END,
     EVENTS,
+    FALL,
     FINISHED,
     FORCE,
     FORCES,
@@ -37,6 +39,7 @@ from lcpstep.stepping.located_work import (
     GAP_T,
     GROUND,
     GROUNDED,
+    HOPS,
     IMPACT,
     IMPULSE,
     INERTIA,
@@ -72,7 +75,6 @@ from lcpstep.stepping.smooth import (
 )
 from lcpstep.stepping.switches import log, release, stick
 
-FIRST = 1e-7  # of a step: the first stretch that is settled in it
 UNTOLD = 1e-4  # of a step: contacts whose hops are shorter are closed anyhow
 
 
@@ -84,7 +86,7 @@ def endless(plan: Any, x: Any) -> bool:
 def settle(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count: Any) -> int:
     """Settle the motion from x[SIGMA] on, with the accelerations of the piece that begins there."""
     n, rest = w.vec.shape[1], x[END] - x[SIGMA]
-    span = min(rest, FIRST * plan.h * 2.0 ** x[SETTLED]) if x[EVENTS] <= plan.per_step else rest
+    span = min(rest, x[STALLED] * 2.0 ** x[SETTLED]) if x[EVENTS] <= plan.per_step else rest
     now = t + x[SIGMA]
     if not meet(m, plan, w, x, now, span, count):
         return LCP_FAILED
@@ -146,18 +148,11 @@ def note(
             w.num[RATE, c] += w.W[c, d] * w.num[Z, d]
     for c in range(n_c):
         closed, pressed, touches = w.mark[STATUS, c] == CLOSED, w.num[Z, c] > 0.0, w.num[GAP, c] == 0.0
-        w.num[TURNS, c] = 0.0
+        w.num[TURNS, c] = w.num[HOPS, c] = w.num[FALL, c] = 0.0
         if pressed and not closed:
-            log(
-                record,
-                count,
-                start,
-                c,
-                w.num[BEFORE, c],
-                0.0 if touches else w.num[RATE, c],
-                w.num[Z, c],
-                IMPACT,
-            )
+            kind = IMPACT if touches and m.restitution[c] == 0.0 else ACCUMULATION
+            after = 0.0 if touches else w.num[RATE, c]
+            log(record, count, start, c, w.num[BEFORE, c], after, w.num[Z, c], kind)
             if touches:
                 stick(w, record, count, x, c, end)
         elif closed and not pressed and w.num[RATE, c] > ROUNDING * speed_terms(plan, w, c):
@@ -194,5 +189,5 @@ def begin_again(m: Any, plan: Any, w: Any, x: Any, record: Any, t: float, count:
             return NOT_FINITE
         count[FORCES] += 1
     if record.on_events or record.every == 1:
-        keep(w, record, count, t)
+        keep(w, record, count, t, 1.0)
     return FINISHED

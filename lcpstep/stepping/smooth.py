@@ -109,7 +109,7 @@ def invert_rest(m: Any, plan: Any, w: Any, rest: float) -> None:
 def accelerate(m: Any, plan: Any, w: Any, x: Any, t: float) -> int:
     """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
     rest = x[END] - x[SIGMA]
-    place = WHOLE if rest == plan.h or not plan.stiff else REST
+    place = WHOLE if rest == plan.made_for or not plan.stiff else REST
     if not plan.trapezoidal or plan.steady:
         return place
     if place == REST:

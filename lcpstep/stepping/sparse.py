@@ -29,7 +29,7 @@ from lcpstep.model import culprit, with_addresses
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, WHOLE, divided
+from lcpstep.stepping.steps import RESTING, divided, unresolved
 from lcpstep.stepping.theta import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
@@ -168,7 +168,7 @@ class Run:
                 if status != Status.DONE:
                     break
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         except SimulationError:
             raise
         except Exception as error:  # a callback in plain Python
@@ -286,11 +286,11 @@ class Run:
         self.empty()
         kept = self.recorder.states()
         t = kept.t
-        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= WHOLE * self.method.h:
+        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
             t[-1] = self.scene.t_span[1]
         return Trajectory(
             scene=self.scene, method=self.method, t=t, q=kept.q, v=kept.v, impulse=kept.impulse,
-            impacts=self.recorder.events(), status=status, message=self.message(status),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status),
             counts=Counts(
                 steps=self.steps, lcp_calls=self.problems, force_evaluations=self.forces, events=self.all_events
             ),

@@ -30,11 +30,16 @@ def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
         )
 
 
+def unresolved(span: tuple[float, float], h: float) -> float:
+    """Time by which whole steps of h may miss the end of the span: a share of one, or the rounding of the times."""
+    return max(WHOLE * h, 4.0 * RESOLUTION * max(abs(span[0]), abs(span[1])))
+
+
 def divided(span: tuple[float, float], h: float) -> Iterator[tuple[float, float, int, int]]:
     """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
     start, end = span
     steps = (end - start) / h
-    fits = abs(steps - round(steps)) <= WHOLE
+    fits = h * abs(steps - round(steps)) <= unresolved(span, h)
     whole = round(steps) if fits else int(steps)
     if whole > 0:
         yield (end - start) / whole if fits else h, start, 0, whole

@@ -1,7 +1,8 @@
 """How contacts of `Located` close and open without an impact, as kernels, and whether that ever ends.
 
 Each turn of a contact is counted. A contact that goes on turning at one instant, at speeds next to nothing, is left
-to `settle`.
+to `settle`; so is one that hops on beside closed contacts which feel it. Such a sequence grows ever shorter in truth,
+but not below the rounding of its gaps: a particle that comes to rest on three nearly parallel planes.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from lcpstep.stepping.located_work import (
     GAP,
     GROUND,
     GROUNDED,
+    HOPS,
     IDLE,
     OLDER,
     OLDER_TIME,
@@ -32,9 +34,11 @@ from lcpstep.stepping.located_work import (
     TURNED,
     TURNS,
 )
-from lcpstep.stepping.magnitudes import faint
+from lcpstep.stepping.magnitudes import acceleration_terms, faint
 
 COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
+FIRST = 1e-7  # of a step: the stretch over which that is settled first; hops that no step can follow
+SHORT_TOGETHER = 1e-4  # of a step: hops of coupled contacts below it are taken as one
 AT_ONCE = 16  # events of one contact at one instant after which faint ones are settled,
 AT_ONCE_FAST = 1000  # all but strikes of elastic contacts,
 AT_ONCE_ELASTIC = 100_000  # and all
@@ -58,13 +62,20 @@ def turn(m: Any, plan: Any, w: Any, x: Any, c: int, u: float, struck: bool) -> N
     """Note that contact c strikes, closes or opens at speed u; where that goes on for ever, the motion is settled.
 
     What goes on at one instant has no end if its speeds are faint. An elastic contact may be struck as often as
-    masses are unlike, and is counted at one and the same time only.
+    masses are unlike: it is counted at one and the same time only, or where its hops are too short to be followed
+    though nothing but the acceleration brings it back.
     """
     elastic = struck and m.restitution[c] == 1.0
-    if x[SIGMA] - w.num[TURNED, c] > (0.0 if elastic else COLLAPSE * plan.h):
+    since = x[SIGMA] - w.num[TURNED, c]
+    if since > (0.0 if elastic else COLLAPSE * plan.h):
         w.num[TURNS, c] = 0.0
+    short = (FIRST if elastic else SHORT_TOGETHER) * plan.h
+    hops = since <= short and (elastic or coupled(w, c)) and abs(u) <= short * acceleration_terms(m, w, c)
     w.num[TURNED, c] = x[SIGMA]
     w.num[TURNS, c] += 1.0
+    w.num[HOPS, c] = w.num[HOPS, c] + 1.0 if hops else 0.0
+    if w.num[HOPS, c] >= (AT_ONCE_FAST if elastic else AT_ONCE):
+        x[STALLED] = max(x[STALLED], short)
     if w.num[TURNS, c] < AT_ONCE:
         return
     if elastic:
@@ -72,7 +83,15 @@ def turn(m: Any, plan: Any, w: Any, x: Any, c: int, u: float, struck: bool) -> N
     else:
         most = AT_ONCE if faint(plan, w, c, u) else AT_ONCE_FAST
     if w.num[TURNS, c] >= most:
-        x[STALLED] = 1.0
+        x[STALLED] = max(x[STALLED], FIRST * plan.h)
+
+
+def coupled(w: Any, c: int) -> bool:
+    """Whether contact c stands beside a closed one that feels it."""
+    found = False
+    for d in range(w.num.shape[1]):
+        found = found or (d != c and w.mark[STATUS, d] == CLOSED and w.W[c, d] != 0.0)
+    return found
 
 
 def stick(w: Any, record: Any, count: Any, x: Any, c: int, t: float) -> None:

@@ -19,8 +19,9 @@ def profile() -> tuple[Any, dict[str, Any]]:
     from matplotlib.figure import Figure
 
     beta = np.linspace(0.0, 2.0 * math.pi, 4001)
-    lift = np.array([PROFILE.lift(float(b)) for b in beta])
     corners = np.sort(PROFILE.corners())
+    beta = beta[np.min(np.abs(beta[:, None] - corners), axis=1) > 1e-9]  # on a corner there are two values
+    lift = np.array([PROFILE.lift(float(b)) for b in beta])
     figure = Figure(figsize=(11, 6.5), layout="constrained")
     figure.suptitle("the cam of circular arcs: outline and lift over its angle, corners dotted")
     grid = figure.add_gridspec(3, 2, width_ratios=[1.0, 1.6])

@@ -15,6 +15,7 @@ import numpy as np
 
 from lcpstep.dataset import save
 from lcpstep.errors import UnknownName
+from lcpstep.files import replacing
 from lcpstep.plot.words import DPI
 from lcpstep.thesis import cams, controller, corners, diagrams, maps, motions
 
@@ -122,9 +123,11 @@ def make(
     out.mkdir(parents=True, exist_ok=True)
     written = [files[kind] for kind in ("png", "svg") if kind in kinds]
     for file in written:
-        figure.savefig(file, dpi=dpi)
+        with replacing(file) as draft:
+            figure.savefig(draft, dpi=dpi)
     if "data" in kinds and isinstance(data, dict):
-        files["json"].write_text(json.dumps(data, default=_plain, indent=1) + "\n")
+        with replacing(files["json"]) as draft:
+            draft.write_text(json.dumps(data, default=_plain, indent=1) + "\n")
         written.append(files["json"])
     elif "data" in kinds:
         written.append(save(data, files["nc"], overwrite=overwrite))

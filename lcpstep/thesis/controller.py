@@ -11,10 +11,11 @@ from lcpstep.analysis.abs_cycle import basins, bifurcation, limit_cycle, peak, v
 from lcpstep.plot.abs_cycle import overview
 from lcpstep.plot.orbits import STABLE, UNSTABLE
 
-# Of the two other roads: M. Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme (Vogel 1993)
-OTHERS = {"cobblestone": (1.3713, 6.4565, 0.6691), "snow": (0.1946, 94.129, 0.0646)}
+# Of the two other roads: M. Burckhardt, Fahrwerktechnik: Radschlupf-Regelsysteme (Vogel 1993); U. Kiencke,
+# L. Nielsen, Automotive Control Systems (Springer 2000), table of c1, c2, c3
+OTHERS = {"dry cobblestone": (1.3713, 6.4565, 0.6691), "snow": (0.1946, 94.129, 0.0646)}
 TORQUES = (0.0, 2500.0)
-CELLS = 60
+CELLS, DENSITY = 60, 0.6
 
 
 def roads() -> tuple[Any, dict[str, Any]]:
@@ -25,13 +26,13 @@ def roads() -> tuple[Any, dict[str, Any]]:
     figure = Figure(figsize=(8, 5), layout="constrained")
     ax = figure.subplots()
     data: dict[str, Any] = {"slip": slip}
-    named = {f"{name} asphalt": th for name, th in ROADS.items()} | OTHERS
+    named: dict[str, Any] = {f"{name} asphalt": th for name, th in ROADS.items()} | OTHERS
     for k, (name, (a, b, c)) in enumerate(named.items()):
         mu = a * (1.0 - np.exp(-slip * b)) - slip * c
         data[name] = mu
         ax.plot(slip, mu, f"C{k}", lw=1.5)
         ax.annotate(
-            name,
+            f"{name}\nθ = {a:g}, {b:g}, {c:g}",
             (1.0, mu[-1]),
             (4.0, 0.0),
             textcoords="offset points",
@@ -78,7 +79,8 @@ def _portraits(states: tuple[str, ...]) -> tuple[Any, dict[str, Any]]:
     for ax, state in zip(figure.subplots(1, len(states), sharey=True), states, strict=True):
         # Arrows of equal length on the page: components in units of the axes
         u, v = speed, np.full_like(speed, rate[state] / (TORQUES[1] - TORQUES[0]))
-        ax.streamplot(slip, torque / TORQUES[1], u, v, color="0.6", density=1.1, linewidth=0.7, arrowsize=0.8)
+        ax.streamplot(slip, torque / TORQUES[1], u, v, color="0.6", density=DENSITY, linewidth=0.7, arrowsize=0.8,
+                      broken_streamlines=False)  # fmt: skip
         ax.plot(
             fine,
             [holding_torque(float(s), scene.p) / TORQUES[1] for s in fine],

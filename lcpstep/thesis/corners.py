@@ -20,7 +20,7 @@ from lcpstep.plot.orbits import STABLE, UNSTABLE
 from lcpstep.thesis.motions import draw_orbit
 
 WIDTH = 0.7  # of the diagrams, either way [rpm]
-SETTLED, SHOWN = 3000, 40
+SETTLED, SHOWN, MOST = 3000, 40, 16
 AWAY = 6.0  # where the orbits on both branches are shown [rpm]
 
 
@@ -55,37 +55,56 @@ def corner_diagrams() -> tuple[Any, dict[str, Any]]:
 
 
 def around_the_corner() -> tuple[Any, dict[str, Any]]:
-    """Fig 5.1: position over the speed; the orbit at its corner impact, and both orbits above it."""
+    """Fig 5.1: phases of impacts and positions over the speed; both orbits above the corner impact."""
     from matplotlib.figure import Figure
 
     orbit, chain = _impact()
     values = orbit.p + np.linspace(-AWAY, AWAY, 241)
-    full = [
+    runs = [
         periods(
-            _make(float(v)), EventDriven(), orbit.x, SETTLED + SHOWN, drop=SETTLED, most=0, strict=False
-        ).states[0]
+            _make(float(v)), EventDriven(), orbit.x, SETTLED + SHOWN, drop=SETTLED, most=MOST, strict=False
+        )
         for v in values
     ]
-    branches = [b for b in orbit_branches(orbit, chain, values) if not b.local]
-    figure = Figure(figsize=(12, 12), layout="constrained")
+    full = [run.states[0] for run in runs]
+    phases = [
+        struck(run.time[0], orbit.scene.period * orbit.p / v) for run, v in zip(runs, values, strict=True)
+    ]
+    branches = sorted(
+        (b for b in orbit_branches(orbit, chain, values) if not b.local), key=lambda b: not b.stable
+    )
+    figure = Figure(figsize=(12, 14), layout="constrained")
     figure.suptitle(f"cam-follower: O(1, 1) around its corner impact at {orbit.p:.6f} rpm; event-driven")
-    grid = figure.add_gridspec(3, 2, width_ratios=[1.6, 1.0])
-    above = figure.add_subplot(grid[0, :])
-    x = np.concatenate([np.full(len(y), v) for v, y in zip(values, full, strict=True)])
-    above.plot(x, np.concatenate([y[:, 0] for y in full]), "k.", ms=1.5, mew=0.0, rasterized=True)
+    grid = figure.add_gridspec(4, 2, width_ratios=[1.6, 1.0])
+    upper = figure.add_subplot(grid[0, :])
+    lower = figure.add_subplot(grid[1, :], sharex=upper)
+    for ax, points in ((upper, phases), (lower, [y[:, 0] for y in full])):
+        x = np.concatenate([np.full(len(y), v) for v, y in zip(values, points, strict=True)])
+        ax.plot(x, np.concatenate(points), "k.", ms=2.5, mew=0.0, rasterized=True)
+        ax.axvline(orbit.p, color="C0", lw=0.8)
+        ax.grid(alpha=0.3)
     for b in branches:
         style, label = (STABLE, "stable O(1, 1)") if b.stable else (UNSTABLE, "unstable O(1, 1)")
-        above.plot(b.p, b.x[:, 0], label=label, **style)
-    above.axvline(orbit.p, color="C0", lw=0.8)
-    above.set(xlabel="cam speed [rpm]", ylabel="position on the section [m]", xlim=(values[0], values[-1]))
-    above.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    above.grid(alpha=0.3)
-    data: dict[str, Any] = {"rpm": values, "full": full, "branches": [b.as_dict() for b in branches]}
-    for k, b in enumerate(sorted(branches, key=lambda b: not b.stable)):
+        lower.plot(b.p, b.x[:, 0], label=label, **style)
+    corner = orbit.time / orbit.scene.period % 1.0
+    upper.axhline(corner, color="C0", lw=0.8, ls=":", label="the corner b")
+    upper.set(ylabel="phase of impacts [periods]", ylim=(0.0, 1.0))
+    lower.set(xlabel="cam speed [rpm]", ylabel="position on the section [m]", xlim=(values[0], values[-1]))
+    for ax in (upper, lower):
+        ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
+    data: dict[str, Any] = {
+        "rpm": values, "phases": phases, "full": full, "branches": [b.as_dict() for b in branches],
+    }  # fmt: skip
+    for k, b in enumerate(branches):
         rpm = float(b.p[-1])
         shown = periodic_orbit(_make(rpm), b.x[-1])
-        left, right = figure.add_subplot(grid[k + 1, 0]), figure.add_subplot(grid[k + 1, 1])
+        left, right = figure.add_subplot(grid[k + 2, 0]), figure.add_subplot(grid[k + 2, 1])
         draw_orbit(left, right, shown)
         left.set_title(f"{'stable' if b.stable else 'unstable'} {shown.name} at {rpm:.6g} rpm", fontsize=10)
         data[f"orbit at {rpm:g} rpm, {'stable' if b.stable else 'unstable'}"] = shown.x
     return figure, data
+
+
+def struck(time: Any, period: float) -> Any:
+    """Phases of the impacts at these times, (n, most) with not-a-number beyond the last of each period."""
+    return (time[np.isfinite(time)] / period) % 1.0

@@ -18,17 +18,18 @@ from lcpstep.plot.basins import basins as draw_basins
 from lcpstep.plot.orbits import branch
 
 DROP, KEEP = 500, 60  # periods, as in the thesis
+LONG = 2500  # periods that chaos may last before one of the coexisting orbits is reached
 CELLS = 1000
 BOX = [[0.0, -60.0], [1.5, 60.0]]
 
 
 def _window(name: str, points: int, show: tuple[str, ...] | None = None, **settings: Any) -> tuple[Any, Any]:
     low, high = WINDOWS[name]
-    values = np.linspace(low, high, points)
-    data = bifurcation(cam_follower, "rpm", values, drop=DROP, keep=KEEP, **settings)
+    values, drop = np.linspace(low, high, points), settings.pop("drop", DROP)
+    data = bifurcation(cam_follower, "rpm", values, drop=drop, keep=KEEP, **settings)
     start = "random starts" if settings.get("start") == "random" else "from rest on the cam"
     title = (
-        f"cam-follower, {low:g} to {high:g} rpm, {start}: {DROP} periods dropped, {KEEP} shown; event-driven"
+        f"cam-follower, {low:g} to {high:g} rpm, {start}: {drop} periods dropped, {KEEP} shown; event-driven"
     )
     return pictures.bifurcation(data, title, show), data
 
@@ -50,7 +51,7 @@ def end_of_chattering() -> tuple[Any, Any]:
 
 def coexisting() -> tuple[Any, Any]:
     """Two attractors beside each other."""
-    return _window("357.5-361.5", 400, ("phase", "position"), start="random", box=BOX, runs=6)
+    return _window("357.5-361.5", 400, ("phase", "position"), start="random", box=BOX, runs=6, drop=LONG)
 
 
 def upper() -> tuple[Any, Any]:

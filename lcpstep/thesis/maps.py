@@ -20,12 +20,12 @@ NORMAL_FORMS: dict[str, tuple[Callable[[float], Callable[[Array], Array]], list[
     "flip: x → −(1 + a) x + x³": (lambda a: lambda x: -(1.0 + a) * x + x**3, [(0.0, -0.4)]),
 }
 SCENARIOS = {  # trace and determinant before and after the border
-    "persistence": (0.3, 0.2, -0.6, 0.3),
-    "nonsmooth fold": (1.6, 0.5, 0.2, 0.3),
-    "period doubling": (0.4, 0.3, -1.6, 0.3),
-    "to chaos": (0.4, 0.0, -4.0, 0.0),
-    "period two and back": (-1.5, 0.3, 0.5, 0.3),
-    "period three and chaos": (0.6, 0.1, -2.6, 0.1),
+    "fixed point to fixed point": (0.3, 0.2, -0.6, 0.3),
+    "nothing to fixed point": (1.6, 0.5, 0.2, 0.3),
+    "fixed point to period two": (0.4, 0.1, -1.6, 0.1),
+    "fixed point to period three": (0.6, 0.1, -2.6, 0.1),
+    "fixed point to chaos": (0.4, 0.3, -1.6, 0.3),
+    "nothing to chaos": (1.5, 0.1, -1.4, 0.1),
 }
 
 
@@ -41,17 +41,28 @@ def normal_forms() -> tuple[Any, dict[str, Any]]:
     for ax, (name, (family, starts)) in zip(figure.subplots(2, 2).ravel(), NORMAL_FORMS.items(), strict=True):
         branches = [b for x, a in starts for b in _both_ways(family, x, a, 1)]
         if name.startswith("flip"):
-            branches += _both_ways(family, 0.5, 0.25, 2)
+            branches += [b for x in (0.5, -0.5) for b in _both_ways(family, x, 0.25, 2)]
         data[name] = [{"a": b.p, "x": b.x[:, 0], "stable": b.stable} for b in branches]
         for b in branches:
-            for stable, style in ((True, STABLE), (False, UNSTABLE)):
-                ax.plot(b.p, np.where(b.stable == stable, b.x[:, 0], np.nan), **style)
-                if b.p.size and name.startswith("flip") and len(b.x) and b is not branches[0]:
-                    images = np.array([float(family(float(a))(x)[0]) for a, x in zip(b.p, b.x, strict=True)])
-                    ax.plot(b.p, np.where(b.stable == stable, images, np.nan), **style)
+            for a, x, stable in to_the_bifurcation(b):
+                ax.plot(a, x, **(STABLE if stable else UNSTABLE))
         ax.set(title=name, xlabel="a", ylabel="x")
         ax.grid(alpha=0.3)
     return figure, data
+
+
+def to_the_bifurcation(branch: Branch) -> list[tuple[Array, Array, bool]]:
+    """Parts of a branch that are stable or unstable throughout, each up to the bifurcation at x = a = 0."""
+    a, x, stable = branch.p, branch.x[:, 0], np.asarray(branch.stable, dtype=bool)
+    changes = np.flatnonzero(stable[1:] != stable[:-1]) + 1
+    parts = []
+    for first, end in zip([0, *changes], [*changes, len(a)], strict=True):
+        before, after = [0.0] if first else [], [0.0] if end < len(a) else []
+        own = slice(int(first), int(end))
+        parts.append(
+            (np.array([*before, *a[own], *after]), np.array([*before, *x[own], *after]), bool(stable[first]))
+        )
+    return parts
 
 
 def _both_ways(family: Any, x: float, a: float, n: int) -> list[Branch]:
@@ -89,9 +100,9 @@ def scenarios() -> tuple[Any, dict[str, Any]]:
         ax.plot(x, np.concatenate([y[:, 0] for y in points]), "k.", ms=1.5, mew=0.0, rasterized=True)
         ax.axvline(0.0, color="C0", lw=0.8)
         ax.axhline(0.0, color="C0", lw=0.8, ls=":")
-        title = "A−: tr {:g}, det {:g};  A+: tr {:g}, det {:g}".format(*values)
+        title = "tr, det of A−: {:g}, {:g}; of A+: {:g}, {:g}".format(*values)
         ax.set(
-            title=f"{found.words}\n{title}",
+            title=f"{name}\n{found.words}\n{title}",
             xlabel="m",
             ylabel="x₁",
             xlim=(-1.0, 1.0),

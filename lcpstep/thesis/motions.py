@@ -24,11 +24,12 @@ SPEEDS = (358.0, 660.0, 700.0)
 STEP = 1e-4
 FLANK_NOSE = 1  # the corner at which the thesis cuts the circle of phases
 BOX = [[0.0, -60.0], [1.5, 60.0]]
+LOWEST, TOUCHING = 1e-12, 1e-18  # gaps that are drawn, and what stands for zero [m]
 
 
 @lru_cache(maxsize=1)
 def _compared() -> tuple[list[str], list[Comparison]]:
-    titles = [f"{rpm:g} rpm" for rpm in SPEEDS]
+    titles = [f"cam-follower at {rpm:g} rpm, from q = 0.4 m, v = 0.4 m/s" for rpm in SPEEDS]
     return titles, [compare(cam_follower(rpm=rpm), Moreau(h=STEP), EventDriven()) for rpm in SPEEDS]
 
 
@@ -41,7 +42,7 @@ def series() -> tuple[Any, dict[str, Any]]:
 def portraits_of_both() -> tuple[Any, dict[str, Any]]:
     """Fig 3.5."""
     titles, found = _compared()
-    return portraits(found, titles), _impacts(titles, found)
+    return portraits(found, [f"{rpm:g} rpm" for rpm in SPEEDS]), _impacts(titles, found)
 
 
 def _impacts(titles: list[str], found: list[Comparison]) -> dict[str, Any]:
@@ -60,7 +61,12 @@ def maps_of_both() -> tuple[Any, dict[str, Any]]:
     methods: dict[str, Method] = {"time-stepping, h = 1e-4 s": Moreau(h=STEP), "event-driven": EventDriven()}
     found = {name: sections(scene, method, 6000, 300) for name, method in methods.items()}
     corners = [float(c) / scene.period for c in np.asarray(scene.corners)]
-    figure = maps(found, "cam-follower at 660 rpm, 5700 periods after 300", corners[FLANK_NOSE], corners)
+    figure = maps(
+        found,
+        "cam-follower at 660 rpm, 5700 periods after 300; corners of the cam blue",
+        corners[FLANK_NOSE],
+        corners,
+    )
     return figure, {name: vars(x) for name, x in found.items()}
 
 
@@ -75,34 +81,46 @@ def one_sequence() -> tuple[Any, dict[str, Any]]:
 
 
 def _over_the_cam(rpm: float) -> tuple[Any, dict[str, Any]]:
-    """Two turns of the settled motion, and the gap on a logarithmic scale, on which chattering is seen."""
+    """A turn of the settled motion, and the gap in each chattering sequence on a logarithmic scale."""
     from matplotlib.figure import Figure
 
     scene = cam_follower(rpm=rpm, q0=0.0, v0=0.0)
     T = scene.period
     run = simulate(replace(scene, t_span=(0.0, 6.0 * T)), EventDriven(), keep="impacts")
-    span = (4.0 * T, 6.0 * T)
-    log = run.impacts[(run.impacts.time >= span[0])]
-    t = np.unique(np.concatenate([np.linspace(*span, 6000), log.time]))
-    q, v = run.at(t)
-    figure = Figure(figsize=(11, 6), layout="constrained")
-    figure.suptitle(f"follower over the cam at {rpm:g} rpm, event-driven: two turns of the settled motion")
-    above, below = figure.subplots(2, 1, sharex=True)
-    motion_panel(above, scene, t, q, v)
-    above.set_xlabel("")
-    below.semilogy(t / T, np.maximum(q[:, 0], 1e-18), "C0-", lw=0.9)
-    ends = log[log.kind == Kind.STICK]
-    for time in ends.time:
-        below.axvline(time / T, color="C3", lw=0.8)
-    releases = log[log.kind == Kind.RELEASE]
-    for time in releases.time:
-        below.axvline(time / T, color="C2", lw=0.8)
-    below.plot([], [], color="C2", label="release")
-    below.plot([], [], color="C3", label="accumulation point")
-    below.set(xlabel="time [periods]", ylabel="gap [m]", ylim=(1e-10, None))
-    below.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    below.grid(alpha=0.3)
-    return figure, {"rpm": rpm, "impact_times": log.time[log.kind == Kind.IMPACT], "accumulation": ends.time}
+    log = run.impacts[run.impacts.time >= 4.0 * T]
+    hits = log.time[log.kind == Kind.IMPACT]
+    turn = sampled(run, 4.0 * T, 5.0 * T, hits)
+    opened = [float(t) for t in log.time[log.kind == Kind.RELEASE] if t < 5.0 * T]
+    closed = [float(min(t for t in log.time[log.kind == Kind.STICK] if t > start)) for start in opened]
+    figure = Figure(figsize=(11, 6.5), layout="constrained")
+    figure.suptitle(f"follower over the cam at {rpm:g} rpm, event-driven: one turn of the settled motion")
+    grid = figure.add_gridspec(2, len(opened))
+    motion_panel(figure.add_subplot(grid[0, :]), scene, turn[0] - 4.0 * T, *turn[1:])
+    for k, (start, end) in enumerate(zip(opened, closed, strict=True)):
+        ax = figure.add_subplot(grid[1, k])
+        margin = 0.06 * (end - start)
+        t, q, _ = sampled(run, start - margin, end + margin, hits)
+        ax.semilogy(t / T - 4.0, np.maximum(q[:, 0], TOUCHING), "C0-", lw=0.9)
+        ax.axvline(start / T - 4.0, color="C2", lw=1.0, label="release")
+        ax.axvline(end / T - 4.0, color="C3", lw=1.0, label="accumulation point")
+        ax.set(xlabel="time [periods]", ylim=(LOWEST, None))
+        ax.set_xlim((start - margin) / T - 4.0, (end + margin) / T - 4.0)
+        ax.locator_params(axis="x", nbins=6)
+        ax.set_title(f"sequence {k + 1}: gap", fontsize=10, loc="left")
+        ax.grid(alpha=0.3)
+        if k == 0:
+            ax.set_ylabel("gap [m]")
+        if k == len(opened) - 1:
+            ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
+    return figure, {"rpm": rpm, "impact_times": hits, "release": opened, "accumulation": closed}
+
+
+def sampled(run: Any, start: float, end: float, hits: Any) -> tuple[Any, Any, Any]:
+    """Times, positions and velocities, finely, and at all impacts between, where a gap goes to zero."""
+    inside = hits[(hits > start) & (hits < end)]
+    between = 0.5 * (inside[1:] + inside[:-1])
+    t = np.unique(np.concatenate([np.linspace(start, end, 3000), inside, between]))
+    return t, *run.at(t)
 
 
 def coexisting_orbits() -> tuple[Any, dict[str, Any]]:

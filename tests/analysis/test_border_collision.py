@@ -12,6 +12,7 @@ from lcpstep.analysis.border_collision import (
     classify,
     diagram,
 )
+from lcpstep.analysis.border_collision import normal_form as with_the_border_at_zero
 
 
 def one_dimensional(a, b):
@@ -84,6 +85,22 @@ def test_the_canonical_form_is_the_same_map_in_companion_matrices(f):
         np.testing.assert_allclose(A[:, 1:], np.eye(3)[:, :2], atol=1e-6 * scale)
     np.testing.assert_allclose(g.C, [1.0, 0.0, 0.0], atol=1e-9)
     assert g.gap()[0] < 1e-6
+
+
+@settings(max_examples=50, deadline=None)
+@given(continuous_maps())
+def test_the_normal_form_is_the_same_map_with_its_border_at_zero(f):
+    form = with_the_border_at_zero(f)
+    random = np.random.default_rng(0)
+    for _ in range(6):
+        x, m = random.normal(size=3), random.normal()
+        y = form.W @ x + form.shift * m
+        assert y[0] == pytest.approx(f.C @ x + f.D * m, abs=1e-9)
+        A = form.A_minus if y[0] < 0.0 else form.A_plus
+        scale = max(1.0, np.max(np.abs(form.W)), np.max(np.abs(form.A_plus)), np.max(np.abs(form.A_minus)))
+        np.testing.assert_allclose(
+            form.W @ f(x, m) + form.shift * m, A @ y + form.B * m, atol=1e-7 * scale**2
+        )
 
 
 def test_a_map_that_tears_at_its_border_is_refused_with_the_size_of_the_tear():

@@ -7,7 +7,7 @@ from mpmath import mp
 from lagrangian import LinearContacts, Scene, System, scenes
 from lagrangian.profiles import rotating_cam
 from lcpstep import EventDriven
-from lcpstep.analysis.chattering import corner_crossings, sequences
+from lcpstep.analysis.chattering import corner_crossings, plain, sequences
 from tests.cam_sequences import sequences as exact_sequences
 
 # Speeds at which the end of a sequence meets a corner, by bisection of `cam_sequences` [rpm]
@@ -85,9 +85,57 @@ def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(speed
 @pytest.mark.parametrize("width", [(0.03, 0.02), (1e-3, 2e-3), (1e-6, 1e-6)])
 def test_the_end_of_a_sequence_meets_the_corner_at_that_speed_from_both_sides(speed, corner, width):
     low, high = speed - width[0], speed + width[1]
-    found = corner_crossings(resting, (low, high), points=2, impacts=0)
+    found = corner_crossings(resting, (low, high), impacts=0)
     (meeting,) = [c for c in found if (c.event, c.corner, c.sequence) == ("accumulation", corner, 0)]
-    assert meeting.p == pytest.approx(speed, rel=2e-12)
+    assert meeting.p == pytest.approx(speed, rel=1e-12)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "speed"), [(1, 124.998296821), (3, 121.685871922), (5, 120.735577178)])
+def test_an_impact_meets_the_corner_where_many_digits_say(number, speed):
+    (found,) = [
+        c.p
+        for c in corner_crossings(resting, (speed - 0.3, speed + 0.2))
+        if (c.event, c.number, c.corner) == ("impact", number, 2)
+    ]
+
+    def before_the_corner(rpm):
+        cam, made = exact_sequences(rpm, 1, 1)
+        return made[0][1][number - 1][0] < cam.corner(2)
+
+    assert before_the_corner(found * (1 - 1e-12)) != before_the_corner(found * (1 + 1e-12))
+
+
+def test_crossings_close_together_are_told_apart():
+    # A tooth of the accumulation point whose tip passes the corner f by little: a grid of 0.4 rpm saw none of the two
+    found = corner_crossings(resting, (139.0, 140.0), impacts=0)
+    pair = [c.p for c in found if (c.event, c.corner) == ("accumulation", 5)]
+    np.testing.assert_allclose(pair, [139.417365794, 139.558681247], rtol=1e-11)
+    for p in pair:  # wherever the range begins and ends
+        again = corner_crossings(resting, (p - 3.7, p + 0.05), impacts=0)
+        assert min(abs(c.p - p) for c in again) < 1e-9
+
+
+def test_two_crossings_a_ten_millionth_apart_are_two():
+    half, first = 1e-5, 124.998296820803  # the first impact meets the corner c
+
+    def there_and_back(p):
+        return resting(first + 100.0 * ((p - 130.0) ** 2 - half**2))
+
+    found = corner_crossings(there_and_back, (129.96, 130.05), impacts=1)
+    pair = [c.p for c in found if (c.event, c.number, c.corner) == ("impact", 1, 2)]
+    assert pair == pytest.approx([130.0 - half, 130.0 + half], abs=1e-7)
+
+
+def test_parts_of_a_range_are_plain_where_events_keep_away_or_pass_once():
+    def at(phases):
+        return [({(0, "impact", 1): x}, np.array([0.5])) for x in phases]
+
+    assert plain(at([0.1, 0.12, 0.14, 0.16, 0.18]))
+    assert plain(at([0.48, 0.49, 0.5001, 0.51, 0.52]))
+    assert not plain(at([0.48, 0.49, 0.499, 0.49, 0.48]))  # it may touch the corner between
+    assert not plain([*at([0.1, 0.12, 0.14, 0.16]), ({}, np.array([0.5]))])
+    assert plain(at([0.97, 0.98, 0.99, 0.0, 0.01]))  # over the end of the period
 
 
 @pytest.mark.parametrize("apart", [1e-6, 1e-8, 1e-10])

@@ -174,15 +174,13 @@ def test_the_follower_chatters_twice_in_a_turn_above_first_detachment():
 
 
 def test_the_detachment_point_reaches_the_end_of_the_nose_at_its_published_speed():
-    (crossing,) = [
-        c for c in corner_crossings(resting, (134.5, 135.2), points=3, impacts=3) if c.event == "release"
-    ]
+    (crossing,) = [c for c in corner_crossings(resting, (134.5, 135.2), impacts=3) if c.event == "release"]
     assert crossing.corner == 3
     assert crossing.p == pytest.approx(134.873, abs=5e-4)
 
 
 def test_an_impact_on_a_corner_is_located():
-    crossings = corner_crossings(resting, (124.5, 125.5), points=3, impacts=1)
+    crossings = corner_crossings(resting, (124.5, 125.5), impacts=1)
     (impact,) = [c for c in crossings if c.event == "impact"]
     corners = np.asarray(resting(impact.p).corners) / resting(impact.p).period
     phase = sequences(resting(impact.p))[impact.sequence].impacts[0]

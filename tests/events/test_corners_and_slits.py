@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Status, simulate
+from lcpstep.gaps import closing_in
 
 GRAVITY = 9.81
 FORCES = {"constant": 1.0, "harmonic": Harmonic(constant=1.0, cosine=2.0, omega=3.0)}
@@ -189,3 +190,39 @@ def test_hops_in_a_narrow_wedge_are_not_fed_by_the_closing_of_gaps(tolerance):
     long = Scene(scene.system, scene.q0, scene.v0, (0.0, 20.0), scene.contacts)
     m = simulate(long, EventDriven(tolerance, tolerance, max_events=20_000))
     assert m.status is Status.DONE, m.message
+
+
+def closing_walls(t, q, v, p, out):
+    """One wall stands, the other comes by 0.1 m/s from 0.05 m."""
+    out[0] = 0.0
+    out[1] = (-0.05 + 0.1 * t, 0.1, 0.0)
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.01), Located(0.01, 4)])
+def test_walls_that_leave_no_room_are_named(method):
+    """The slit is closed after half a second, whatever moves in it; the third contact has no part in that."""
+
+    def motion(t, q, v, p, out):
+        closing_walls(t, q, v, p, out)
+        out[2] = 0.0
+
+    contacts = LinearContacts(
+        G=[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]], offset=(0.05, 0.0, 0.0), restitution=0.0, motion=motion
+    )
+    scene = Scene(
+        LinearSystem(M=np.eye(2), force=(1.0, -9.81)), (-0.05, 0.0), (0.0, 0.0), (0.0, 1.0), contacts
+    )
+    m = simulate(scene, method)
+    assert m.status is Status.LCP_FAILED
+    assert "the obstacles of contacts [0, 1] approach each other with nothing left between them" in m.message
+
+
+def test_obstacles_that_leave_room_are_not_blamed():
+    """Walls of a wedge come nearer, and a body between them can give way."""
+    scene = slit(0.0, 1.0, 0.0)
+    assert closing_in(scene, 0.0, np.zeros(1), [0, 1]) == []
+    wedge = LinearContacts(
+        G=[[1.0, 0.2], [-1.0, 0.2]], offset=(0.0, 0.0), motion=closing_walls, restitution=0.0
+    )
+    scene = Scene(LinearSystem(M=np.eye(2)), (0.0, 1.0), (0.0, 0.0), (0.0, 1.0), wedge)
+    assert closing_in(scene, 0.5, np.zeros(2), [0, 1]) == []

@@ -40,4 +40,52 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located", "located-4", "located-exact", "moreau"),
     ),
+    # Ends of chattering sequences were summed up although other feet struck before they came
+    "four feet of different restitution": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.113)), q0=(0.0728, 0.134), v0=(0.0, 0.0), t_span=(0.0, 0.17003), h=0.00347,
+            G=((1.0, -0.5), (1.0, -0.167), (1.0, 0.167), (1.0, 0.5)),
+            offset=(-0.0058, -0.050422, -0.2196985761044801, -0.1398), restitution=(0.31, 0.2, 0.38, 0.99),
+            K=((2.07, 2.41), (2.41, 22.7)), constant=(-9.81, 0.0), amplitude=(0.125, 0.125, 0.125, 0.125),
+            phase=(0.0, 0.0, 4.8, 0.0), omega=0.772,
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
+    # The impulse that takes the speed of a sequence that is summed up was kept as a negative one
+    "wedge of three walls": (
+        Description(
+            M=((0.807, 0.0406, 0.0425), (0.0406, 0.471, 0.0324), (0.0425, 0.0324, 0.514)), q0=(0.605, 0.812, 1.7),
+            v0=(0.0, 0.0, 0.0), t_span=(0.0, 0.237427), h=0.000233,
+            G=((0.8, 0.364, 0.477), (-0.146, 0.104, 0.984), (-0.0129, -0.133, 0.991)),
+            offset=(-1.573468, -1.6334179999999998, 0.5411005), restitution=(0.61, 0.0, 0.0),
+            K=((27700.0, -6630.0, -1060.0), (-6630.0, 57900.0, -12600.0), (-1060.0, -12600.0, 51700.0)),
+            constant=(0.0, 0.0, -5.04), amplitude=(0.0905, 0.0905, 0.0905), phase=(0.0, 0.0, 0.0), omega=0.547,
+            general=True, spread=0.409, pendulum=1.64, b=(-0.792, -1.03, 0.765),
+        ),
+        ("event-driven",),
+    ),
+    "lifted off a corner, far from time zero": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(-0.193, 2.24), v0=(0.0, 0.0), t_span=(7140.0, 7140.0565), h=0.0565,
+            G=((1.0, 0.0), (0.0, -1.0)), offset=(0.193, 2.24), restitution=(0.0, 1.0),
+            K=((0.486, -0.119), (-0.119, 0.303)), constant=(-1.61, -0.347),
+        ),
+        ("located-tolerance", "located-4-tolerance", "moreau-tolerance"),
+    ),
+    "sliding on for thousands of steps": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(1.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 20.0), h=0.05, G=((0.0, 1.0),),
+            offset=(0.0,), restitution=0.5, K=((9.0, 0.0), (0.0, 0.0)), constant=(0.0, -9.81),
+        ),
+        ("located-tolerance",),
+    ),
+    "touched at the very beginning of a step": (
+        Description(
+            M=((0.662, 0.269), (0.269, 3.69)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.0135), h=0.0135,
+            G=((1.6, 0.4), (0.6, 0.5), (1.6, 0.4), (2.2, 0.9), (8.2, 3.1)),
+            offset=(0.0182, 0.0258, 0.0, 0.0626, 0.013877113161323678), restitution=(0.33, 0.37, 0.0, 0.26, 1.0),
+            amplitude=(0.194, 0.0, 0.194, 0.194, 0.194), phase=(0.0, 0.0, 0.0, 0.0, 3.07), omega=3.42,
+        ),
+        ("located-4-tolerance",),
+    ),
 }  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.judge import agree
 from benchmarks.judge.agree import disturbed
 from benchmarks.judge.case import judged
-from benchmarks.judge.checks import check
+from benchmarks.judge.checks import check, within_a_step
 from benchmarks.judge.describe import Description
 from benchmarks.judge.pool import answers
 from benchmarks.judge.report import Tally, report
@@ -57,6 +57,17 @@ def test_nothing_is_found_where_nothing_is_wrong(d):
 )
 def test_what_is_wrong_with_a_run_is_found(kind, changes):
     assert kind in kinds(check(BALL, tampered(**changes)))
+
+
+def test_a_depth_that_scatters_with_the_grid_is_no_finding_and_one_beyond_a_step_is():
+    slit = Description(
+        M=((1.53,),), q0=(0.0,), v0=(0.0,), t_span=(0.0, 10.6), h=0.0418, G=((1.0,), (-1.0,)), offset=(0.0262, 1.79),
+        restitution=0.16, K=((0.12,),), C=((0.0192,),), constant=(-2.41,), general=True, family="slit",
+    )  # fmt: skip
+    r = run(slit, "moreau")
+    assert "penetration" not in kinds(check(slit, r))
+    assert within_a_step(slit, r, 0.0)
+    assert not within_a_step(slit, replace(r, motion=replace(r.motion, q=r.motion.q - 0.012)), 0.0)
 
 
 def test_a_wrong_restitution_is_found(monkeypatch):

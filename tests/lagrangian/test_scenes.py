@@ -293,9 +293,16 @@ def test_every_scene_of_the_catalogue_starts_from_its_defaults(name):
     assert np.all(made.gap(made.t_span[0], made.q0, made.v0)[0] >= 0.0)
 
 
-@pytest.mark.parametrize("name", scenes.CATALOGUE)
+@pytest.mark.parametrize("name", scenes.WITH_MODES)
+def test_every_scene_with_modes_starts_from_its_defaults(name):
+    made = scenes.WITH_MODES[name].make()
+    assert made.name == name
+    assert len(made.labels) == made.n_x == len(made.x0)
+
+
+@pytest.mark.parametrize("name", scenes.SCENES)
 def test_every_numeric_argument_of_every_scene_is_checked_by_name(name):
-    make = scenes.CATALOGUE[name].make
+    make = scenes.SCENES[name].make
     for argument, parameter in inspect.signature(make).parameters.items():
         if isinstance(parameter.default, float):
             for bad in (math.nan, math.inf, "much"):
@@ -326,7 +333,7 @@ def test_scenes_have_the_documented_arguments_in_order(make, arguments):
     assert [x.name for x in parameters] == list(arguments)
 
 
-MAKERS = [entry.make for entry in scenes.CATALOGUE.values()]
+MAKERS = [entry.make for entry in scenes.SCENES.values()]
 
 
 def taking(argument):

@@ -46,8 +46,11 @@ def three_by_three(rng, restitution):
     )  # fmt: skip
 
 
-def unloaded(rng, restitution):
-    """At rest or gliding on several contacts, redundant ones among them, some of whose forces begin at zero."""
+def unloaded(rng, restitution, shares=(0.5, 0.5)):
+    """At rest or gliding on several contacts, redundant ones among them, some of whose forces begin at zero.
+
+    shares : of the first two rows in the third, where that is a redundant one
+    """
     n, m = int(rng.integers(1, 5)), int(rng.integers(1, 6))
     A, B, rows, q0 = (
         rng.normal(size=(n, n)),
@@ -58,8 +61,8 @@ def unloaded(rng, restitution):
     if m > 1 and rng.random() < 0.4:
         rows[1] = rng.choice([-1.0, 1.0]) * rows[0]
     if m > 2 and rng.random() < 0.4:
-        total = rows[0] + rows[1]
-        rows[2] = 0.5 * (total if np.any(total) else rows[0])
+        total = shares[0] * rows[0] + shares[1] * rows[1]
+        rows[2] = total if np.any(total) else shares[0] * rows[0]
     K = B @ B.T * rng.choice([0.0, 1.0, 30.0])
     loads = np.where(rng.random(m) < 0.5, 0.0, rng.uniform(0.1, 2.0, m))
     balance, turning = K @ q0 - rows.T @ loads, 2.0 * rng.normal(size=n)

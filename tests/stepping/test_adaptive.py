@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
+from lcpstep.stepping.adaptive import LOOK
 from tests.known import ball_height
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)
@@ -112,6 +113,80 @@ def test_a_force_that_lifts_what_rests_is_not_stepped_over(order, periods):
     m = simulate(scene, Located(periods * 2.0 * np.pi, order=order, tolerance=1e-4), keep=at)
     assert np.max(true) > 0.1
     assert np.max(np.abs(m.q - true)) <= 1e-3
+
+
+def test_a_contact_stays_closed_over_more_steps_than_a_buffer_holds():
+    """A mass that slides on a floor, x'' = -9 x, for thousands of steps."""
+    system = LinearSystem(np.eye(2), K=np.diag([9.0, 0.0]), force=Harmonic([0.0, -9.81]))
+    contacts = LinearContacts([[0.0, 1.0]], [0.0], 0.5)
+    scene = Scene(system, contacts=contacts, q0=[1.0, 0.0], v0=[0.0, 0.0], t_span=(0.0, 20.0))
+    m = simulate(scene, Located(0.5, tolerance=1e-5))
+    assert m.status == Status.DONE
+    assert m.counts.steps > LOOK
+    assert np.max(np.abs(m.q[:, 0] - np.cos(3.0 * m.t))) < 2e-5
+    assert np.allclose(m.impulse[:, 0].sum(), 9.81 * 20.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("start", [0.0, 7140.0])
+@pytest.mark.parametrize("order", [2, 4])
+def test_what_is_lifted_off_does_not_land_by_rounding(start, order):
+    """The gap a t^2 / 2 is finer at first than the coordinate is told; the motion is known."""
+    contacts = LinearContacts([[-1.0]], [2.24], 1.0)
+    system = LinearSystem([[1.0]], K=[[0.3]], force=Harmonic([-0.347]))
+    scene = Scene(system, contacts=contacts, q0=[2.24], v0=[0.0], t_span=(start, start + 0.06))
+    m = simulate(scene, Located(0.5, order=order, tolerance=1e-6))
+    assert m.status == Status.DONE
+    assert m.impacts.kind.tolist() in ([], [Kind.RELEASE])
+    assert m.counts.steps < 100
+    w, mean = np.sqrt(0.3), -0.347 / 0.3
+    exact = mean + (2.24 - mean) * np.cos(w * (m.t - start))
+    assert np.max(np.abs(m.q[:, 0] - exact)) < 1e-6
+    assert np.all(np.diff(m.t) > 0.0)
+    assert m.t[-1] == start + 0.06
+
+
+@pytest.mark.parametrize(
+    "method", [Located(0.1, tolerance=1e-5), Located(0.1, 4, tolerance=1e-7), Moreau(0.1, tolerance=1e-2)]
+)
+@pytest.mark.parametrize("start", [0.3, 5420.0, -17699.3, 83800.0])
+def test_times_go_on_and_end_as_asked_far_from_zero(method, start):
+    """Events, kept states and the steps between them agree about one instant to the bit."""
+    system = LinearSystem(
+        np.eye(2), K=[[12.0, -3.0], [-3.0, 5.0]], force=Harmonic([-2.0, -1.0], [1.0, 0.7], [0.0, 0.3], 7.0)
+    )
+    contacts = LinearContacts([[1.0, 0.0], [0.3, 1.0]], [0.1, 0.05], [0.5, 0.0])
+    for length in (0.010918, 1.0 / 3.0, 1.9):
+        scene = Scene(
+            system, contacts=contacts, q0=[0.1, 0.2], v0=[-1.0, 0.3], t_span=(start, start + length)
+        )
+        m = simulate(scene, method)
+        assert m.status == Status.DONE
+        assert m.t[-1] == start + length
+        assert np.all(np.diff(m.t) >= 0.0)
+        assert np.all(np.diff(m.impacts.time) >= 0.0)
+        assert np.all(m.impacts.time <= m.t[-1])
+        at = np.linspace(start, start + length, 7)
+        assert np.array_equal(simulate(scene, method, keep=at).t, at)
+
+
+def swinging(t, q, v, p, out):
+    out[0] = 0.03 * np.sin(1.3 * t), 0.039 * np.cos(1.3 * t), -0.0507 * np.sin(1.3 * t)
+
+
+def test_what_rests_on_a_moving_table_stays_on_it_between_steps():
+    """It is carried without error, so that steps are long; between them it is where the table is."""
+    contacts = LinearContacts([[1.0]], [0.0], 0.5, motion=swinging)
+    scene = Scene(
+        LinearSystem([[1.0]], force=Harmonic([-9.81])),
+        contacts=contacts,
+        q0=[0.0],
+        v0=[0.039],
+        t_span=(0.0, 6.0),
+    )
+    m = simulate(scene, Located(0.8, tolerance=1e-6))
+    t = np.linspace(0.0, 6.0, 333)
+    assert np.max(np.diff(m.t)) > 0.2
+    assert np.max(np.abs(m.at(t)[0][:, 0] - 0.03 * np.sin(1.3 * t))) < 1e-9
 
 
 def test_bad_input_is_named():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, LcpStepError, Moreau, SimulationInterrupted, Status, simulate
 from lcpstep.trajectory import Kind
 from tests.known import ball_height
@@ -171,6 +171,23 @@ def test_a_tolerance_that_cannot_be_met_ends_the_run():
     m = simulate(oscillator(), Moreau(0.5, tolerance=1e-17))
     assert m.status == Status.STEP_TOO_SMALL
     assert "tolerance" in m.message
+
+
+def fading(t, q, v, p, out):
+    out[0, 0] = 1.0 - q[0]
+
+
+def pushing(t, q, v, p, out):
+    out[0] = 1.0
+
+
+def test_a_mass_that_vanishes_is_named():
+    """(1 - q) q'' = 1 has no motion beyond q = 1."""
+    system = System(n_q=1, mass=fading, force=pushing)
+    m = simulate(Scene(system, q0=[0.0], v0=[1.0], t_span=(0.0, 3.0)), Moreau(0.1, tolerance=1e-3))
+    assert m.status == Status.STEP_TOO_SMALL
+    assert "tolerance" in m.message
+    assert "mass" in m.message
 
 
 @pytest.mark.parametrize("bad", [0.0, -1.0, np.nan, "small"])

@@ -1,5 +1,8 @@
 """Located impacts of coupled contacts: grooves, slits, clusters, contact forces that begin at zero."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -190,6 +193,68 @@ def test_a_light_block_on_a_very_heavy_one_weighs_what_it_weighs(order):
     m = simulate(scene, Located(0.01, order))
     weight = 9.81 * np.cumsum(M[::-1])[::-1]
     np.testing.assert_allclose(m.impulse[1:] / np.diff(m.t)[:, None], np.tile(weight, (10, 1)), rtol=2e-14)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_hops_between_nearly_parallel_planes_come_to_an_end(order):
+    # hops grow shorter up to where rounding makes them: from there on they would go on for ever
+    scene = coupled.unloaded(np.random.default_rng([74, 47]), 0.0, (0.5, 0.25))
+    m, reference = simulate(scene, Located(0.01, order)), simulate(scene, EventDriven())
+    coupled.check_bodies(scene, m)
+    assert len(m.impacts) < 500
+    atol = {2: 1e-4, 4: 1e-8, "exact": 1e-12}[order]
+    np.testing.assert_allclose(m.q[-1], reference.q[-1], rtol=0, atol=atol)
+
+
+def lifting(t, q, v, p, out):
+    """The second plane moves; of places at so late a time no more than eleven digits are known."""
+    out[0, 0] = out[0, 1] = out[0, 2] = 0.0
+    out[1, 0] = -0.003 * math.cos(3.0 * t)
+    out[1, 1] = 0.009 * math.sin(3.0 * t)
+    out[1, 2] = 0.027 * math.cos(3.0 * t)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_hops_between_planes_that_move_come_to_an_end_long_after_the_start_of_time(order):
+    t = 27400.0
+    rows = np.array([[-0.085, 0.904], [-0.2, 0.98]])
+    s = np.zeros((2, 3))
+    lifting(t, None, None, None, s)
+    scene = Scene(
+        system=LinearSystem(M=np.eye(2), K=[[2.4, 0.0], [0.0, 13.5]], force=[0.0, -9.81]),
+        contacts=LinearContacts(G=rows, offset=s[:, 0] + [0.0, 1e-4], restitution=[0.49, 0.0], motion=lifting),
+        q0=[0.0, 0.0], v0=[0.08, 0.02], t_span=(t, t + 1.0),
+    )  # fmt: skip
+    m = simulate(scene, Located(0.0055, order, max_events=20_000))
+    assert m.status.name == "DONE"
+    assert len(m.impacts) < 10_000
+    reference = simulate(scene, EventDriven())
+    np.testing.assert_allclose(m.q[-1], reference.q[-1], rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_elastic_hops_too_short_to_be_followed_come_to_an_end(order):
+    # what is left of the motion of beads that fall onto each other: hops of 1e-12 s, which no step can follow
+    scene = Scene(
+        system=LinearSystem(M=np.eye(2), force=[-9.81, -9.81]),
+        contacts=LinearContacts(G=[[1.0, 0.0], [-1.0, 1.0]], restitution=[0.4, 1.0]), q0=[0.0, 0.0], v0=[0.0, 4e-12],
+        t_span=(0.0, 1.0),
+    )  # fmt: skip
+    m = simulate(scene, Located(0.05, order, max_events=50_000))
+    assert m.status.name == "DONE"
+    np.testing.assert_allclose(m.q[-1], 0.0, rtol=0, atol=1e-12)
+
+
+def test_what_rounding_has_left_of_rest_is_rest():
+    # a slit at rest: had its body 5e-35 m/s, the step would be cut in two where it touches the other wall
+    force = Harmonic(constant=[0.05, -0.4], cosine=[0.18, -0.18], sine=[-0.1, -0.38], omega=0.46)
+    scene = Scene(
+        system=LinearSystem(M=np.diag([1.2, 1.15]), K=[[0.07, -0.11], [-0.11, 1.64]], force=force),
+        contacts=LinearContacts(G=[[1.0, 0.0], [-1.0, 0.0]]), q0=[0.0, -0.5], v0=[0.0, -0.12], t_span=(0.0, 2.0),
+    )  # fmt: skip
+    rest, left = (simulate(replace(scene, v0=[v, -0.12]), Located(0.09, 4)) for v in (0.0, 5e-35))
+    assert len(left.impacts) == len(rest.impacts)
+    np.testing.assert_allclose(left.q, rest.q, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("order", ORDERS)

@@ -31,11 +31,17 @@ def shaker(t, q, v, p, out):
     out[:, 2] = -1.62 * np.sin(9.0 * t)
 
 
+def scattered(n, density, rng, values):
+    """A sparse matrix with random entries at random places."""
+    places = rng.choice(n * n, size=round(density * n * n), replace=False)
+    return sparse.coo_array((values(size=len(places)), np.divmod(places, n)), shape=(n, n)).tocsr()
+
+
 def random_scene(n, seed, bandwidth=None):
     """Masses, springs and dampers at random, driven, among shaking obstacles; any graph, or a banded one."""
     rng = np.random.default_rng(seed)
-    B = sparse.random_array((n, n), density=2.0 / n, rng=rng).tocsr()
-    G = sparse.random_array((n, n), density=2.5 / n, rng=rng, data_sampler=rng.standard_normal).tocsr()
+    B = scattered(n, 2.0 / n, rng, rng.random)
+    G = scattered(n, 2.5 / n, rng, rng.standard_normal)
     if bandwidth is not None:
         B, G = (sparse.tril(sparse.triu(x, -bandwidth), bandwidth).tocsr() for x in (B, G))
     G = (G + sparse.eye_array(n)).tocsr()

@@ -14,10 +14,11 @@ from lcpstep import compiled
 from lcpstep.events.hybrid import loop
 from lcpstep.events.hybrid import state as at
 from lcpstep.events.hybrid.run import STATUS, prepared
+from lcpstep.pace import Pace
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
-GOAL = 2**62
+PORTION = 65536  # steps between two looks at the outside world, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +61,9 @@ class Follower:
         s.count[at.MODE] = self.names.index(mode)
         s.x[at.LAST_SWITCH], s.x[at.NEXT] = -math.inf, 1e-3 * s.flow.longest
         s.w.y[:] = x0
-        code = self.kernel(s, GOAL)
+        pace, code = Pace(PORTION, len(s.w.y)), at.FINISHED
+        while code == at.FINISHED and s.x[at.NOW] < s.flow.t_end:
+            code = self.kernel(s, pace.goal(int(s.count[at.STEP])))
         n, log = len(s.w.y), s.memory.log[: s.count[at.SWITCH]].copy()
         lead = at.SWITCH_LEAD
         return End(

@@ -20,12 +20,13 @@ from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.roots import CHECKS, DEGREE, scan
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
 from lcpstep.model import hybrid_culprit
+from lcpstep.pace import Pace
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
 ROWS, SWITCHES = 4096, 4096
-PORTION = 2048  # steps between two looks at the outside world
+PORTION = 2048  # steps between two looks at the outside world, at most
 PER_PERIOD, PER_SPAN = 16, 50
 STATUS = {
     at.FINISHED: Status.DONE,
@@ -75,6 +76,7 @@ class HybridRun:
         self.kernel = compiled.compiled(loop.run) if fast else loop.run
         self.count, self.memory = self.loop.count, self.loop.memory
         self.loop.x[at.NEXT] = 0.1 * self.loop.flow.longest
+        self.pace = Pace(PORTION, scene.system.n_x)
         self.parts: dict[str, list[Array]] = {"rows": [], "dense": [], "log": []}
 
     def finish(self, kept: Kept, progress: Callable[[float], None]) -> HybridTrajectory:
@@ -82,7 +84,7 @@ class HybridRun:
         code, t_end = at.FINISHED, self.scene.t_span[1]
         try:
             while True:
-                goal = int(self.count[at.STEP]) + PORTION
+                goal = self.pace.goal(int(self.count[at.STEP]))
                 try:
                     code = int(self.kernel(self.loop, goal))
                 except Exception as error:  # a function in plain Python; compiled code raises nothing
@@ -93,7 +95,7 @@ class HybridRun:
                 if code not in (at.FINISHED, at.BUFFER_FULL) or (code == at.FINISHED and self.now >= t_end):
                     break
         except KeyboardInterrupt:
-            raise SimulationInterrupted(self.trajectory(Status.INTERRUPTED, kept)) from None
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, kept)) from None
         result = self.trajectory(STATUS[code], kept)
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result)

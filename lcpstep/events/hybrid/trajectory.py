@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
+from lcpstep.events.hybrid.state import SWITCH_LEAD
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
@@ -99,3 +100,15 @@ class HybridTrajectory:
             f"HybridTrajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g}, "
             f"{len(self.t)} states, {len(self.switches)} switches, {self.status.name})"
         )
+
+
+def log_of(run: HybridTrajectory) -> Array:
+    """The switches of a run as kernels write them."""
+    names, n = run.scene.system.names, run.scene.n_x
+    log = np.zeros((len(run.switches), SWITCH_LEAD + 2 * n))
+    log[:, 0], log[:, 3] = run.switches.time, run.switches.guard
+    for place, which in ((1, run.switches.source), (2, run.switches.target)):
+        log[:, place] = [names.index(str(name)) for name in which]
+    log[:, SWITCH_LEAD : SWITCH_LEAD + n] = run.switches.before
+    log[:, SWITCH_LEAD + n :] = run.switches.after
+    return log

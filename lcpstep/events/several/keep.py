@@ -8,7 +8,16 @@ from lcpstep.dense import assign
 from lcpstep.events.bookkeeping import EVENT, NEXT_TIME, ROW, count_event, keeps_events, take_back
 from lcpstep.events.clock import LAST_EVENT, RESOLUTION, T0
 from lcpstep.events.several.motion import state_at
-from lcpstep.events.several.state import ACCELERATION, IMPULSE, LENGTH, Q, V
+from lcpstep.events.several.state import (
+    ACCELERATION,
+    CLOSED,
+    IMPULSE,
+    LENGTH,
+    OWED,
+    OWED_UNTIL,
+    Q,
+    V,
+)
 from lcpstep.recording import LEAD, write_event
 from lcpstep.recording import LENGTH as STEP_LENGTH
 from lcpstep.recording import TIME as ROW_TIME
@@ -52,10 +61,19 @@ def keep(s: Any, record: Any, count: Any, t: float) -> None:
     for j in range(n):
         row[LEAD + j], row[LEAD + n + j] = s.state[Q, j], s.state[V, j]
     for c in range(len(s.G)):
+        if s.contact[OWED, c] < 0.0:
+            pay(s, c, t)
         row[LEAD + 2 * n + c], s.contact[IMPULSE, c] = s.contact[IMPULSE, c], 0.0
     for i in range(len(s.J)):
         row[LEAD + 2 * n + len(s.G) + i], s.joint[IMPULSE, i] = s.joint[IMPULSE, i], 0.0
     count[ROW] += 1
+
+
+def pay(s: Any, c: int, t: float) -> None:
+    """Pay what the end of a chattering sequence has taken on account; t: the time of the row to be kept."""
+    p = s.contact[IMPULSE, c] + s.contact[OWED, c]
+    due = p >= 0.0 or s.mode[CLOSED, c] == 0 or t >= s.contact[OWED_UNTIL, c]
+    s.contact[IMPULSE, c], s.contact[OWED, c] = (p, 0.0) if due else (0.0, p)
 
 
 def store_dense(s: Any, record: Any, count: Any) -> None:

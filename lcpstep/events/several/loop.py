@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.dense import largest
 from lcpstep.events.bookkeeping import (
     BUFFER_FULL,
     EVENT,
@@ -22,15 +21,14 @@ from lcpstep.events.bookkeeping import (
     TOO_MANY_EVENTS,
     too_many,
 )
-from lcpstep.events.clock import HIGH, RESOLUTION, T0, find_corners
+from lcpstep.events.clock import HIGH, T0, find_corners
 from lcpstep.events.several.equations import measure
 from lcpstep.events.several.keep import keep
 from lcpstep.events.several.modes import jump, obey, settle
+from lcpstep.events.several.motion import touching
 from lcpstep.events.several.parabolas import fly
-from lcpstep.events.several.state import GAP, JUMP, MOVE, NEXT, OBEY, SETTLE, Q
+from lcpstep.events.several.state import GAP, JUMP, MOVE, NEXT, OBEY, SETTLE
 from lcpstep.events.several.step import complete, step
-
-START = 64 * RESOLUTION  # an initial gap this small, relative to the state, is closed
 
 
 def run(s: Any, record: Any, count: Any, goal: int) -> int:
@@ -73,8 +71,7 @@ def begin(s: Any) -> bool:
     find_corners(s, s.x[T0])
     if not measure(s, s.x[T0]):
         return False
-    small = START * largest(s.state[Q], 1.0)
     for c in range(len(s.G)):
-        if s.contact[GAP, c] <= small:
+        if s.contact[GAP, c] <= touching(s, c):
             s.contact[GAP, c] = 0.0
     return True

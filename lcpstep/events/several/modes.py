@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from lcpstep.dense import assign
+from lcpstep.dynamics import order_matters
 from lcpstep.events.bookkeeping import (
     BUFFER_FULL,
     EVENT,
@@ -30,7 +31,7 @@ from lcpstep.events.several.forces import CONTRADICTION, DONE, contact_forces
 from lcpstep.events.several.held import constrain, hold_contacts, note
 from lcpstep.events.several.impact import speed_noise, strike
 from lcpstep.events.several.keep import keep_event, log
-from lcpstep.events.several.motion import gap_tolerance, lift, rebase
+from lcpstep.events.several.motion import lift, rebase, touching
 from lcpstep.events.several.parabolas import polish, synchronise
 from lcpstep.events.several.state import (
     ACCELERATION,
@@ -93,7 +94,7 @@ def approaches(s: Any) -> bool:
     hit = False
     for c in range(len(s.G)):
         u = s.contact[SPEED, c]
-        if s.mode[CLOSED, c] == 0 and s.contact[GAP, c] <= touching(s, c):
+        if s.mode[CLOSED, c] == 0 and (s.contact[GAP, c] == 0.0 or has_come(s, c)):
             noise = speed_noise(s, c)
             if u <= noise:
                 if (
@@ -108,9 +109,23 @@ def approaches(s: Any) -> bool:
     return hit
 
 
-def touching(s: Any, c: int) -> float:
-    """The gap below which a contact is closed: zero where gaps are followed exactly, else the tolerance."""
-    return 0.0 if s.constant else gap_tolerance(s, c)
+def has_come(s: Any, c: int) -> bool:
+    """Whether a gap that is not exactly zero counts as closed; under constant forces only if rounding may be why.
+
+    And if the order of impacts matters: beads that meet by threes are followed one after another, which is exact.
+    """
+    if not s.constant:
+        return bool(s.contact[GAP, c] <= touching(s, c))
+    u, i = s.contact[SPEED, c], len(s.J) + c
+    if not u < 0.0 or s.contact[GAP, c] > touching(s, c):
+        return bool(s.contact[GAP, c] < 0.0)
+    for d in range(len(s.G)):
+        k, u_d = len(s.J) + d, s.contact[SPEED, d]
+        r_c, r_d = s.model.restitution[c], s.model.restitution[d]
+        strikes = s.mode[CLOSED, d] == 0 and s.contact[GAP, d] == 0.0 and u_d < -speed_noise(s, d)
+        if strikes and order_matters(s.D[i, i], s.D[k, k], s.D[i, k], r_c, r_d, u, u_d):
+            return True
+    return False
 
 
 def tell_impacts(s: Any, record: Any, count: Any, t: float) -> None:

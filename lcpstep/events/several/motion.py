@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from lcpstep.dense import assign, join, split
+from lcpstep.dynamics import gap_rounding
 from lcpstep.events.clock import start_at
 from lcpstep.events.dop853 import interpolate
 from lcpstep.events.several.earliest import observe
@@ -60,11 +61,32 @@ def gap_tolerance(s: Any, c: int) -> float:
 
     Zero where it depends on no coordinate, as in the middle of a bowl.
     """
+    return least_effect(s, c, s.state[Q])
+
+
+def touching(s: Any, c: int) -> float:
+    """The gap below which contact c is closed: rounding, and the tolerance where gaps are not followed exactly."""
+    way = 0.0
+    if s.x[LENGTH] > 0.0:
+        for j in range(s.state.shape[1]):
+            way += abs(s.R[len(s.J) + c, j] * s.state[V, j])
+        way *= s.x[LENGTH]
+    rounding = gap_rounding(s.model, s.G, s.state[Q], c, way)
+    return rounding if s.constant else max(rounding, gap_tolerance(s, c))
+
+
+def speed_tolerance(s: Any, c: int) -> float:
+    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, c, s.state[V])
+
+
+def least_effect(s: Any, c: int, x: Any) -> float:
+    """The gap, or gap velocity, that contact c can change without changing an x by more than its tolerance."""
     i, least = len(s.J) + c, math.inf
-    for j in range(s.state.shape[1]):
+    for j in range(len(x)):
         moved = abs(s.MR[i, j])
         if moved > 0.0:
-            least = min(least, (s.plan.atol + s.plan.rtol * abs(s.state[Q, j])) * s.D[i, i] / moved)
+            least = min(least, (s.plan.atol + s.plan.rtol * abs(x[j])) * s.D[i, i] / moved)
     return least if least < math.inf else 0.0
 
 

@@ -25,6 +25,7 @@ from lcpstep.events.several.modes import obey
 from lcpstep.events.several.motion import lift
 from lcpstep.events.several.parabolas import fly, polish, synchronise
 from lcpstep.events.several.step import complete, step
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp.kernel import solver
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.model import ABSENT, Model, models
@@ -131,7 +132,8 @@ class Several(run.Run):
         closed = np.flatnonzero(s.mode[at.CLOSED]).tolist()
         members = sorted(s.member[: s.number[at.MEMBERS]].tolist())
         if code == at.NO_IMPULSES:
-            return f"no impulses of the contacts {members} end their approach {where}"
+            words = f"no impulses of the contacts {members} end their approach"
+            return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
         if code == at.NO_FORCES:
             return f"no forces of the closed contacts {members} keep them from passing {where}"
         if code == at.JOINTS_DISAGREE:

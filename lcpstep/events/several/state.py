@@ -23,7 +23,9 @@ LCP_B, LCP_Z, SYNCHRONOUS, CHATTERS = range(15, 19)
 LCP_NOISE = 22  # rounding of the right-hand side
 # Of the impacts at one instant: size of the terms of a speed; speed, and impulse since, a number of impacts ago
 TERMS, CYCLE_SPEED, CYCLE_IMPULSE = range(19, 22)
-N_CONTACT = 23
+# How long the sequence that is summed up lasts; impulse taken on account, and the time up to which forces pay for it
+REST, OWED, OWED_UNTIL = range(23, 26)
+N_CONTACT = 26
 JOINT_CYCLE_IMPULSE = SHIFTED + 1  # the last row of Several.joint
 N_JOINT = SHIFTED + 2
 # Rows of Several.mode

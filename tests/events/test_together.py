@@ -1,0 +1,76 @@
+"""Contacts whose gaps close at one instant strike together, however they are numbered and in whatever units."""
+
+from itertools import combinations, permutations
+
+import numpy as np
+import pytest
+
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, Kind, Located, simulate
+
+ROWS = np.array([[1.0, 0.3], [-0.4, 1.0]])
+# A plane that depends on both, and the second once more; each with a restitution of its own
+G = np.vstack([ROWS, 0.5 * ROWS[0] + 0.25 * ROWS[1], ROWS[1]])
+OFFSET = np.array([0.1, 0.2])
+OFFSETS = np.append(OFFSET, [0.5 * 0.1 + 0.25 * 0.2, 0.2])
+RESTITUTION = np.array([0.9, 0.2, 0.5, 0.7])
+
+
+def nothing(t, q, v, p, out):
+    """No force, which the library is not told."""
+    out[0] = out[1] = 0.0
+
+
+def corner(order, length=1.0, mass=1.0, force=None):
+    """A point that meets all four planes at 0.37 s; lengths and masses in other units."""
+    M = mass * np.array([[1.0, 0.2], [0.2, 0.7]])
+    q0 = np.linalg.solve(ROWS, np.array([0.37, 0.74]) - OFFSET)
+    v0 = np.linalg.solve(ROWS, np.array([-1.0, -2.0]))
+    contacts = LinearContacts(G=G[order], offset=length * OFFSETS[order], restitution=RESTITUTION[order])
+    system = LinearSystem(M=M, force=force)
+    return Scene(system, length * q0, length * v0, (0.0, 0.8), contacts)
+
+
+def law_of_all(scene):
+    """The velocity after 0 <= W p + (1 + r) u-  complementary to  p >= 0 for all planes; all sets are tried."""
+    M_inverse, G = np.linalg.inv(scene.system.M), scene.contacts.G
+    W, b = G @ M_inverse @ G.T, (1.0 + scene.contacts.restitution) * (G @ scene.v0)
+    for k in range(3):
+        for pressed in map(list, combinations(range(len(b)), k)):
+            p = np.zeros(len(b))
+            p[pressed] = np.linalg.lstsq(W[np.ix_(pressed, pressed)], -b[pressed])[0]
+            if np.all(p >= 0.0) and np.all(W @ p + b >= -1e-12 * np.abs(b).max()):
+                return scene.v0 + M_inverse @ G.T @ p
+    raise AssertionError("no solution")
+
+
+@pytest.mark.parametrize("length", [1.0, 1e3, 0.3048e-3])
+@pytest.mark.parametrize("force", [None, nothing], ids=["exact", "integrated"])
+@pytest.mark.parametrize("method", [EventDriven, lambda *_: Located(0.01), lambda *_: Located(0.01, 4)])
+def test_planes_that_close_together_strike_together(method, force, length):
+    for order in permutations(range(4)):
+        scene = corner(list(order), length, 1e3, force)
+        run = simulate(scene, method(1e-12, 1e-12 * length))
+        assert run.status.name == "DONE"
+        struck = run.impacts[run.impacts.kind == Kind.IMPACT]
+        np.testing.assert_allclose(struck.time, 0.37, rtol=1e-9)
+        np.testing.assert_allclose(run.at(0.5)[1], law_of_all(scene), atol=1e-8 * length)
+
+
+def test_elastic_beads_that_meet_by_threes_pass_through_one_another():
+    """The order does not matter to them, and it is taken: with these numbers three beads meet at 0.1657 s."""
+    scene = scenes.elastic_gas(100, t_end=0.5)
+    run = simulate(scene, EventDriven())
+    np.testing.assert_allclose(run.q, scene.exact(run.t)[0], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.01)])
+def test_unlike_beads_that_meet_by_threes_depend_on_no_numbering(method):
+    """Two bodies come to a third from both sides; where they meet, rounding cannot tell who is first."""
+    after = []
+    for order in ([0, 1], [1, 0]):
+        contacts = LinearContacts(G=np.array([[-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])[order], restitution=1.0)
+        q0, v0 = (-0.1 * 0.7 / 3.0, 0.0, 0.2 * 0.7 / 3.0), (0.1, 0.0, -0.2)
+        scene = Scene(LinearSystem(M=np.diag([1.0, 3.0, 2.0])), q0, v0, (0.0, 1.0), contacts)
+        after.append(simulate(scene, method).v[-1])
+    np.testing.assert_allclose(after[0], after[1], atol=1e-12)

@@ -1,0 +1,132 @@
+"""Ctrl-C in every command: it ends soon, says what was kept and how to go on, with exit status 130."""
+
+import argparse
+import shlex
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from lcpstep import cli
+from lcpstep.cli import interrupt
+from tests.processes import environment
+
+READY = "import sys; from lcpstep.cli import command; print('ready', flush=True); command()"
+LIMIT = 5.0  # [s]; one second on a machine that is not busy
+LONG = {
+    "compare": "cam-follower --h 1e-7",
+    "simulate": "cam-follower --h 1e-7 --t-end 100 --every 1000 --out motion",
+    "study": "cam-follower --out out",
+    "hard": "--full",
+    "attractor": "cam-follower --starts 100000",
+    "bifurcation": "cam-follower --window 660-760 --points 40000 --jobs 2",
+    "basin": "cam-follower --rpm 358.5 --grid 2000 2000",
+    "orbit": "cam-follower --rpm 700 --range 500 760 --points 4000",
+    "corner": "cam-follower --points 20000 --out out",
+    "abs": "--grid 400 --out out",
+    "thesis": "",
+    "lyapunov": "cam-follower --rpm 660 --periods 100000000",
+    "map": "logistic --parameter r --range 2.8 4 --points 4000000 --out out",
+}
+ENDS_AT_ONCE = {"scenes"}
+SLOW_LOOPS = {
+    "adaptive": "simulate impact-oscillator --t-end 1e4 --h 1e-3 --tolerance 1e-2",
+    "located": "simulate cam-follower --method located --t-end 100 --h 1e-6",
+    "located, order 4": "simulate cam-follower --method located --order 4 --t-end 100 --h 1e-6",
+    "event-driven": "simulate elastic-gas --method event-driven --t-end 1e5",
+    "time-stepping": "basin cam-follower --rpm 358.5 --grid 300 300 --method moreau --h 1e-6",
+    "speeds of a map": "orbit cam-follower --rpm 660 --transient 100000000",
+}
+
+
+def interrupted(words, folder, after):
+    """Run a command, interrupt it after a time; its output, its errors, and how long it took to end."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", READY, *words], cwd=folder, env=environment(),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(after)
+        begin = time.perf_counter()
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == interrupt.INTERRUPTED, err
+    assert "Traceback" not in err
+    return out, err, time.perf_counter() - begin
+
+
+def said(err, what):
+    """What a command says after these words."""
+    return next(
+        line.partition(f"{what}: ")[2] for line in err.splitlines() if line.startswith(f"lcpstep: {what}: ")
+    )
+
+
+@pytest.mark.parametrize(
+    "after", [pytest.param(1.0, marks=pytest.mark.slow), pytest.param(6.0, marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("command", LONG)
+def test_every_command_ends_soon_and_says_how_to_go_on(command, after, tmp_path):
+    words = [command, *LONG[command].split()]
+    _, err, seconds = interrupted(words, tmp_path, after)
+    assert seconds < LIMIT
+    nothing = said(err, "kept") == "nothing"
+    again = "lcpstep: go on with: " in err
+    assert not (nothing and again)
+    suggested = shlex.split(said(err, "go on with" if again else "start again with"))
+    assert suggested[:2] == ["lcpstep", command]
+    cli.parser().parse_args(suggested[1:])
+    assert not list(tmp_path.rglob("*.partial*"))
+
+
+def test_no_command_is_left_out():
+    (commands,) = (x for x in cli.parser()._actions if isinstance(x, argparse._SubParsersAction))
+    assert set(commands.choices) == set(LONG) | ENDS_AT_ONCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", SLOW_LOOPS.values(), ids=SLOW_LOOPS)
+def test_no_loop_keeps_python_from_hearing(words, tmp_path):
+    _, err, seconds = interrupted(words.split(), tmp_path, 6.0)
+    assert seconds < LIMIT
+    assert said(err, "kept") == "nothing"
+
+
+def test_a_motion_that_is_interrupted_is_saved_as_far_as_it_came(tmp_path):
+    words = ["simulate", *LONG["simulate"].split()]
+    _, err, seconds = interrupted(words, tmp_path, 3.0)
+    assert seconds < LIMIT
+    assert said(err, "kept") == "motion.npz"
+    assert "interrupted at t = " in err
+    with np.load(tmp_path / "motion.npz") as saved:
+        assert 0.0 < saved["t"][-1] < 100.0
+
+
+@pytest.mark.slow
+def test_the_command_that_is_told_goes_on_from_there(tmp_path, monkeypatch):
+    words = [
+        "bifurcation",
+        "cam-follower",
+        "--window",
+        "660-760",
+        "--points",
+        "300",
+        "--drop",
+        "3000",
+        "--jobs",
+        "1",
+    ]
+    _, err, _ = interrupted(words, tmp_path, 5.0)
+    assert "finished parts in out/parts" in said(err, "kept")
+    parts = {file: file.stat().st_mtime_ns for file in tmp_path.rglob("part-*.npz")}
+    monkeypatch.setattr("lcpstep.cli.studies.shutil.rmtree", lambda folder, **_: None)
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(shlex.split(said(err, "go on with"))[1:]) == 0
+    assert parts
+    assert {file: file.stat().st_mtime_ns for file in parts} == parts
