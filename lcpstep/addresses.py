@@ -21,7 +21,7 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.core.typing.typeof import typeof_impl
 from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, unbox
 
-from lcpstep.compiled import ByAddress, Handle
+from lcpstep.compiled import ByAddress
 
 DIGITS = 12  # of a fingerprint in a name
 
@@ -85,27 +85,3 @@ def read_field(context: Any, builder: Any, kind: Address, place: Any, name: str)
         if isinstance(instruction, ir.LoadInstr):
             instruction.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value
-
-
-class HandleType(types.Type):
-    """Numba's type of an object of which kernels see but the address."""
-
-
-@register_default(HandleType)
-class HandleModel(models.PrimitiveModel):
-    """In machine code: a pointer."""
-
-    def __init__(self, manager: Any, kind: HandleType) -> None:
-        super().__init__(manager, kind, cgutils.voidptr_t)
-
-
-@typeof_impl.register(Handle)
-def typeof_handle(value: Any, context: Any) -> HandleType:
-    """Type of such an object, by its class."""
-    return HandleType(f"handle_{type(value).__name__}")
-
-
-@unbox(HandleType)
-def unbox_handle(kind: HandleType, value: Any, c: Any) -> NativeValue:
-    """Its address; the tuple that it is in keeps it alive while the kernel runs."""
-    return NativeValue(c.builder.bitcast(value, cgutils.voidptr_t))

@@ -67,10 +67,6 @@ class ByAddress(abc.ABC):  # noqa: B024  (numba asks by this class which tuples 
     """All classes marked with `by_address`."""
 
 
-class Handle(abc.ABC):  # noqa: B024  (as above)
-    """Objects of which kernels see but the address: the work spaces of what is built ahead of time."""
-
-
 def by_address(cls: C) -> C:
     """Mark a class of named tuples to be handed from kernel to kernel as one pointer, not field by field."""
     ByAddress.register(cls)
@@ -366,7 +362,8 @@ def _intrinsics() -> dict[FunctionType, Any]:
                 make_array(kind)(context, builder, x)
                 for kind, x in zip(signature.args[1:4], args[1:4], strict=True)
             ]
-            values = [*(a.data for a in arrays), arrays[1].nitems, args[4]]
+            own = make_array(work)(context, builder, args[4])
+            values = [*(a.data for a in arrays), arrays[1].nitems, builder.load(own.data)]
             c_function = ir.FunctionType(ir.IntType(64), [value.type for value in values])
             return builder.call(builder.inttoptr(args[0], c_function.as_pointer()), values)
 

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Any
 
 import cython
+import numpy as np
 
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
 
@@ -194,3 +195,9 @@ def solver(by_address: bool) -> int | Callable[..., int]:
         from lcpstep.lcp.uncompiled import address_of
 
         return address_of(solve_small)
+
+
+def room(n: int, by_address: bool) -> Any:
+    """Work space for n unknowns, as `compiled.call_solver` takes it."""
+    work = Workspace(n if n > 0 else 1)
+    return np.asarray(work) if by_address else work

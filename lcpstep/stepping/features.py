@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.lcp.kernel import solver
-from lcpstep.lcp.workspace import Workspace
+from lcpstep.lcp.kernel import room, solver
 from lcpstep.model import Model
 from lcpstep.stepping import constrained
 from lcpstep.stepping.friction import Problem
@@ -60,7 +59,7 @@ def problem(scene: Scene, ids: Any, fast: bool) -> Problem:
         b=np.zeros(n),
         z=np.zeros(n),
         solver=solver(fast),
-        work=Workspace(max(n, 1)),
+        work=room(n, fast),
     )
 
 

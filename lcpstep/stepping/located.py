@@ -18,8 +18,7 @@ from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.dynamics import moves
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
-from lcpstep.lcp.kernel import solver
-from lcpstep.lcp.workspace import Workspace
+from lcpstep.lcp.kernel import room, solver
 from lcpstep.model import ABSENT, Model, culprit, model, models, require
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
@@ -202,7 +201,7 @@ def start(scene: Scene, m: Model, p: work.Plan, fast: bool, joints: Joined | Non
         G=np.zeros((n_c, n_q)), G_try=np.zeros((n_c, n_q)), MG=np.zeros((n_c, n_q)), W=np.zeros((n_c, n_c)),
         AG=np.zeros((2, n_c, n_q)), WA=np.zeros((2, n_c, n_c)),
         pivots=np.zeros(n_c + 1, dtype=np.int64), M=np.zeros((n_q, n_q)), problem=np.zeros(n_c * n_c),
-        solver=solver(fast), lcp=Workspace(max(n_c, 1)), joints=joints,
+        solver=solver(fast), lcp=room(n_c, fast), joints=joints,
     )  # fmt: skip
 
 

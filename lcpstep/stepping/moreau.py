@@ -17,8 +17,7 @@ from lcpstep.compiled import compiled, jit_disabled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
 from lcpstep.lcp import check_method, solve_lcp
-from lcpstep.lcp.kernel import solver
-from lcpstep.lcp.workspace import Workspace
+from lcpstep.lcp.kernel import room, solver
 from lcpstep.model import Model, culprit, model, models
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
@@ -149,7 +148,7 @@ def start(scene: Scene, fast: bool, features: Constraints | None = None) -> loop
         active=np.zeros(n_c, dtype=np.int64),
         W=np.zeros(n_c * n_c),
         solver=solver(fast),
-        lcp=Workspace(max(n_c, 1)),
+        lcp=room(n_c, fast),
         newton=newton,
         **vectors,
         **contacts,

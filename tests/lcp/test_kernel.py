@@ -5,7 +5,7 @@ import pytest
 
 from lcpstep.compiled import call_solver, compiled, jit_disabled
 from lcpstep.lcp import Status, residual, solve_lcp, solve_lcp_batch
-from lcpstep.lcp.kernel import solve, solver
+from lcpstep.lcp.kernel import room, solve, solver
 from lcpstep.lcp.workspace import Workspace
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built, kernels
@@ -20,12 +20,13 @@ def repeat(f, W, b, z, status, work):
 
 
 def test_one_workspace_serves_every_smaller_size():
-    work, rng = Workspace(30), np.random.default_rng(0)
+    fast, rng = not jit_disabled(), np.random.default_rng(0)
+    work = room(30, fast)
     for n in (30, 1, 7, 2, 3, 30):
         G = rng.normal(size=(20, n, n))
         W, b, z, status = G @ G.swapaxes(1, 2), rng.normal(size=(20, n)), np.zeros((20, n)), np.ones(20, int)
         before = W.copy(), b.copy()
-        compiled(repeat)(solver(not jit_disabled()), W, b, z, status, work)
+        compiled(repeat)(solver(fast), W, b, z, status, work)
         assert not status.any()
         assert max(residual(*problem) for problem in zip(W, b, z, strict=True)) <= 1e-13
         assert np.array_equal(W, before[0])
@@ -84,7 +85,7 @@ def test_the_same_source_runs_as_plain_python_to_the_last_bit():
 def test_compiled_steps_call_a_solver_that_is_not_built():
     G = np.random.default_rng(2).normal(size=(5, 4, 4))
     W, b, z, status = G @ G.swapaxes(1, 2), G[:, 0].copy(), np.zeros((5, 4)), np.ones(5, int)
-    compiled(repeat)(plain.kernel.solver(True), W, b, z, status, plain.workspace.Workspace(4))
+    compiled(repeat)(plain.kernel.solver(True), W, b, z, status, plain.kernel.room(4, True))
     assert not status.any()
     np.testing.assert_array_equal(z, solve_lcp_batch(W, b).z)
 

@@ -26,8 +26,7 @@ from lcpstep.events.several.motion import lift
 from lcpstep.events.several.parabolas import fly, polish, synchronise
 from lcpstep.events.several.step import complete, step
 from lcpstep.gaps import no_way_out
-from lcpstep.lcp.kernel import solver
-from lcpstep.lcp.workspace import Workspace
+from lcpstep.lcp.kernel import room, solver
 from lcpstep.model import ABSENT, Model, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
@@ -59,7 +58,7 @@ def start(scene: Scene, m: Model, joints: Model, method: Any, fast: bool) -> at.
     """The state at the start of the span, and work space."""
     n_q, n_c, n_j = scene.n_q, scene.n_c, scene.n_j
     n_r, constant = n_c + n_j, is_constant(m, joints)
-    p, lcp = plan(scene, m, method, QUADRATURE), Workspace(max(n_c, 1))
+    p = plan(scene, m, method, QUADRATURE)
     x = clock(scene, at.N_NUMBERS)
     x[at.NEXT_STEP] = 0.1 * p.scan
     state = np.zeros((at.N_STATE, n_q))
@@ -74,7 +73,7 @@ def start(scene: Scene, m: Model, joints: Model, method: Any, fast: bool) -> at.
         number=np.zeros(at.N_NUMBER, np.int64), y=np.zeros(2 * n_q), M=np.zeros((n_q, n_q)),
         G=np.zeros((n_c, n_q)), J=np.zeros((n_j, n_q)), R=rows[0], MR=rows[1], D=squares[0], L=squares[1],
         row=np.zeros(n_r, np.int64), held=np.zeros(n_r), change=np.zeros(n_r), kept=np.zeros(n_r, np.int64),
-        doubt=np.zeros(n_r), member=np.zeros(n_c, np.int64), W=np.zeros(n_c * n_c), lcp=lcp,
+        doubt=np.zeros(n_r), member=np.zeros(n_c, np.int64), W=np.zeros(n_c * n_c), lcp=room(n_c, fast),
         solver=solver(fast), w=dop853.work(2 * n_q),
         dy=np.zeros(2 * n_q), seen=np.zeros((5, max(n_c, 2))),
     )  # fmt: skip
