@@ -38,7 +38,7 @@ from lcpstep.stepping.magnitudes import acceleration_terms, faint
 
 COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
 FIRST = 1e-7  # of a step: the stretch over which that is settled first; hops that no step can follow
-SHORT_TOGETHER = 1e-4  # of a step: hops of coupled contacts below it are taken as one
+SHORT_TOGETHER = 1e-5  # of a step: hops of coupled contacts below it are taken as one
 AT_ONCE = 16  # events of one contact at one instant after which faint ones are settled,
 AT_ONCE_FAST = 1000  # all but strikes of elastic contacts,
 AT_ONCE_ELASTIC = 100_000  # and all

@@ -117,7 +117,7 @@ def groove(seed):
 def check_groove(seed):
     m = simulate(groove(seed), EventDriven(1e-10, 1e-10))
     assert m.status is Status.DONE, m.message
-    assert len(m.impacts) < 3000
+    assert len(m.impacts) < 4000  # two planes that are struck in turn, at a restitution of 0.8
     np.testing.assert_allclose(m.q[-1], 0.0, rtol=0, atol=1e-8)
     np.testing.assert_allclose(m.v[-1], 0.0, rtol=0, atol=1e-8)
     gaps = m.q @ np.asarray(m.scene.contacts.G).T
