@@ -87,6 +87,14 @@ def vector(name: str, value: ArrayLike) -> Array:
     return array(name, given, given.shape)
 
 
+def increasing(parameter: str, values: ArrayLike) -> Array:
+    """Values of a parameter, each larger than the one before; at least one."""
+    result = vector(parameter, values)
+    if len(result) == 0 or np.any(np.diff(result) <= 0.0):
+        raise ValueError(f"values: expected increasing values of {parameter}, got {result.tolist()}")
+    return result
+
+
 def per_contact(name: str, value: ArrayLike, n_c: int) -> Array:
     """One number per contact; a single number stands for all."""
     return array(name, np.broadcast_to(_real(name, value), (n_c,)) if np.ndim(value) == 0 else value, (n_c,))

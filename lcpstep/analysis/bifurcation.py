@@ -96,9 +96,7 @@ def bifurcation(
     ValueError   values empty or not increasing, keep not positive, an unknown kind of start, a box missing
     SweepStopped   the executor died; finished parts are kept in `out`
     """
-    values = checks.vector(parameter, values)
-    if len(values) == 0 or np.any(np.diff(values) <= 0.0):
-        raise ValueError(f"values: expected increasing values of {parameter}, got {values.tolist()}")
+    values = checks.increasing(parameter, values)
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")
     first = make(**{parameter: float(values[0])})

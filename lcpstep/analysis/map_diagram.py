@@ -135,9 +135,7 @@ def map_diagram(
     """
     if parameter not in family.parameters:
         raise UnknownName(f"parameter of {family.name}", parameter, family.parameters)
-    values = checks.vector(parameter, values)
-    if len(values) == 0 or np.any(np.diff(values) <= 0.0):
-        raise ValueError(f"values: expected increasing values of {parameter}, got {values.tolist()}")
+    values = checks.increasing(parameter, values)
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")
     for end in (values[0], values[-1]):

@@ -72,7 +72,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def command() -> None:
-    """The command as a process of its own: any Ctrl-C ends it within a second."""
+    """The command as a process of its own: any Ctrl-C ends it within about a second."""
     sys.exit(interrupt.ending(main))
 
 

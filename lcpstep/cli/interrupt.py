@@ -1,4 +1,4 @@
-"""Ctrl-C in a command: it ends within a second, says what was kept and how to go on; exit status 130.
+"""Ctrl-C in a command: it ends within about a second, says what was kept and how to go on; exit status 130.
 
 Loops return to Python every fifth of a second (`lcpstep.pace`); there the interrupt is raised and ends them, and the
 command saves what it has. What does not return is the compiler at work, or one long call of a foreign library. These
@@ -80,7 +80,7 @@ def _words(options: argparse.Namespace) -> list[str]:
 
 
 def ending(main: Callable[[], int]) -> int:
-    """Run a command that ends within a second of a Ctrl-C, whatever it is doing; only for a process of its own."""
+    """Run a command that ends about a second after a Ctrl-C, whatever it is doing; only for a process of its own."""
     reader, writer = socket.socketpair()
     writer.setblocking(False)
     signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)

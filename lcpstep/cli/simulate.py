@@ -98,8 +98,7 @@ def run_simulate(options: argparse.Namespace) -> int:
     return DONE if run.status == Status.DONE and (modes or not run.doubt) else FAILED
 
 
-def _modes_summary(run: HybridTrajectory) -> dict[str, Any]:
-    entered, counts = np.unique(run.switches.target, return_counts=True)
+def _ended(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
     return {
         "scene": run.scene.name,
         "parameters": dict(run.scene.parameters),
@@ -107,6 +106,12 @@ def _modes_summary(run: HybridTrajectory) -> dict[str, Any]:
         "status": run.status.name,
         "message": run.message,
         "t_end": float(run.t[-1]),
+    }
+
+
+def _modes_summary(run: HybridTrajectory) -> dict[str, Any]:
+    entered, counts = np.unique(run.switches.target, return_counts=True)
+    return _ended(run) | {
         "x_end": run.x[-1].tolist(),
         "mode_end": str(run.mode[-1]),
         "steps": run.counts.steps,
@@ -129,13 +134,7 @@ def _summary(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
     if isinstance(run, HybridTrajectory):
         return _modes_summary(run)
     kinds = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
-    return {
-        "scene": run.scene.name,
-        "parameters": dict(run.scene.parameters),
-        "method": repr(run.method),
-        "status": run.status.name,
-        "message": run.message,
-        "t_end": float(run.t[-1]),
+    return _ended(run) | {
         "q_end": run.q[-1].tolist(),
         "v_end": run.v[-1].tolist(),
         "steps": run.counts.steps,
