@@ -19,7 +19,11 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 HERE = Path(__file__).resolve().parent
-HEADERS = {"lcpstep.pointers", "lcpstep.arrays"}  # their functions are merged into the modules that use them
+HEADERS = {
+    "lcpstep.pointers",
+    "lcpstep.arrays",
+    "lcpstep.kernels.vectors",
+}  # merged into the modules that use them
 DIRECTIVES = {
     "language_level": 3,
     "infer_types": True,  # of local variables, from what they are assigned

@@ -187,7 +187,7 @@ def read_only(x: Array) -> Array:
     return view
 
 
-def said(error: Exception) -> str:
+def said(error: BaseException) -> str:
     """What an exception says, and what it is."""
     if "read-only" in str(error):
         return f"{error}; q, v and p are not the callback's to change"

@@ -58,12 +58,22 @@ def address(f: Callback, ndim: int) -> int:
 
     Raises NotCompiled where it cannot be compiled.
     """
-    return _address(f, SECOND_ORDER, ndim)
+    return int(_made(f, SECOND_ORDER, ndim).address)
+
+
+def plain_address(f: Callback, ndim: int) -> int:
+    """The same of a C function of plain pointers; see `lcpstep.kernels.function` for its signature."""
+    return int(_made(f, SECOND_ORDER, ndim).plain_address)
 
 
 def first_order_address(f: Callback) -> int:
     """Address of a function f(t, x, p, out) of a first-order system in machine code; raises NotCompiled."""
-    return _address(f, FIRST_ORDER, 1)
+    return int(_made(f, FIRST_ORDER, 1).address)
+
+
+def plain_first_order_address(f: Callback) -> int:
+    """The same of a C function of plain pointers."""
+    return int(_made(f, FIRST_ORDER, 1).plain_address)
 
 
 def warn(what: str, f: Callback, why: NotCompiled) -> None:
@@ -76,7 +86,8 @@ def warn(what: str, f: Callback, why: NotCompiled) -> None:
     warnings.warn_explicit(message, UncompiledCallback, why.file, why.line, registry=REGISTRY)
 
 
-def _address(f: Callback, takes: int, ndim: int) -> int:
+def _made(f: Callback, takes: int, ndim: int) -> Any:
+    """C function of a callback, made once."""
     function = _function(f, takes)
     kind = takes, ndim, function.__code__, *map(_kind, _read(function))
     if kind in FAILED:
@@ -90,7 +101,7 @@ def _address(f: Callback, takes: int, ndim: int) -> int:
         except NotCompiled as why:
             FAILED[kind] = why
             raise
-    return int(MADE[key].address)
+    return MADE[key]
 
 
 def _function(f: Any, takes: int) -> FunctionType:
@@ -161,10 +172,11 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
 
 def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     """C function of f, with numba's counting of references where f makes arrays or lists; that takes longer."""
-    from lcpstep.guarded import Guarded, Wrapped
+    from lcpstep.guarded import Guarded, Wrapped, array
 
     options = OPTIONS | {"_nrt": nrt}
-    wrapper = compiled._code_text(cast(FunctionType, Wrapped.create_cfunc_wrapper))
+    parts = Wrapped.create_cfunc_wrapper, Wrapped.add_plain, array
+    wrapper = " ".join(compiled._code_text(cast(FunctionType, part)) for part in parts)
     copy = _twin(f, nrt, f"callback {options} {wrapper}")
     c_function = Guarded(copy, arguments, options)
     if not any(isinstance(x, FunctionType) or hasattr(x, "py_func") for _, x in compiled._cells(f)):

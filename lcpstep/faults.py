@@ -28,6 +28,7 @@ class Fault(NamedTuple):
     q: Array
     v: Array
     said: str = "an exception that it raises in machine code only"
+    error: BaseException | None = None  # itself, where Python raised it
 
     def __str__(self) -> str:
         at = f"t = {self.t:.9g}, q = {shown(self.q)}, v = {shown(self.v)}"
@@ -53,6 +54,15 @@ def fault() -> Fault | None:
 def forget() -> None:
     """Leave out of account what callbacks have raised up to here."""
     LOCAL.fault = None
+
+
+def cause() -> BaseException | None:
+    """The exception itself, where Python has raised it; an interrupt of the keyboard goes on its way."""
+    noted = fault()
+    error = None if noted is None else noted.error
+    if isinstance(error, KeyboardInterrupt):
+        raise error
+    return error
 
 
 def plain(f: Callback) -> Callback:

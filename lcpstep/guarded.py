@@ -10,6 +10,7 @@ Source: `CPUContext.create_cfunc_wrapper` and `CFunc` of numba, which this follo
 from __future__ import annotations
 
 import ctypes
+import functools
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -23,12 +24,14 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering
-from numba.np.arrayobj import make_array
+from numba.np.arrayobj import make_array, populate_array
 
 from lcpstep.faults import Fault, note
 
 ALL_ONES = 0xFF  # the bytes of a not-a-number
 NOTE = "lcpstep_note"  # the symbol under which machine code finds `_note`
+PLAIN = "_plain"  # what the name of a C function of plain pointers ends in
+ITEM = 8  # bytes of a number
 NUMBERS, SIZE = ctypes.POINTER(ctypes.c_double), ctypes.c_ssize_t
 
 
@@ -72,7 +75,43 @@ class Wrapped(Lower):
             noted = ir.FunctionType(ir.VoidType(), [x.type for x in given])
             builder.call(cgutils.get_or_insert_function(module, noted, NOTE), given)
         builder.ret(value)
+        self.add_plain(module, callee)
         self.library.add_ir_module(module)
+
+    def add_plain(self, module: Any, callee: Any) -> None:
+        """The same as a C function of plain pointers; see `lcpstep.kernels.function` for its signature."""
+        context, described, convention = self.context, self.fndesc, self.context.call_conv
+        kinds = described.argtypes[1:]
+        pointer, word = ir.DoubleType().as_pointer(), context.get_value_type(types.intp)
+        outer = ir.FunctionType(ir.VoidType(), [ir.DoubleType(), *[pointer] * 4, word.as_pointer()])
+        wrapper = ir.Function(module, outer, described.llvm_cfunc_wrapper_name + PLAIN)
+        builder = ir.IRBuilder(wrapper.append_basic_block("entry"))
+        t, q, v, p, out, sizes = wrapper.args
+        size = [builder.load(cgutils.gep_inbounds(builder, sizes, i)) for i in range(5)]
+        read = [(q, size[0]), (v, size[1]), (p, size[2])] if len(kinds) == 4 else [(q, size[0]), (p, size[2])]
+        shape = size[3 : 3 + kinds[-1].ndim]
+        arrays = [array(context, builder, kind, x, [n]) for kind, (x, n) in zip(kinds, read, strict=False)]
+        arrays.append(array(context, builder, kinds[-1], out, shape))
+        status, _ = convention.call_function(
+            builder, callee, described.restype, described.argtypes, [t, *arrays], attrs=("alwaysinline",)
+        )
+        with builder.if_then(status.is_error, likely=False):
+            number = functools.reduce(builder.mul, shape)
+            cgutils.memset(builder, out, builder.mul(number, word(ITEM)), ALL_ONES)
+            name = context.insert_const_string(module, self.func_ir.func_id.func.__name__)
+            given = name, t, q, size[0], v, size[1]
+            noted = ir.FunctionType(ir.VoidType(), [x.type for x in given])
+            builder.call(cgutils.get_or_insert_function(module, noted, NOTE), given)
+        builder.ret_void()
+
+
+def array(context: Any, builder: Any, kind: Any, data: Any, shape: list[Any]) -> Any:
+    """An array of numba's around numbers that somebody else keeps."""
+    word = context.get_value_type(types.intp)
+    strides = [word(ITEM)] if len(shape) == 1 else [builder.mul(shape[1], word(ITEM)), word(ITEM)]
+    made = make_array(kind)(context, builder)
+    populate_array(made, data=data, shape=shape, strides=strides, itemsize=word(ITEM), meminfo=None)
+    return made._getvalue()
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
@@ -105,6 +144,8 @@ class Guarded(CFunc):
     def __init__(self, f: Any, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         super().__init__(f, (arguments, types.void), {}, options, pipeline_class=Compiler)
 
+    plain_address = 0  # of the C function of plain pointers
+
     def compile(self: Any) -> None:
         """Machine code from the cache or afresh; what `print` needs of the interpreter is tied to it."""
         context = self._targetdescr.target_context
@@ -116,5 +157,8 @@ class Guarded(CFunc):
             self.result = result  # keeps that alive
             self._wrapper_address = result.library.get_pointer_to_function(
                 result.fndesc.llvm_cfunc_wrapper_name
+            )
+            self.plain_address = result.library.get_pointer_to_function(
+                result.fndesc.llvm_cfunc_wrapper_name + PLAIN
             )
             result.library.codegen.set_env(context.get_env_name(result.fndesc), result.environment)

@@ -6,7 +6,7 @@ warning, and the whole run takes the same kernels in plain Python.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +22,8 @@ from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
 from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault, plain
+from lcpstep.kernels import model as kernels
+from lcpstep.kernels.uncompiled import CalledBack
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
@@ -137,12 +139,58 @@ def with_addresses(scene: Scene, **parts: dict[str, Any]) -> tuple[list[dict[str
     return [fields | made[part] for part, fields in parts.items()], fast
 
 
-def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, int]:
+def kernel_model(scene: Scene) -> kernels.Model:
+    """The scene's model as kernels built ahead of time take it."""
+    return _kernel_model(scene, "contacts", _contacts(scene, scene.contacts))
+
+
+def kernel_models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
+    """Models of the contacts, joints and tangents of a scene, any of them empty."""
+    friction = scene.contacts is not None and scene.contacts.friction is not None
+    tangents = _tangents(scene) if friction else _contacts(scene, None)
+    return (
+        kernel_model(scene),
+        _kernel_model(scene, "joints", _joints(scene)),
+        _kernel_model(scene, "friction", tangents),
+    )
+
+
+def kernel_joint_model(scene: Scene) -> kernels.Model:
+    """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
+    return _kernel_model(scene, "joints", _joints(scene))
+
+
+def kernel_tangent_model(scene: Scene) -> kernels.Model:
+    """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
+    return _kernel_model(scene, "friction", _tangents(scene))
+
+
+def _kernel_model(scene: Scene, part: str, rows: dict[str, Any]) -> kernels.Model:
+    """A model whose functions are C functions: compiled, or around Python."""
+    own = _system(scene)
+    called_back: list[CalledBack] = []
+    for name, fields in (("system", own), (part, rows)):
+        given = {field: f for field, f in fields.items() if callable(f)}
+        made = {} if compiled.jit_disabled() else _compile(scene, name, given, callbacks.plain_address)
+        for field, f in given.items():
+            if field not in made:
+                called_back.append(CalledBack(f))
+                made[field] = called_back[-1].address
+        fields |= made
+    return kernels.Model(own | rows | {"called_back": called_back})
+
+
+def _compile(
+    scene: Scene,
+    part: str,
+    given: dict[str, Callback],
+    address: Callable[[Callback, int], int] = callbacks.address,
+) -> dict[str, int]:
     addresses = {}
     for name, f in given.items():
         ndim = 1 if name in ("force", "gap", "gap_t", "bias") else 2
         try:
-            addresses[name] = callbacks.address(f, ndim)
+            addresses[name] = address(f, ndim)
         except NotCompiled as why:
             said = TANGENT.get(name, name) if part == "friction" else name
             prefix = "" if part in ("system", "contacts") else f"{part}."

@@ -7,6 +7,7 @@ cdef extern from *:
     """
     double abs "fabs"(double x) noexcept nogil
     double inf "((double)INFINITY)"
+    double nan "((double)NAN)"
     long long bits "lcpstep_bits"(double x) noexcept nogil
     double double_of "lcpstep_double_of"(long long bits) noexcept nogil
 
@@ -25,3 +26,14 @@ cdef inline double* after(double* x, Py_ssize_t i) noexcept nogil:
 
 cdef inline Py_ssize_t* indices_after(Py_ssize_t* x, Py_ssize_t i) noexcept nogil:
     return x + i
+
+
+ctypedef void (*Callback)(double t, double* q, double* v, double* p, double* out, Py_ssize_t* sizes) noexcept nogil
+
+
+cdef inline Callback callback_at(size_t address) noexcept nogil:
+    return <Callback> address
+
+
+cdef inline Py_ssize_t whole(double x) noexcept nogil:
+    return <Py_ssize_t> x

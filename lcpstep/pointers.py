@@ -8,6 +8,7 @@ in that of this file the same names are C's, and `abs`, `max` and `min` are thos
 from __future__ import annotations
 
 import builtins
+import ctypes
 from collections.abc import Callable
 from typing import Any
 
@@ -27,6 +28,7 @@ abs: Callable[[Any], Any] = builtins.abs
 max: Callable[[Any, Any], Any] = builtins.max
 min: Callable[[Any, Any], Any] = builtins.min
 inf = float("inf")
+nan = float("nan")
 
 
 def after(x: Doubles, i: int) -> Doubles:
@@ -47,3 +49,18 @@ def bits(x: float) -> int:
 def double_of(bits: int) -> float:
     """The double of these bits."""
     return float(np.int64(bits).view(np.float64))
+
+
+def callback_at(address: int) -> Callable[..., None]:
+    """The function with this address, of the signature that `lcpstep.kernels.function` describes."""
+    f = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 5)(address)
+
+    def call(t: float, *arrays: NDArray[Any]) -> None:
+        f(t, *(x.ctypes.data for x in arrays))
+
+    return call
+
+
+def whole(x: float) -> int:
+    """The whole number next to x on the way to zero."""
+    return int(x)

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.compiled import by_address
+from lcpstep.kernels import record as kernels
 from lcpstep.trajectory import IMPACT_DTYPE
 
 Array = NDArray[np.float64]
@@ -150,6 +151,9 @@ class Recorder:
             dense=np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q)))),
         )
         b = self.buffers
+        self.record = kernels.Record(
+            n_q, n_c, kept.every, kept.on_events, kept.times, b.rows, b.events, b.dense
+        )
         self._parts = {"rows": [b.rows[:0]], "events": [b.events[:0]], "dense": [b.dense[:0]]}
 
     def empty(self, rows: int, events: int) -> None:
@@ -157,6 +161,14 @@ class Recorder:
         self._parts["rows"].append(self.buffers.rows[:rows].copy())
         self._parts["dense"].append(self.buffers.dense[:rows].copy())
         self._parts["events"].append(self.buffers.events[:events].copy())
+
+    def take(self) -> int:
+        """Take over what kernels built ahead of time have written; how many events that were."""
+        record = self.record
+        events = int(record.event)
+        self.empty(record.row, events)
+        record.row = record.event = 0
+        return events
 
     def states(self) -> States:
         """All states kept so far."""

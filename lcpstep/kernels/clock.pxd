@@ -1,0 +1,16 @@
+from libc.math cimport floor
+from lcpstep.arrays cimport doubles
+from lcpstep.pointers cimport abs, inf, max, min
+
+cdef double RESOLUTION, NUDGE
+
+
+cdef class Clock:
+    cdef object corner_array
+    cdef public double t0, t0_rest, rest, low, high, scale, period, last_event
+    cdef double* corners
+    cdef Py_ssize_t n_corners
+    cdef double after(self, double tau) noexcept nogil
+    cdef void start_at(self, double t) noexcept nogil
+    cdef double inside(self, double t) noexcept nogil
+    cdef void find_corners(self, double t) noexcept nogil

@@ -1,0 +1,88 @@
+"""The clock of a motion: the base time of its pieces, and the smooth interval around it.
+
+A motion is a chain of pieces, each known at the time tau after its base time. Corners are the times at which an
+acceleration, or an obstacle's velocity, may jump; between two of them lies a smooth interval.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from math import floor
+
+    from lcpstep.arrays import doubles
+    from lcpstep.pointers import abs, inf, max, min
+
+RESOLUTION = 2.0**-52
+NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
+
+
+class Clock:
+    """Times of a motion; a class of motions may inherit it.
+
+    t0, t0_rest, rest    base time, what rounding has taken from it and will take from the next
+    low, high            the smooth interval around it; high < low: not known yet
+    scale                a typical time
+    period               of the corners
+    last_event           time of it
+
+    Parameters
+    ----------
+    t_span : (start, end);  corners : (m,) in [0, period);  period : float, infinite where nothing is periodic
+    """
+
+    def __init__(self, t_span: tuple[float, float], corners: Any, period: float) -> None:
+        self.corner_array = np.array(corners, dtype=np.float64)
+        self.corners, self.n_corners = doubles(self.corner_array), len(self.corner_array)
+        self.t0, self.t0_rest, self.rest = t_span[0], 0.0, 0.0
+        self.period, self.last_event = period, -inf
+        self.scale = period if period < inf else t_span[1] - t_span[0]
+        self.low, self.high = inf, -inf
+
+    def after(self, tau: float) -> float:
+        """The time tau after the base; what rounding takes from it is kept for the next base.
+
+        Without it, 10^5 equal flights would drift by 10^5 roundings of the time, all of one sign.
+        """
+        step = self.t0_rest + tau
+        t = self.t0 + step
+        moved = t - self.t0
+        self.rest = (self.t0 - (t - moved)) + (step - moved)
+        return t
+
+    def start_at(self, t: float) -> None:
+        """The next piece begins at time t."""
+        self.t0 = t
+        self.t0_rest, self.rest = self.rest, 0.0
+
+    def inside(self, t: float) -> float:
+        """A time moved off the ends of its smooth interval, where accelerations may jump."""
+        margin = NUDGE * max(abs(t), self.scale)
+        return min(max(t, self.low + margin), self.high - margin)
+
+    def find_corners(self, t: float) -> None:
+        """The smooth interval that begins at t or contains it."""
+        near = t + 0.5 * NUDGE * max(abs(t), self.scale)
+        if self.low <= near < self.high:
+            return
+        self.low, self.high = -inf, inf
+        n, period, start = self.n_corners, self.period, 0.0
+        if n == 0:
+            return
+        if period < inf:
+            turn = floor(near / period)
+            start = turn * period
+            self.low = (turn - 1.0) * period + self.corners[n - 1]
+            self.high = (turn + 1.0) * period + self.corners[0]
+            if near >= self.high:  # the quotient was rounded down
+                self.low, start = self.high, (turn + 1.0) * period
+                self.high = (turn + 2.0) * period + self.corners[0]
+        for k in range(n):
+            if start + self.corners[k] > near:
+                self.high = start + self.corners[k]
+                break
+            self.low = start + self.corners[k]

@@ -1,0 +1,34 @@
+cimport cython
+from libc.math cimport cos, pow, sin, sqrt
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, inf, max, min
+
+cdef double DIFFERENCE, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
+cdef Py_ssize_t SHORTENINGS, TURNS
+
+cdef void external_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
+cdef void total_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
+cdef void mass(Model m, double t, double* q, double* v, double* out) noexcept nogil
+cdef void gaps(Model m, double t, double* q, double* v, double* g) noexcept nogil
+cdef void gap_rates(Model m, double t, double* q, double* v, double* G, double* g_t) noexcept nogil
+cdef void bias(
+    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate, double* out
+) noexcept nogil
+@cython.locals(helped=bint)
+cdef double difference_step(
+    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate
+) noexcept nogil
+cdef double differences(
+    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate, double d
+) noexcept nogil
+cdef void obstacle(Model m, double t, double* q, double* v) noexcept nogil
+cdef bint moves(Model m) noexcept nogil
+cdef void carry_obstacles(Model m, double t, double* q, double* v) noexcept nogil
+cdef double gap_rounding(Model m, double* G, double* q, Py_ssize_t c, double path) noexcept nogil
+cdef bint order_matters(
+    double W_c, double W_d, double W_cd, double r_c, double r_d, double u_c, double u_d
+) noexcept nogil
+cdef (double, double) in_turn(
+    double W_c, double W_d, double W_cd, double r_c, double r_d, double u_c, double u_d
+) noexcept nogil

@@ -1,0 +1,240 @@
+"""The equations of a model, evaluated: forces, masses, gaps, gap velocities and accelerations.
+
+    M v' = f(t, q, v) + G^T lambda,    u = G v + g_t,    u' = G v' + bias
+
+Outputs are written into the arrays handed in; matrices lie row by row.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from math import cos, pow, sin, sqrt
+
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, inf, max
+
+# Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
+# to the terms of the rate, that they may show, and what a shorter step aims at; how often it is shortened, and beyond
+# what a gap has turned so much that nothing is seen of it
+DIFFERENCE = 1e-3
+BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
+TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
+SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
+
+
+def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+    """F(t) of a linear system, the forces of a moving frame included."""
+    n = m.n_q
+    if m.force.given:
+        m.force.fill(t, q, v, out)
+    else:
+        cosine, sine = 1.0, 0.0
+        if m.omega != 0.0:
+            cosine, sine = cos(m.omega * t), sin(m.omega * t)
+        for i in range(n):
+            out[i] = m.constant[i] + m.cosine[i] * cosine + m.sine[i] * sine
+    if m.frame.given and not m.carried:
+        c = m.frame_now
+        m.frame.fill(t, q, v, c)
+        for i in range(n):
+            for j in range(n):
+                k = i * n + j
+                out[i] -= m.M[k] * c[3 * j + 2] + m.C[k] * c[3 * j + 1] + m.K[k] * c[3 * j]
+
+
+def total_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+    """f(t, q, v): all forces but those of the contacts."""
+    if not m.linear:
+        m.force.fill(t, q, v, out)
+        return
+    external_force(m, t, q, v, out)
+    for i in range(m.n_q):
+        for j in range(m.n_q):
+            out[i] -= m.C[i * m.n_q + j] * v[j] + m.K[i * m.n_q + j] * q[j]
+
+
+def mass(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+    """M(t, q)."""
+    if m.mass.given:
+        m.mass.fill(t, q, v, out)
+    else:
+        copy(out, m.M, m.n_q * m.n_q)
+
+
+def gaps(m: Model, t: float, q: Doubles, v: Doubles, g: Doubles) -> None:
+    """g(t, q)."""
+    if not m.flat:
+        m.gap.fill(t, q, v, g)
+        return
+    obstacle(m, t, q, v)
+    for c in range(m.n_c):
+        g[c] = m.offset[c] - m.motion_now[3 * c]
+        for j in range(m.n_q):
+            g[c] += m.G[c * m.n_q + j] * q[j]
+
+
+def gap_rates(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, g_t: Doubles) -> None:
+    """G(t, q) and g_t(t, q), so that u = G v + g_t."""
+    if m.flat:
+        obstacle(m, t, q, v)
+        for c in range(m.n_c):
+            g_t[c] = -m.motion_now[3 * c + 1]
+            for j in range(m.n_q):
+                G[c * m.n_q + j] = m.G[c * m.n_q + j]
+        return
+    m.jacobian.fill(t, q, v, G)
+    for c in range(m.n_c):
+        g_t[c] = 0.0
+    if m.gap_t.given:
+        m.gap_t.fill(t, q, v, g_t)
+
+
+def bias(
+    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles, out: Doubles
+) -> None:
+    """(dG/dt) v + d(g_t)/dt along the motion; by differences of order four where the scene does not give it.
+
+    Work space: shifted (n_q,), G (n_c, n_q), rate (n_c,).
+    """
+    for c in range(m.n_c):
+        out[c] = 0.0
+    if m.flat:
+        if moves(m):
+            obstacle(m, t, q, v)
+            for c in range(m.n_c):
+                out[c] = -m.motion_now[3 * c + 2]
+        return
+    if m.bias.given:
+        m.bias.fill(t, q, v, out)
+        return
+    d = difference_step(m, t, q, v, shifted, G, rate)
+    for c in range(m.n_c):
+        near, far = m.motion_now[3 * c], m.motion_now[3 * c + 1]
+        out[c] = (8.0 * near - far) / (12.0 * d)
+
+
+def difference_step(
+    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles
+) -> float:
+    """A step short enough for the differences of the gaps' rates along the motion; it leaves these in `motion_now`.
+
+    Gaps may bend at any scale. A third difference that is too large asks for a shorter step, in proportion to its
+    third root, unless the last one has shown that this does not help: the curvature jumps nearby.
+    """
+    speed = 1.0
+    for i in range(m.n_q):
+        speed = max(speed, abs(v[i]))
+    d, before, shorter = DIFFERENCE / speed, inf, 1.0
+    for _ in range(SHORTENINGS):
+        bent = differences(m, t, q, v, shifted, G, rate, d)
+        helped = bent > LOST or bent <= before * shorter
+        if not bent > BENT or not helped:
+            return d
+        change = max(pow(SMOOTH / bent, 1.0 / 3.0), DIFFERENCE)
+        before, shorter = bent, change * sqrt(change)
+        d *= change
+    differences(m, t, q, v, shifted, G, rate, d)
+    return d
+
+
+def differences(
+    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles, d: float
+) -> float:
+    """Differences of G v + g_t between -d and d, and -2 d and 2 d, into `motion_now`; the third one, relative.
+
+    Contacts whose gap is a function have no obstacle that moves, and its place is free.
+    """
+    now = m.motion_now
+    for c in range(m.n_c):
+        now[3 * c] = now[3 * c + 1] = now[3 * c + 2] = 0.0
+    for k in range(4):
+        shift = d * (1.0 + k // 2) * (1.0 if k % 2 == 0 else -1.0)
+        for i in range(m.n_q):
+            shifted[i] = q[i] + shift * v[i]
+        gap_rates(m, t + shift, shifted, v, G, rate)
+        for c in range(m.n_c):
+            terms = abs(rate[c])
+            for j in range(m.n_q):
+                terms += abs(G[c * m.n_q + j] * v[j])
+            now[3 * c + 2] = max(now[3 * c + 2], terms)
+            now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * (1.0 if k % 2 == 0 else -1.0)
+    bent = 0.0
+    for c in range(m.n_c):
+        if now[3 * c + 2] > 0.0:
+            bent = max(bent, abs(now[3 * c + 1] - 2.0 * now[3 * c]) / now[3 * c + 2])
+    return bent
+
+
+def obstacle(m: Model, t: float, q: Doubles, v: Doubles) -> None:
+    """Position, velocity and acceleration of the obstacles of flat contacts, into `m.motion_now`."""
+    if m.motion.given:
+        m.motion.fill(t, q, v, m.motion_now)
+    if m.carried:
+        carry_obstacles(m, t, q, v)
+
+
+def moves(m: Model) -> bool:
+    """Whether obstacles of flat contacts move."""
+    return m.motion.given or m.carried
+
+
+def carry_obstacles(m: Model, t: float, q: Doubles, v: Doubles) -> None:
+    """Add the motion of the frame to that of the obstacles: with x = q + c the gap is G x + offset - (s + G c)."""
+    m.frame.fill(t, q, v, m.frame_now)
+    for c in range(m.n_c):
+        for k in range(3):
+            own = m.motion_now[3 * c + k] if m.motion.given else 0.0
+            for j in range(m.n_q):
+                own += m.G[c * m.n_q + j] * m.frame_now[3 * j + k]
+            m.motion_now[3 * c + k] = own
+
+
+def gap_rounding(m: Model, G: Doubles, q: Doubles, c: int, path: float) -> float:
+    """What rounding may leave of gap c where it is closed: of its terms, and of the way by which it has come.
+
+    Of contacts whose gaps are as small at one instant it is not known which came first; where that matters
+    (`order_matters`) they strike together. A moving obstacle's place must be known (`gaps`).
+    """
+    size = path
+    if m.flat:
+        size += abs(m.offset[c])
+        if moves(m):
+            size += abs(m.motion_now[3 * c])
+    for j in range(m.n_q):
+        size += abs(G[c * m.n_q + j] * q[j])
+    return TOGETHER * size
+
+
+def order_matters(
+    W_c: float, W_d: float, W_cd: float, r_c: float, r_d: float, u_c: float, u_d: float
+) -> bool:
+    """Whether the impacts of two contacts, taken in turn, leave other speeds where the other one is first.
+
+    It does not for elastic bodies of one mass that meet, which exchange their speeds; it does for most.
+    """
+    if W_cd == 0.0:
+        return False
+    c, d = in_turn(W_c, W_d, W_cd, r_c, r_d, u_c, u_d)
+    other_d, other_c = in_turn(W_d, W_c, W_cd, r_d, r_c, u_d, u_c)
+    return abs(c - other_c) + abs(d - other_d) > SAME_OUTCOME * (abs(u_c) + abs(u_d))
+
+
+def in_turn(
+    W_c: float, W_d: float, W_cd: float, r_c: float, r_d: float, u_c: float, u_d: float
+) -> tuple[float, float]:
+    """Speeds after the impacts of two contacts in turn, the first one's at first."""
+    slow = SAME_OUTCOME * (abs(u_c) + abs(u_d))
+    for _ in range(TURNS):
+        if u_c < -slow:
+            p = -(1.0 + r_c) * u_c / W_c
+            u_c, u_d = -r_c * u_c, u_d + W_cd * p
+        if not u_d < -slow:
+            break
+        p = -(1.0 + r_d) * u_d / W_d
+        u_d, u_c = -r_d * u_d, u_c + W_cd * p
+        if not u_c < -slow:
+            break
+    return u_c, u_d

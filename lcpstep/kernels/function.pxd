@@ -1,0 +1,14 @@
+cimport cython
+from lcpstep.arrays cimport doubles
+from lcpstep.pointers cimport Callback, callback_at, nan
+
+
+@cython.final
+cdef class Function:
+    cdef object kept
+    cdef Callback f
+    cdef double* p
+    cdef Py_ssize_t[5] sizes
+    cdef Py_ssize_t length
+    cdef readonly bint given
+    cdef void fill(self, double t, double* q, double* v, double* out) noexcept nogil

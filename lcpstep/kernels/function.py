@@ -1,0 +1,47 @@
+"""A user's function as kernels call it: one signature, whatever it was written in.
+
+    void f(double t, double *q, double *v, double *p, double *out, ptrdiff_t *sizes)
+
+with t, q, v, p, out as `lagrangian` has them, matrices row by row. sizes: how many numbers q, v and p have, rows and
+columns of `out` (0: a vector). A C function that knows its sizes may leave the last argument out. A function of a
+first-order system gets its state as q, and no v.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.pointers import Doubles, callback_at, nan
+
+
+class Function:
+    """A user's function, or none.
+
+    Parameters
+    ----------
+    address : int   of a C function, 0 where there is none; what lies there must outlive this object
+    p : (n_p,)   parameters
+    n_q, n_v : int   how many numbers it is called with
+    shape : (rows,) or (rows, columns)   of what it fills in
+    """
+
+    def __init__(self, address: int, p: Any, n_q: int, n_v: int, shape: tuple[int, ...]) -> None:
+        self.kept, self.given = p, address != 0
+        self.f, self.p = callback_at(address), doubles(p)
+        self.length = shape[0] * (shape[1] if len(shape) > 1 else 1)
+        sizes = (n_q, n_v, len(p), shape[0], shape[1] if len(shape) > 1 else 0)
+        if not cython.compiled:
+            self.sizes = np.zeros(5, dtype=np.intp)
+        for i in range(5):
+            self.sizes[i] = sizes[i]
+
+    def fill(self, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+        """Evaluate the function; what it leaves out, or where it fails, is not a number."""
+        for i in range(self.length):
+            out[i] = nan
+        self.f(t, q, v, self.p, out, self.sizes)

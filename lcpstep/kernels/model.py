@@ -1,0 +1,66 @@
+"""A scene as kernels see it: numbers, arrays and the user's functions; `lcpstep.model` makes it.
+
+linear      M v' + C v + K q = F(t), F = constant + cosine cos(omega t) + sine sin(omega t) or force(t)
+otherwise   M(t, q) v' = force(t, q, v)
+flat        g = G q + offset - s(t)
+otherwise   g = gap(t, q),  u = jacobian(t, q) v + gap_t(t, q)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.function import Function
+
+
+class Model:
+    """Everything a kernel needs to evaluate a scene's equations; see `lagrangian` for the symbols.
+
+    M, M_inverse, C, K : (n_q, n_q);  constant, cosine, sine : (n_q,);  omega
+    G : (n_c, n_q);  offset, restitution : (n_c,)
+    force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias : Function, `given` or not
+    carried     kernels see q + c, in which the frame rests and obstacles move with it instead
+    frame_now : (n_q, 3)    work space: c, c', c''
+    motion_now : (n_c, 3)   work space: s, s', s''
+
+    Parameters
+    ----------
+    fields : dict   these by name, functions as addresses of C functions (0: none), and `p`; `called_back`: what
+        must outlive this object; see `lcpstep.model`
+    """
+
+    def __init__(self, fields: dict[str, Any]) -> None:
+        own = {name: np.ascontiguousarray(x) for name, x in fields.items() if isinstance(x, np.ndarray)}
+        n_c, n_q = own["G"].shape
+        self.kept, self.n_q, self.n_c = (own, fields["called_back"]), n_q, n_c
+        self.linear, self.flat, self.carried = fields["linear"], fields["flat"], fields["carried"]
+        self.omega = fields["omega"]
+        self.M, self.M_inverse = doubles(own["M"]), doubles(own["M_inverse"])
+        self.C, self.K = doubles(own["C"]), doubles(own["K"])
+        self.constant = doubles(own["constant"])
+        self.cosine, self.sine = doubles(own["cosine"]), doubles(own["sine"])
+        self.G, self.offset = doubles(own["G"]), doubles(own["offset"])
+        self.restitution = doubles(own["restitution"])
+        self.frame_now, self.motion_now = doubles(own["frame_now"]), doubles(own["motion_now"])
+        made = {
+            name: Function(fields[name], own["p"], n_q, n_q, shape)
+            for name, shape in shapes(n_q, n_c).items()
+        }
+        self.force, self.frame, self.mass = made["force"], made["frame"], made["mass"]
+        self.force_q, self.force_v = made["force_q"], made["force_v"]
+        self.motion, self.gap, self.jacobian = made["motion"], made["gap"], made["jacobian"]
+        self.gap_t, self.bias = made["gap_t"], made["bias"]
+
+
+def shapes(n_q: int, n_c: int) -> dict[str, tuple[int, ...]]:
+    """Shapes of what the functions of a scene fill in."""
+    square = n_q, n_q
+    system = {"force": (n_q,), "frame": (n_q, 3), "mass": square, "force_q": square, "force_v": square}
+    return system | {
+        "motion": (n_c, 3), "gap": (n_c,), "jacobian": (n_c, n_q), "gap_t": (n_c,), "bias": (n_c,),
+    }  # fmt: skip

@@ -1,0 +1,31 @@
+cimport cython
+from lcpstep.arrays cimport doubles
+from lcpstep.pointers cimport after, whole
+
+cdef Py_ssize_t TIME, MODE, LENGTH, LEAD, COLUMNS
+
+
+@cython.final
+cdef class Record:
+    cdef object arrays
+    cdef readonly Py_ssize_t n_q, n_c, n_times, row_size, row_capacity, event_capacity, dense_size
+    cdef public Py_ssize_t every, row, event, next_time
+    cdef public bint on_events
+    cdef double* times
+    cdef double* rows
+    cdef double* events
+    cdef double* dense
+    cdef double* last_row(self) noexcept nogil
+    cdef double* dense_row(self, Py_ssize_t row) noexcept nogil
+    cdef void keep(self, double t, double mode, double* q, double* v, double* impulse) noexcept nogil
+    cdef void note(
+        self, double t, Py_ssize_t contact, double before, double after_, double p, Py_ssize_t kind
+    ) noexcept nogil
+    cdef bint full(self, Py_ssize_t more) noexcept nogil
+    cdef bint wants(self, double stop, bint last) noexcept nogil
+    cdef bint is_due(self, Py_ssize_t step) noexcept nogil
+    cdef bint keeps_events(self) noexcept nogil
+    cdef bint take_back(self, double t) noexcept nogil
+    cdef Py_ssize_t quiet_until(
+        self, Py_ssize_t step, double h, double t0, Py_ssize_t first, Py_ssize_t last
+    ) noexcept nogil

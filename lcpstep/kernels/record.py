@@ -1,0 +1,111 @@
+"""Where kernels write what a run keeps: states that the caller has chosen, and every event; room is bounded."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.pointers import Doubles, after, whole
+
+# Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
+# duration of the step that follows; then q, v, impulses
+TIME, MODE, LENGTH, LEAD = 0, 1, 2, 3
+COLUMNS = 6  # of an event: time, contact, gap velocity before and after, impulse, kind
+
+
+class Record:
+    """Rows and events; how many there are, and which time is to be kept next, is counted here.
+
+    every        keep every so many steps; 0: none
+    on_events    keep the states at events
+    times        keep the states at these times
+    rows : (rows, LEAD + 2 n_q + n_c)   time, mode, duration, q, v, impulses since the row before
+    events : (event_capacity, COLUMNS)
+    dense : (rows, dense_size)          dense output of the step after each row; nothing where dense_size is 0
+    row, event, next_time               rows and events written, times kept
+
+    Parameters
+    ----------
+    n_q, n_c : int   coordinates, and impulses in a row
+    every, on_events, times   as above
+    rows, events, dense : arrays   to write to
+    """
+
+    def __init__(
+        self, n_q: int, n_c: int, every: int, on_events: bool, times: Any, rows: Any, events: Any, dense: Any
+    ) -> None:
+        self.arrays = times, rows, events, dense
+        self.n_q, self.n_c, self.n_times = n_q, n_c, len(times)
+        self.row_size, self.row_capacity, self.event_capacity = rows.shape[1], len(rows), len(events)
+        self.dense_size = dense[0].size if len(dense) > 0 else 0
+        self.every, self.on_events = every, on_events
+        self.row = self.event = self.next_time = 0
+        self.times, self.rows = doubles(times), doubles(rows)
+        self.events, self.dense = doubles(events), doubles(dense)
+
+    def last_row(self) -> Doubles:
+        """The row written last."""
+        return after(self.rows, (self.row - 1) * self.row_size)
+
+    def dense_row(self, row: int) -> Doubles:
+        """Where the dense output of the step after a row goes."""
+        return after(self.dense, row * self.dense_size)
+
+    def keep(self, t: float, mode: float, q: Doubles, v: Doubles, impulse: Doubles) -> None:
+        """One kept state; the impulses summed up to it start anew."""
+        n = self.n_q
+        row = after(self.rows, self.row * self.row_size)
+        row[TIME], row[MODE], row[LENGTH] = t, mode, 0.0
+        for i in range(n):
+            row[LEAD + i], row[LEAD + n + i] = q[i], v[i]
+        for c in range(self.n_c):
+            row[LEAD + 2 * n + c] = impulse[c]
+            impulse[c] = 0.0
+        self.row += 1
+
+    def note(self, t: float, contact: int, before: float, after_: float, p: float, kind: int) -> None:
+        """One line of the impact log."""
+        event = after(self.events, self.event * COLUMNS)
+        event[0], event[1], event[5] = t, contact, kind
+        event[2], event[3], event[4] = before, after_, p
+        self.event += 1
+
+    def full(self, more: int) -> bool:
+        """Whether there is no room for so many events more."""
+        return self.event + more > self.event_capacity
+
+    def wants(self, stop: float, last: bool) -> bool:
+        """Whether a state is asked for before the time `stop` (or at it, at the span's end), and there is room."""
+        if self.next_time >= self.n_times or self.row >= self.row_capacity:
+            return False
+        t = self.times[self.next_time]
+        return t < stop or (t == stop and last)
+
+    def is_due(self, step: int) -> bool:
+        """Whether the state after so many steps is to be kept."""
+        return self.every > 0 and step % self.every == 0
+
+    def keeps_events(self) -> bool:
+        """Whether the states after events are to be kept."""
+        return self.on_events or self.every == 1
+
+    def take_back(self, t: float) -> bool:
+        """Take back the last kept state if it is of time t: events at one time share a row. Whether it was."""
+        if self.row == 0 or self.last_row()[TIME] != t:
+            return False
+        self.row -= 1
+        return True
+
+    def quiet_until(self, step: int, h: float, t0: float, first: int, last: int) -> int:
+        """The step, at most `last`, up to which none keeps a state; step `first` begins at t0."""
+        end = last
+        if self.every > 0 and step + self.every - 1 - step % self.every < end:
+            end = step + self.every - 1 - step % self.every
+        if self.next_time < self.n_times:
+            before = first + whole((self.times[self.next_time] - t0) / h) - 1
+            if before < end:
+                end = before
+        return end

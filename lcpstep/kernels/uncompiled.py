@@ -1,0 +1,45 @@
+"""User's functions that stay in Python: C functions around them, of the one signature of `lcpstep.kernels.function`.
+
+An exception leaves `out` not-a-number and is noted (`lcpstep.faults`), as in machine code; the run that meets the
+number raises it. The run is slower by these functions alone.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+import numpy as np
+
+from lagrangian.checks import python, read_only, said
+from lcpstep.faults import Callback, Fault, name_of, note
+
+C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
+
+
+class CalledBack:
+    """A C function that calls f(t, q, v, p, out), or f(t, x, p, out) of first order; `address` is its own."""
+
+    def __init__(self, f: Callback, first_order: bool = False) -> None:
+        self.f, self.name, self.first_order = python(f), name_of(f), first_order
+        self.function = C_FUNCTION(self.call)
+        self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
+
+    def call(self, t: float, q: int, v: int, p: int, out: int, sizes: Any) -> None:
+        """Views of the numbers that C points to, and the function on them."""
+        n_q, n_v, n_p, rows, columns = sizes[:5]
+        filled = numbers(out, rows * (columns or 1))
+        x, x_t, own = (read_only(numbers(a, n)) for a, n in ((q, n_q), (v, n_v), (p, n_p)))
+        given = (x, own) if self.first_order else (x, x_t, own)
+        try:
+            self.f(t, *given, filled.reshape(rows, columns) if columns else filled)
+        except BaseException as error:  # C passes none on
+            filled[:] = np.nan
+            note(Fault(self.name, t, x.copy(), x_t.copy(), said(error), error))
+
+
+def numbers(address: int, n: int) -> Any:
+    """The n doubles at an address."""
+    return (
+        np.ctypeslib.as_array((ctypes.c_double * n).from_address(address)) if n and address else np.zeros(0)
+    )

@@ -1,0 +1,36 @@
+cdef inline void copy(double* x, double* y, Py_ssize_t n) noexcept nogil:
+    for i in range(n):
+        x[i] = y[i]
+
+
+cdef inline void clear(double* x, Py_ssize_t n) noexcept nogil:
+    for i in range(n):
+        x[i] = 0.0
+
+
+cdef inline void add(double* x, double factor, double* y, Py_ssize_t n) noexcept nogil:
+    for i in range(n):
+        x[i] += factor * y[i]
+
+
+cdef inline double product(double* G, double* v, Py_ssize_t c, Py_ssize_t n) noexcept nogil:
+    cdef double total = 0.0
+    for j in range(n):
+        total += G[c * n + j] * v[j]
+    return total
+
+
+cdef inline double largest(double* x, double least, Py_ssize_t n) noexcept nogil:
+    for i in range(n):
+        if x[i] > least:
+            least = x[i]
+        elif -x[i] > least:
+            least = -x[i]
+    return least
+
+
+cdef inline bint finite(double* x, Py_ssize_t n) noexcept nogil:
+    cdef double total = 0.0
+    for i in range(n):
+        total += x[i] - x[i]
+    return total == 0.0

@@ -1,0 +1,46 @@
+"""Short loops over short vectors, which the compiler merges into the kernels that use them: no calls, no checks.
+
+The `.pxd` file has them as C knows them; for long rows see `lcpstep.rows`.
+"""
+
+from __future__ import annotations
+
+from lcpstep.pointers import Doubles
+
+
+def copy(x: Doubles, y: Doubles, n: int) -> None:
+    """X <- y."""
+    x[:n] = y[:n]
+
+
+def clear(x: Doubles, n: int) -> None:
+    """X <- 0."""
+    x[:n] = 0.0
+
+
+def add(x: Doubles, factor: float, y: Doubles, n: int) -> None:
+    """X <- x + factor y."""
+    x[:n] += factor * y[:n]
+
+
+def product(G: Doubles, v: Doubles, c: int, n: int) -> float:
+    """(G v)_c."""
+    total = 0.0
+    for j in range(n):
+        total += G[c * n + j] * v[j]
+    return total
+
+
+def largest(x: Doubles, least: float, n: int) -> float:
+    """Largest magnitude of the entries of x, or `least`."""
+    for i in range(n):
+        least = max(least, abs(x[i]))
+    return least
+
+
+def finite(x: Doubles, n: int) -> bool:
+    """Whether no entry is nan or infinite."""
+    total = 0.0
+    for i in range(n):
+        total += x[i] - x[i]
+    return total == 0.0
