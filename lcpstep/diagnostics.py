@@ -279,4 +279,6 @@ def _own_rates(
                 out[k] = -s[:, 1]
         return out + (G @ v.T).T if moved else out
     m = (kernel_tangent_model if tangents else kernel_model)(scene)
-    return states.own_rates(m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved)
+    return states.own_rates(
+        m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved
+    )
