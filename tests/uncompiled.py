@@ -24,12 +24,13 @@ class Sources:
         return importlib.util.spec_from_file_location(name, BUILT[name]) if name in BUILT else None
 
 
-def kernels():
-    """All kernel modules as plain Python, by their last names; those that are built stay where they are."""
+def kernels(package="lcpstep"):
+    """A package's kernel modules as plain Python, by their last names; those that are built stay where they are."""
     before = {name: sys.modules.pop(name) for name in BUILT if name in sys.modules}
     sys.meta_path.insert(0, Sources)
     try:
-        return SimpleNamespace(**{name.split(".")[-1]: importlib.import_module(name) for name in BUILT})
+        modules = {name: importlib.import_module(name) for name in BUILT if name.startswith(package)}
+        return SimpleNamespace(**{name.split(".")[-1]: module for name, module in modules.items()})
     finally:
         sys.meta_path.remove(Sources)
         for name in BUILT:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from lagrangian import HybridScene, Scene, checks
-from lcpstep.events.flight.run import ClosedForm, oscillator_of
+from lcpstep.events.flight.oscillator import oscillator_of
+from lcpstep.events.flight.run import ClosedForm
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.events.several.run import Several
 from lcpstep.events.single.run import RungeKutta
-from lcpstep.model import model, require
+from lcpstep.model import kernel_model, model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
 
@@ -76,8 +77,9 @@ class EventDriven:
         require(scene, "EventDriven", joints=True, friction=False)
         if scene.n_c > 1 or scene.n_j > 0:
             return Several(self, scene, kept).finish(progress)
-        m, fast = model(scene)
-        o = oscillator_of(scene, m)
+        closed = kernel_model(scene)
+        o = oscillator_of(closed)
         if o is not None:
-            return ClosedForm(self, scene, kept, m, fast, o).finish(progress)
+            return ClosedForm(self, scene, kept, closed, o).finish(progress)
+        m, fast = model(scene)
         return RungeKutta(self, scene, kept, m, fast).finish(progress)

@@ -17,13 +17,16 @@ from lagrangian import HybridScene, Scene, checks
 from lcpstep.errors import SimulationError
 from lcpstep.events import EventDriven
 from lcpstep.maps import follow, lockstep, modes
+from lcpstep.maps.task import (
+    INSIDE as INSIDE,
+)  # in place of a `Status`: the start lies inside of the obstacle
+from lcpstep.maps.task import UNREACHED, Task
 from lcpstep.simulate import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Kind, Status
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-INSIDE = follow.INSIDE  # in place of a `Status`: the start lies inside of the obstacle
 IMPACTS_KEPT = 64  # of each period; their number is known beyond
 ROUNDING = 64 * np.finfo(float).eps
 
@@ -145,7 +148,7 @@ def periods(
     return _answer(task)
 
 
-def _answer(task: follow.Task) -> Periods:
+def _answer(task: Task) -> Periods:
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
         landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
@@ -153,7 +156,7 @@ def _answer(task: follow.Task) -> Periods:
     )  # fmt: skip
 
 
-def _from_logs(scene: Scene, task: follow.Task) -> Array:
+def _from_logs(scene: Scene, task: Task) -> Array:
     """Derivatives of the kept periods from their impacts, where the motion between these is known in closed form."""
     exact = follow.Follower(scene, EventDriven()) if scene.n_c <= 1 else None
     if exact is None or not exact.usable:
@@ -178,9 +181,9 @@ def _task(
     t: float,
     most: int,
     targets: Targets | None,
-) -> follow.Task:
+) -> Task:
     d = scene.n_x
-    x = np.array(starts, dtype=float, ndmin=2)
+    x = np.array(starts, dtype=float, order="C", ndmin=2)
     if x.ndim != 2 or x.shape[1] != d or len(x) == 0:
         names = ", ".join(label.split(" [")[0] for label in scene.labels)
         raise ValueError(f"starts: expected states ({names}) of shape (m, {d}), got shape {np.shape(starts)}")
@@ -189,18 +192,19 @@ def _task(
     m, kept = len(x), n - drop
     none = Targets(np.zeros((0, d)), np.zeros(0), np.ones(d))
     to = none if targets is None else targets
-    return follow.Task(
+    return Task(
         t_start=t, t_end=t + scene.period, drop=drop, periods=n, starts=x,
-        targets=to.points, radius=to.radius, scale=to.scale,
+        targets=np.ascontiguousarray(to.points), radius=np.ascontiguousarray(to.radius),
+        scale=np.ascontiguousarray(to.scale),
         states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
         landings=np.full((m, kept, most), np.nan),
-        counts=np.zeros((m, kept, 2), dtype=np.int64), reached=np.full(m, follow.UNREACHED, dtype=np.int64),
-        tangents=np.zeros((m, 0, d, d)), last=np.zeros(1), taken=np.zeros(m, dtype=np.int64),
-        final=x.copy(), codes=np.zeros(m, dtype=np.int64), strict=True,
+        counts=np.zeros((m, kept, 2), dtype=np.intp), reached=np.full(m, UNREACHED, dtype=np.intp),
+        tangents=np.zeros((m, 0, d, d)), taken=np.zeros(m, dtype=np.intp),
+        final=x.copy(), codes=np.zeros(m, dtype=np.intp), strict=True,
     )  # fmt: skip
 
 
-def one_by_one(scene: Scene, method: Method, task: follow.Task, strict: bool) -> None:
+def one_by_one(scene: Scene, method: Method, task: Task, strict: bool) -> None:
     """The task by `simulate`, one run and one period at a time."""
     for i in range(len(task.starts)):
         x = task.starts[i].copy()
@@ -209,7 +213,7 @@ def one_by_one(scene: Scene, method: Method, task: follow.Task, strict: bool) ->
         if strict and np.any(g < -ROUNDING * max(1.0, float(np.max(np.abs(x[: scene.n_q]))))):
             code = INSIDE
         k = 0
-        while k < task.periods and code == Status.DONE and task.reached[i] == follow.UNREACHED:
+        while k < task.periods and code == Status.DONE and task.reached[i] == UNREACHED:
             x, code = _one_period(scene, method, task, x, i, k - task.drop)
             k += 1
             if code == Status.DONE and k > task.drop:
@@ -217,13 +221,11 @@ def one_by_one(scene: Scene, method: Method, task: follow.Task, strict: bool) ->
             if code == Status.DONE and len(task.targets):
                 distance = np.max(np.abs(task.targets - x) / task.scale, axis=1)
                 hits = np.flatnonzero(distance <= task.radius)
-                task.reached[i] = hits[0] if len(hits) else follow.UNREACHED
+                task.reached[i] = hits[0] if len(hits) else UNREACHED
         task.final[i], task.codes[i], task.taken[i] = x, code, k
 
 
-def _one_period(
-    scene: Scene, method: Method, task: follow.Task, x: Array, i: int, k: int
-) -> tuple[Array, int]:
+def _one_period(scene: Scene, method: Method, task: Task, x: Array, i: int, k: int) -> tuple[Array, int]:
     one = continued(scene, x, (task.t_start, task.t_end))
     try:
         run = simulate(one, method, keep=[task.t_end])

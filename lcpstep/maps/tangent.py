@@ -10,72 +10,95 @@ D is the saltation matrix R_x + (F+ - R_x F- - R_t) H_x / u- of G. Osorio, Compl
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
-from lcpstep.events.bookkeeping import IMPACT, STICK
-from lcpstep.events.clock import find_corners
-from lcpstep.events.flight.motion import DELTA, W2, R
-from lcpstep.events.flight.oscillator import fundamental
-from lcpstep.events.flight.rest import alpha_at
+import cython
+
+from lcpstep.events.status import IMPACT, STICK
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.events.flight.motion import Flight
+    from lcpstep.events.flight.oscillator import fundamental
+    from lcpstep.events.flight.rest import alpha_at
+    from lcpstep.kernels.record import COLUMNS, Record
+    from lcpstep.pointers import Doubles, after, nan
 
 
-def begin_tangent(J: Any, last: Any, t: float) -> None:
-    """Nothing has happened yet at time t; J (2, 2), last (1,) the time up to which J has been carried."""
-    J[0, 0] = J[1, 1] = 1.0
-    J[0, 1] = J[1, 0] = 0.0
-    last[0] = t
+def begin_tangent(J: Doubles) -> None:
+    """Nothing has happened yet; J (2, 2)."""
+    J[0] = J[3] = 1.0
+    J[1] = J[2] = 0.0
 
 
-def carry(s: Any, J: Any, last: Any, t: float) -> None:
-    """Free flight on to time t."""
-    delta, w2 = s.x[DELTA], s.x[W2]
-    S, dS, _ = fundamental(delta, w2, t - last[0])
+def clear_tangent(J: Doubles, x: float) -> None:
+    """J is lost, or not known."""
+    J[0] = J[1] = J[2] = J[3] = x
+
+
+def carry(s: Flight, J: Doubles, tau: float) -> None:
+    """Free flight for a time tau."""
+    S, dS, _ = fundamental(s.delta, s.w2, tau)
     for j in range(2):
-        q, v = J[0, j], J[1, j]
-        J[0, j] = (dS + 2.0 * delta * S) * q + S * v
-        J[1, j] = -w2 * S * q + dS * v
-    last[0] = t
+        q, v = J[j], J[2 + j]
+        J[j] = (dS + 2.0 * s.delta * S) * q + S * v
+        J[2 + j] = -s.w2 * S * q + dS * v
 
 
-def strike(s: Any, J: Any, t: float, u: float) -> None:
+def strike(s: Flight, J: Doubles, t: float, u: float) -> None:
     """An impact at time t with the gap velocity u before it; s: a flight that may be asked, and is not under way."""
-    r = s.x[R]
-    find_corners(s, t)
-    turn = (1.0 + r) * alpha_at(s, t) / u
+    s.find_corners(t)
+    turn = (1.0 + s.r) * alpha_at(s, t) / u
     for j in range(2):
-        q, v = J[0, j], J[1, j]
-        J[0, j] = -r * q
-        J[1, j] = turn * q - r * v
+        q, v = J[j], J[2 + j]
+        J[j] = -s.r * q
+        J[2 + j] = turn * q - s.r * v
 
 
-def along_events(s: Any, record: Any, events: int, J: Any, last: Any) -> None:
-    """The events noted so far; s: a flight that is not under way."""
-    for e in range(events):
-        t, kind = record.events[e, 0], int(record.events[e, 5])
-        if kind == IMPACT:
-            carry(s, J, last, t)
-            strike(s, J, t, record.events[e, 2])
-        elif kind == STICK:
-            J[0, 0] = J[0, 1] = J[1, 0] = J[1, 1] = 0.0
-            last[0] = t
+def along_events(s: Flight, record: Record, J: Doubles, last: float) -> float:
+    """The events noted so far, J being that at the time `last`; that of the last one; s: not under way."""
+    for e in range(record.event):
+        event = after(record.events, e * COLUMNS)
+        t = event[0]
+        if event[5] == IMPACT:
+            carry(s, J, t - last)
+            strike(s, J, t, event[2])
+            last = t
+        elif event[5] == STICK:
+            clear_tangent(J, 0.0)
+            last = t
+    return last
 
 
-def along_logs(s: Any, log: Any, counts: Any, t_start: float, t_end: float, out: Any, last: Any) -> None:
-    """Kernel: derivatives of periods whose impacts were recorded by any method, (m, kept, 2, 2) into out.
+def along_logs(s: Flight, log: Any, counts: Any, t_start: float, t_end: float, out: Any) -> None:
+    """Derivatives of periods whose impacts were recorded by any method, into out; called from Python.
 
-    log : (m, kept, most, 2) time and gap velocity before each impact;  counts : (m, kept, 2) impacts and landings
+    log : (m, kept, most, 2)   time and gap velocity before each impact
+    counts : (m, kept, 2)   impacts and landings
+    out : (m, kept, 2, 2)
     """
-    for i in range(log.shape[0]):
-        for k in range(log.shape[1]):
-            J = out[i, k]
-            begin_tangent(J, last, t_start)
-            if counts[i, k, 1] > 0:
-                J[0, 0] = J[1, 1] = 0.0
-            elif counts[i, k, 0] <= log.shape[2]:
-                for e in range(counts[i, k, 0]):
-                    carry(s, J, last, log[i, k, e, 0])
-                    strike(s, J, log[i, k, e, 0], log[i, k, e, 1])
-                carry(s, J, last, t_end)
-            else:  # not all impacts are known
-                J[0, 0] = J[0, 1] = J[1, 0] = J[1, 1] = math.nan
+    impacts, counted, J = doubles(log), indices(counts), doubles(out)
+    n, most = out.shape[0] * out.shape[1], log.shape[2]
+    for k in range(n):
+        along_log(
+            s, after(impacts, 2 * most * k), counted[2 * k], most, counted[2 * k + 1] > 0, t_start, t_end,
+            after(J, 4 * k),
+        )  # fmt: skip
+
+
+def along_log(
+    s: Flight, log: Doubles, n: int, most: int, landed: bool, t_start: float, t_end: float, J: Doubles
+) -> None:
+    """The same of one period with n impacts, of which the first ones, at most `most`, are known."""
+    begin_tangent(J)
+    if landed:
+        clear_tangent(J, 0.0)
+    elif n > most:
+        clear_tangent(J, nan)
+    else:
+        last = t_start
+        for e in range(n):
+            carry(s, J, log[2 * e] - last)
+            strike(s, J, log[2 * e], log[2 * e + 1])
+            last = log[2 * e]
+        carry(s, J, t_end - last)

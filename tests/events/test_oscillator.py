@@ -10,11 +10,23 @@ from mpmath import mp, mpf
 
 from lagrangian import Harmonic, LinearSystem, Scene
 from lcpstep import EventDriven, simulate
-from lcpstep.events.flight.oscillator import flow, fundamental, oscillator
+from lcpstep.events.flight.oscillator import fundamental, oscillator
 from tests.differences import derivative
+from tests.uncompiled import kernels
 
 rates = st.one_of(st.just(0.0), st.floats(-3.0, 3.0).filter(lambda x: abs(x) > 1e-12))
+mp.dps = 50
 times = st.floats(1e-9, 5.0)
+clock, motion = kernels("lcpstep.kernels").clock, kernels("lcpstep.events.flight").motion
+
+
+def flow(o, t0, y0, w0, tau):
+    """Position, velocity and acceleration at t0 + tau of the motion that starts at t0 with y0, w0."""
+    s = clock.Clock((t0, t0 + 1.0), [], math.inf)
+    s.delta, s.w2, s.f0, s.X, s.Y, s.Omega = o.delta, o.w2, o.f0, o.X, o.Y, o.Omega
+    motion.leave_from(s, t0, y0, w0)
+    motion.absolute(s, tau)
+    return s.y_tau, s.w_tau, s.a_tau
 
 
 def exact_fundamental(delta, w2, tau):

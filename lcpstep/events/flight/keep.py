@@ -4,36 +4,57 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.events.bookkeeping import NEXT_TIME, is_wanted, keeps_events
-from lcpstep.events.clock import find_corners
-from lcpstep.events.contact import MODE, keep, keep_instead
-from lcpstep.events.flight.motion import Q0, V0, rebase, state_at
+import cython
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.events.flight.motion import Flight, rebase, state_at
+    from lcpstep.kernels.record import LEAD
 
 
-def keep_times(s: Any, record: Any, count: Any, stop: float, last: bool) -> None:
+def keep(s: Flight, t: float) -> None:
+    """Keep the state s.q, s.v at time t, and the impulse since the one before."""
+    s.record.keep(t, s.mode, s.q, s.v, s.impulse)
+
+
+def keep_times(s: Flight, stop: float, last: bool) -> None:
     """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
-    while is_wanted(record, count, stop, last):
-        t = record.times[count[NEXT_TIME]]
+    while s.record.wants(stop, last):
+        t = s.record.times[s.record.next_time]
         state_at(s, t)
-        keep(s, record, count, t)
-        count[NEXT_TIME] += 1
+        keep(s, t)
+        s.record.next_time += 1
 
 
-def keep_event(s: Any, record: Any, count: Any) -> None:
+def keep_event(s: Flight) -> None:
     """Keep the state after an event, if these are kept."""
-    if keeps_events(record):
-        s.q[0], s.v[0] = s.x[Q0], s.x[V0]
-        keep_instead(s, record, count)
+    if s.record.keeps_events():
+        s.q[0], s.v[0] = s.q0, s.v0
+        if s.record.take_back(s.now) and s.record.n_c > 0:  # events at one time share a row
+            s.impulse[0] += s.record.rows[s.record.row * s.record.row_size + LEAD + 2]
+        keep(s, s.now)
 
 
-def evaluate(s: Any, kept: Any, wanted: Any) -> None:
-    """States at the times wanted, from the kept states before them and the flights that start there."""
-    for k in range(len(wanted.t)):
-        row = wanted.row[k]
-        s.q[0], s.v[0] = kept.q[row, 0], kept.v[row, 0]
-        s.x[MODE] = kept.mode[row]
-        if wanted.t[k] > kept.t[row]:
-            find_corners(s, kept.t[row])
-            rebase(s, kept.t[row])
-            state_at(s, wanted.t[k])
-        wanted.q[k, 0], wanted.v[k, 0] = s.q[0], s.v[0]
+def keep_now(s: Flight) -> None:
+    """Keep the state last asked for, at the time reached; called from Python."""
+    keep(s, s.now)
+
+
+def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None:
+    """States at times, from the kept states before them, each that of its row; called from Python."""
+    t, at, found_q, found_v = doubles(times), indices(row), doubles(q), doubles(v)
+    kept_t, kept_q, kept_v, mode = doubles(kept.t), doubles(kept.q), doubles(kept.v), doubles(kept.mode)
+    n = len(times)
+    with cython.nogil:
+        for k in range(n):
+            s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
+            fly_on(s, kept_t[at[k]], t[k])
+            found_q[k], found_v[k] = s.q[0], s.v[0]
+
+
+def fly_on(s: Flight, start: float, t: float) -> None:
+    """From the state s.q, s.v at the time `start` to that at time t, without an event between."""
+    if t > start:
+        s.find_corners(start)
+        rebase(s, start)
+        state_at(s, t)

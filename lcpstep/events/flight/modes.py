@@ -8,87 +8,65 @@ Source: see `contact`.
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.events.bookkeeping import ACCUMULATION, IMPACT, RELEASE, STICK
-from lcpstep.events.clock import HIGH, NUDGE, SCALE, T0, find_corners
-from lcpstep.events.contact import (
-    ALPHA0,
-    CLOSED,
-    EDGE_ALPHA,
-    EDGE_G,
-    EDGE_U,
-    FREE,
-    IMPULSE,
-    MODE,
-    NONE,
-    NOW,
-    ON_SURFACE,
-    ON_THE_SURFACE,
-    SPEED0,
-    accumulation,
-    log,
-    sticks,
-)
-from lcpstep.events.flight.keep import keep_event
-from lcpstep.events.flight.motion import (
-    ATOL,
-    CONTACT,
-    DELTA,
-    GAP0,
-    PEAK,
-    Q0,
-    RATE,
-    RESPONSE,
-    RTOL,
-    SIZE,
-    T_END,
-    V0,
-    G,
-    R,
-    free,
-    leave_from,
-    on_obstacle,
-)
-from lcpstep.events.flight.rest import alpha_at
+from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UNSEEN
+from lcpstep.events.status import ACCUMULATION, IMPACT, RELEASE, STICK
+
+if not cython.compiled:
+    from lcpstep.events.flight.keep import keep_event
+    from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
+    from lcpstep.events.flight.rest import alpha_at
+    from lcpstep.kernels.clock import NUDGE
+    from lcpstep.pointers import abs, max, min
 
 JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
 
 
-def impact(s: Any, record: Any, count: Any, u: float) -> None:
+def log(s: Flight, t: float, kind: int, before: float, after: float, p: float) -> None:
+    """Note an event."""
+    s.record.note(t, 0, before, after, p, kind)
+    s.tally.add_event(t == s.last_event)
+    s.last_event = t
+
+
+def sticks(u: float, alpha: float, t: float) -> bool:
+    """Whether a hop would be shorter than what the time t resolves; alpha <= 0."""
+    return u == 0.0 or 2.0 * u <= -alpha * UNSEEN * abs(t)
+
+
+def impact(s: Flight, u: float) -> None:
     """Newton's law u+ = -r u- now; then free flight, chattering or lasting contact."""
-    x = s.x
-    p = -(1.0 + x[R]) * u / x[RESPONSE]
-    x[IMPULSE] += p
-    log(s, record, count, x[NOW], IMPACT, u, -x[R] * u, p)
-    settle(s, record, count, -x[R] * u)
-    keep_event(s, record, count)
+    p = -(1.0 + s.r) * u / s.response
+    s.impulse[0] += p
+    log(s, s.now, IMPACT, u, -s.r * u, p)
+    settle(s, -s.r * u)
+    keep_event(s)
 
 
-def settle(s: Any, record: Any, count: Any, u: float) -> None:
+def settle(s: Flight, u: float) -> None:
     """On the obstacle now, leaving it with gap velocity u >= 0: which mode comes next."""
-    x = s.x
-    t, r = x[NOW], x[R]
-    find_corners(s, t)
+    t, r = s.now, s.r
+    s.find_corners(t)
     y, w, alpha = on_obstacle(s, t, u)
     leave_from(s, t, y, w)
-    x[Q0], x[V0] = s.q[0], s.v[0]
-    x[SPEED0], x[ON_SURFACE], x[MODE], x[ALPHA0], x[PEAK] = u, 1.0, FREE, alpha, abs(alpha)
-    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, u, alpha
+    s.q0, s.v0 = s.q[0], s.v[0]
+    s.u0, s.on_surface, s.mode, s.alpha0, s.peak = u, True, FREE, alpha, abs(alpha)
+    s.g, s.u, s.alpha = 0.0, u, alpha
     if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
         return
     if sticks(u, alpha, t):
-        stick(s, record, count, t)
+        stick(s, t)
     elif r < 1.0:
         T = chatter_left(s, u, alpha)
         if T != NONE:
-            log(s, record, count, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / x[RESPONSE])
+            log(s, t + T, ACCUMULATION, -u, 0.0, (-alpha * T - u) / s.response)
             # the contact force up to t + T, which counts as closed, gives the rest
-            x[IMPULSE] -= u / x[RESPONSE]
-            stick(s, record, count, t + T)
+            s.impulse[0] -= u / s.response
+            stick(s, t + T)
 
 
-def chatter_left(s: Any, u: float, alpha: float) -> float:
+def chatter_left(s: Flight, u: float, alpha: float) -> float:
     """How long the remaining impacts last, or NONE where taking them as one is not within the tolerance.
 
     The hops that are left out rise no higher than u^2 / (2 |alpha|). Pressed by -(A - j t) - 2 delta u they end after
@@ -97,111 +75,105 @@ def chatter_left(s: Any, u: float, alpha: float) -> float:
 
     to second order in the change of the acceleration, which itself must be so small that T0 alone would do.
     """
-    x = s.x
-    tolerance = x[ATOL] + x[RTOL] * x[SIZE]
+    tolerance = s.atol + s.rtol * s.size
     if u * u > -2.0 * alpha * tolerance:
         return NONE
-    A = -alpha if x[DELTA] == 0.0 else -alpha_at(s, x[NOW])
-    T = accumulation(u, -A, x[R])
-    if A <= 0.0 or x[NOW] + T > min(x[HIGH], x[T_END]):
+    A = -alpha if s.delta == 0.0 else -alpha_at(s, s.now)
+    T = 2.0 * u / (A * (1.0 - s.r))
+    if A <= 0.0 or s.now + T > min(s.high, s.t_end):
         return NONE
-    later = alpha_at(s, x[NOW] + T)
+    later = alpha_at(s, s.now + T)
     change = abs(later + A) + abs(alpha + A)
-    if not (later < 0.0 and change * T * x[RATE] <= A * tolerance):
+    if not (later < 0.0 and change * T * s.rate <= A * tolerance):
         return NONE
-    return float(T * (1.0 + (later + A) / (3.0 * A) - x[DELTA] * T / 3.0))
+    return T * (1.0 + (later + A) / (3.0 * A) - s.delta * T / 3.0)
 
 
-def go_on(s: Any, t: float, g: float, u: float) -> None:
+def go_on(s: Flight, t: float, g: float, u: float) -> None:
     """A flight goes on at time t from a gap and a gap velocity that are better known than their differences."""
-    x = s.x
     y, w, _ = on_obstacle(s, t, u)
-    s.q[0] += g / x[G]
-    leave_from(s, t, y + g / x[G], w)
-    x[Q0], x[V0] = s.q[0], s.v[0]
+    s.q[0] += g / s.G
+    leave_from(s, t, y + g / s.G, w)
+    s.q0, s.v0 = s.q[0], s.v[0]
     _, _, alpha = free(s, 0.0)
-    x[GAP0], x[SPEED0], x[ALPHA0], x[ON_SURFACE] = g, u, alpha, 1.0
-    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = g, u, alpha
-    x[PEAK] = max(x[PEAK], abs(alpha))
-    s.q[0], s.v[0] = x[Q0], x[V0]
+    s.g0, s.u0, s.alpha0, s.on_surface = g, u, alpha, True
+    s.g, s.u, s.alpha = g, u, alpha
+    s.peak = max(s.peak, abs(alpha))
+    s.q[0], s.v[0] = s.q0, s.v0
 
 
-def stick(s: Any, record: Any, count: Any, t_log: float) -> None:
+def stick(s: Flight, t_log: float) -> None:
     """From now on the contact is closed; t_log: when the log says so (the end of a chattering sequence)."""
-    x = s.x
-    y, w, alpha = on_obstacle(s, x[NOW], 0.0)
-    x[Q0], x[V0] = s.q[0], s.v[0]
-    leave_from(s, x[NOW], y, w)
-    x[MODE], x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = CLOSED, 0.0, 0.0, min(alpha, 0.0)
-    log(s, record, count, t_log, STICK, 0.0, 0.0, 0.0)
+    y, w, alpha = on_obstacle(s, s.now, 0.0)
+    s.q0, s.v0 = s.q[0], s.v[0]
+    leave_from(s, s.now, y, w)
+    s.mode, s.g, s.u, s.alpha = CLOSED, 0.0, 0.0, min(alpha, 0.0)
+    log(s, t_log, STICK, 0.0, 0.0, 0.0)
 
 
-def settle_again(s: Any, record: Any, count: Any) -> None:
+def settle_again(s: Flight) -> None:
     """The contact that seemed to open did so by less than rounding."""
-    stick(s, record, count, s.x[NOW])
-    keep_event(s, record, count)
+    stick(s, s.now)
+    keep_event(s)
 
 
-def release(s: Any, record: Any, count: Any, alpha: float) -> None:
+def release(s: Flight, alpha: float) -> None:
     """The closed contact opens now, with the gap acceleration alpha."""
-    x = s.x
-    y, w, _ = on_obstacle(s, x[NOW], 0.0)
-    x[Q0], x[V0] = s.q[0], s.v[0]
-    leave_from(s, x[NOW], y, w)
-    log(s, record, count, x[NOW], RELEASE, 0.0, 0.0, 0.0)
-    x[MODE], x[ON_SURFACE], x[ALPHA0] = FREE, 1.0, alpha
-    x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA] = 0.0, 0.0, alpha
-    keep_event(s, record, count)
+    y, w, _ = on_obstacle(s, s.now, 0.0)
+    s.q0, s.v0 = s.q[0], s.v[0]
+    leave_from(s, s.now, y, w)
+    log(s, s.now, RELEASE, 0.0, 0.0, 0.0)
+    s.mode, s.on_surface, s.alpha0 = FREE, True, alpha
+    s.g, s.u, s.alpha = 0.0, 0.0, alpha
+    keep_event(s)
 
 
-def turn_corner(s: Any, record: Any, count: Any) -> None:
+def turn_corner(s: Flight) -> None:
     """Enter the next smooth interval, with the accelerations of its side.
 
     Where the obstacle's velocity jumps, u- is taken before the jump and u+ after it: the obstacle takes a closed
     contact along or, dropping, leaves it.
     """
-    x = s.x
-    t = x[NOW]
-    if x[MODE] == CLOSED:
+    t = s.now
+    if s.mode == CLOSED:
         u = pass_corner(s, t)
-        _, _, x[EDGE_ALPHA] = on_obstacle(s, t, 0.0)
+        _, _, s.alpha = on_obstacle(s, t, 0.0)
         if u == 0.0:
             return
         if u > 0.0:
-            log(s, record, count, t, RELEASE, 0.0, u, 0.0)
-            settle(s, record, count, u)
+            log(s, t, RELEASE, 0.0, u, 0.0)
+            settle(s, u)
         else:
-            log(s, record, count, t, IMPACT, 0.0, 0.0, -u / x[RESPONSE])
-            x[IMPULSE] -= u / x[RESPONSE]
-            x[Q0], x[V0] = s.q[0], s.v[0]
-        keep_event(s, record, count)
+            log(s, t, IMPACT, 0.0, 0.0, -u / s.response)
+            s.impulse[0] -= u / s.response
+            s.q0, s.v0 = s.q[0], s.v[0]
+        keep_event(s)
         return
-    u = x[EDGE_U]
+    u = s.u
     # An impact within rounding of the corner belongs to it
-    strikes = x[CONTACT] == 1.0 and u < 0.0 and x[EDGE_G] <= -2.0 * u * NUDGE * max(abs(t), x[SCALE])
-    if x[ON_SURFACE] == 1.0 and x[T0] == t:
+    strikes = s.contact and u < 0.0 and s.g <= -2.0 * u * NUDGE * max(abs(t), s.scale)
+    if s.on_surface and s.t0 == t:
         jump = pass_corner(s, t)
         if strikes and jump != 0.0:
-            impact(s, record, count, u)
+            impact(s, u)
         else:
-            go_on(s, t, x[GAP0], u + jump)
+            go_on(s, t, s.g0, u + jump)
         return
     if strikes:
-        free(s, t - x[T0])
+        free(s, t - s.t0)
         if u < -ON_THE_SURFACE * max(1.0, abs(s.v[0])):
-            impact(s, record, count, u)
+            impact(s, u)
             return
-    find_corners(s, t)
-    _, x[EDGE_U], x[EDGE_ALPHA] = free(s, t - x[T0])
-    x[PEAK] = max(x[PEAK], abs(x[EDGE_ALPHA]))
+    s.find_corners(t)
+    _, s.u, s.alpha = free(s, t - s.t0)
+    s.peak = max(s.peak, abs(s.alpha))
 
 
-def pass_corner(s: Any, t: float) -> float:
+def pass_corner(s: Flight, t: float) -> float:
     """Enter the next smooth interval; by how much the obstacle's velocity jumps away from the body, if it does."""
-    x = s.x
     _, w, _ = on_obstacle(s, t, 0.0)
-    find_corners(s, t)
+    s.find_corners(t)
     y, w_new, alpha = on_obstacle(s, t, 0.0)
-    u = x[G] * (w - w_new)
-    size = abs(w) + abs(w_new) + abs(alpha) * x[SCALE] + abs(y) / x[SCALE]
+    u = s.G * (w - w_new)
+    size = abs(w) + abs(w_new) + abs(alpha) * s.scale + abs(y) / s.scale
     return u if abs(u) > JUMP * size else 0.0

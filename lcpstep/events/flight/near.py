@@ -14,13 +14,15 @@ acceleration is asked for anew.
 
 from __future__ import annotations
 
-import math
-from typing import Any
+import cython
 
-from lcpstep.compiled import inline
-from lcpstep.events.clock import HIGH, RESOLUTION, T0, T0_REST
-from lcpstep.events.contact import ALPHA0, EDGE_ALPHA, EDGE_U, NONE, ON_SURFACE, SPEED0
-from lcpstep.events.flight.motion import C1, C2, C3, GAP0, SCAN, SIZE, T_END, free
+from lcpstep.events.flight.contact import NONE, RESOLUTION
+
+if not cython.compiled:
+    from math import sqrt
+
+    from lcpstep.events.flight.motion import Flight, free
+    from lcpstep.pointers import abs, min
 
 SHORT = 0.02  # of the scan interval: the cubic resolves the acceleration to rounding
 LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their difference
@@ -28,49 +30,43 @@ SETTLED = 1e-7  # change of the length of the longest hop that needs no further 
 PASSES = 8  # of the search for the end of a short hop; two are the rule
 LONGER = 3.0  # how much longer than its guess a short hop may last
 HALVINGS = 60  # of a stretch, in search of the first root of the gap
-GAUSS = (0.1127016653792583, 0.5, 0.8872983346207417)  # nodes on [0, 1]
+N1, N2, N3 = 0.1127016653792583, 0.5, 0.8872983346207417  # nodes of Gauss on [0, 1]
 
 
-@inline
-def hop_end(s: Any, a: float, b: float) -> tuple[float, float]:
+def hop_end(s: Flight, a: float, b: float) -> tuple[float, float]:
     """End of the short hop that begins at a, and the gap velocity there; NONE if none does before b."""
-    x = s.x
-    if a == 0.0 and x[ON_SURFACE] == 1.0 and x[EDGE_ALPHA] < 0.0 and (x[EDGE_U] > 0.0 or x[GAP0] > 0.0):
-        guess = fall(x[GAP0], x[EDGE_U], x[EDGE_ALPHA])
-        if guess < SHORT * x[SCAN]:
+    if a == 0.0 and s.on_surface and s.alpha < 0.0 and (s.u > 0.0 or s.g0 > 0.0):
+        guess = fall(s.g0, s.u, s.alpha)
+        if guess < SHORT * s.scan:
             return short_hop(s, guess, b)
     return NONE, 0.0
 
 
-@inline
 def fall(g: float, u: float, alpha: float) -> float:
     """Time in which a gap g >= 0 closes that begins with the velocity u, under a constant acceleration alpha < 0."""
     if g == 0.0:
         return 2.0 * u / -alpha
-    root = math.sqrt(u * u - 2.0 * alpha * g)
+    root = sqrt(u * u - 2.0 * alpha * g)
     return (root + u) / -alpha if u > 0.0 else 2.0 * g / (root - u)
 
 
-@inline
-def stretch(x: Any) -> float:
+def stretch(s: Flight) -> float:
     """How far the cubic is taken from the base: not beyond a corner."""
-    return min(SHORT * x[SCAN], (min(x[T_END], x[HIGH]) - x[T0]) - x[T0_REST])
+    return min(SHORT * s.scan, (min(s.t_end, s.high) - s.t0) - s.t0_rest)
 
 
-@inline
-def is_low(x: Any, a: float) -> bool:
+def is_low(s: Flight, a: float) -> bool:
     """Whether the flight begins at a from a known gap, and stays low for a stretch."""
-    if a != 0.0 or x[ON_SURFACE] != 1.0:
+    if a != 0.0 or not s.on_surface:
         return False
-    h = stretch(x)
-    return bool(x[GAP0] + h * (abs(x[SPEED0]) + 0.5 * h * abs(x[ALPHA0])) <= LOW * x[SIZE])
+    h = stretch(s)
+    return s.g0 + h * (abs(s.u0) + 0.5 * h * abs(s.alpha0)) <= LOW * s.size
 
 
-@inline
-def fit(s: Any, h: float) -> tuple[float, float, float]:
+def fit(s: Flight, h: float) -> tuple[float, float, float]:
     """The cubic of the acceleration over the first h of the flight: c1, c2, c3."""
-    alpha0 = s.x[ALPHA0]
-    n1, n2, n3 = GAUSS
+    alpha0 = s.alpha0
+    n1, n2, n3 = N1, N2, N3
     _, _, f1 = free(s, n1 * h)
     _, _, f2 = free(s, n2 * h)
     _, _, f3 = free(s, n3 * h)
@@ -82,73 +78,76 @@ def fit(s: Any, h: float) -> tuple[float, float, float]:
     return d1 - n1 * (c2 + n1 * c3), c2, c3
 
 
-def along(x: Any, level: int, h: float, sigma: float) -> float:
-    """Gap (level 0), its velocity (1) or acceleration (2) at sigma of the stretch h, by the cubic x[C1 .. C3]."""
-    c1, c2, c3 = x[C1], x[C2], x[C3]
+def along(s: Flight, level: int, h: float, sigma: float) -> float:
+    """Gap (level 0), its velocity (1) or acceleration (2) at sigma of the stretch h, by the cubic s.c1 .. s.c3."""
+    c1, c2, c3 = s.c1, s.c2, s.c3
     if level == 2:
-        return float(x[ALPHA0] + sigma * (c1 + sigma * (c2 + sigma * c3)))
+        return s.alpha0 + sigma * (c1 + sigma * (c2 + sigma * c3))
     if level == 1:
-        change = x[ALPHA0] + sigma * (c1 / 2.0 + sigma * (c2 / 3.0 + sigma * c3 / 4.0))
-        return float(x[SPEED0] + h * sigma * change)
-    change = 0.5 * x[ALPHA0] + sigma * (c1 / 6.0 + sigma * (c2 / 12.0 + sigma * c3 / 20.0))
-    return float(x[GAP0] + h * sigma * (x[SPEED0] + h * sigma * change))
+        change = s.alpha0 + sigma * (c1 / 2.0 + sigma * (c2 / 3.0 + sigma * c3 / 4.0))
+        return s.u0 + h * sigma * change
+    change = 0.5 * s.alpha0 + sigma * (c1 / 6.0 + sigma * (c2 / 12.0 + sigma * c3 / 20.0))
+    return s.g0 + h * sigma * (s.u0 + h * sigma * change)
 
 
-def turn(x: Any, level: int, h: float, a: float, b: float) -> float:
+def turn(s: Flight, level: int, h: float, a: float, b: float) -> float:
     """Where a monotone gap, velocity or acceleration changes its sign between a and b; b if it does not."""
-    rising = along(x, level, h, a) > 0.0
-    if rising == (along(x, level, h, b) > 0.0):
+    rising = along(s, level, h, a) > 0.0
+    if rising == (along(s, level, h, b) > 0.0):
         return b
     for _ in range(HALVINGS):
         middle = 0.5 * (a + b)
-        if (along(x, level, h, middle) > 0.0) == rising:
+        if (along(s, level, h, middle) > 0.0) == rising:
             a = middle
         else:
             b = middle
     return b
 
 
-def first_fall(x: Any, h: float) -> float:
+def first_fall(s: Flight, h: float) -> float:
     """First sigma in [0, 1] at which the gap falls to zero, or NONE; 0 where it does not even rise.
 
     The acceleration changes its sign at most once: that splits the velocity into monotone parts, whose changes of
     sign split the gap.
     """
-    bend = turn(x, 2, h, 0.0, 1.0)
-    start, g = 0.0, along(x, 0, h, 0.0)
-    for end in (turn(x, 1, h, 0.0, bend), bend, turn(x, 1, h, bend, 1.0), 1.0):
+    bend = turn(s, 2, h, 0.0, 1.0)
+    start, g = 0.0, along(s, 0, h, 0.0)
+    for k in range(4):
+        end = bend if k == 1 else 1.0
+        if k == 0:
+            end = turn(s, 1, h, 0.0, bend)
+        elif k == 2:
+            end = turn(s, 1, h, bend, 1.0)
         if end > start:
-            g_end = along(x, 0, h, end)
+            g_end = along(s, 0, h, end)
             if g_end <= 0.0:
-                return turn(x, 0, h, start, end) if g > 0.0 else start
+                return turn(s, 0, h, start, end) if g > 0.0 else start
             start, g = end, g_end
     return NONE
 
 
-def low_end(s: Any, h: float) -> tuple[float, float]:
+def low_end(s: Flight, h: float) -> tuple[float, float]:
     """End of a low flight within its first h, and the gap velocity there; NONE if it is longer."""
-    x = s.x
-    x[C1], x[C2], x[C3] = fit(s, h)
-    sigma = first_fall(x, h)
+    s.c1, s.c2, s.c3 = fit(s, h)
+    sigma = first_fall(s, h)
     if sigma == NONE or sigma == 0.0:
         return sigma, 0.0
-    u = along(x, 1, h, sigma)
+    u = along(s, 1, h, sigma)
     tau, u_hop = short_hop(s, sigma * h, h)
     # Hardly a touch is not known better than the stretch tells
     return (sigma * h, u) if tau == NONE else (tau, u_hop)
 
 
-def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
+def short_hop(s: Flight, guess: float, longest: float) -> tuple[float, float]:
     """End of a hop from the base, and the gap velocity there; NONE if it is longer."""
-    x = s.x
-    g0, u0, alpha0 = x[GAP0], x[SPEED0], x[ALPHA0]
+    g0, u0, alpha0 = s.g0, s.u0, s.alpha0
     tau = guess
     for _ in range(PASSES):
         if not 0.0 < tau <= longest:
             return NONE, 0.0
         c1, c2, c3 = fit(s, tau)
         r = 1.0
-        for _ in range(PASSES):
+        for _k in range(PASSES):
             F = u0 + tau * r * (0.5 * alpha0 + r * (c1 / 6.0 + r * (c2 / 12.0 + r * c3 / 20.0)))
             dF = tau * (0.5 * alpha0 + r * (c1 / 3.0 + r * (c2 / 4.0 + r * c3 / 5.0)))
             if g0 != 0.0:
@@ -162,7 +161,9 @@ def short_hop(s: Any, guess: float, longest: float) -> tuple[float, float]:
             return NONE, 0.0
         tau *= r
         # The nodes were those of another length: the cubic's error beyond them, times by how much it was another
-        if abs(r - 1.0) <= SETTLED * (SHORT * x[SCAN] / tau) ** 4:
+        longer = SHORT * s.scan / tau
+        longer *= longer
+        if abs(r - 1.0) <= SETTLED * (longer * longer):
             if tau > longest:
                 return NONE, 0.0
             return tau, u0 + tau * (alpha0 + r * (c1 / 2.0 + r * (c2 / 3.0 + r * c3 / 4.0)))

@@ -13,44 +13,55 @@ linear vibrations, e.g. L. Meirovitch, Fundamentals of Vibrations, chapters 2 an
 
 from __future__ import annotations
 
-import math
-from typing import Any, NamedTuple
+import cython
 
-from lcpstep.compiled import by_address, inline
+if not cython.compiled:
+    from math import copysign, cos, exp, expm1, hypot, sin, sqrt
+
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import abs, max
 
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
 # Ratios of the coefficients of sin x / x in x^2, and of 2 (1 - cos x) / x^2
-D1, D2, D3, D4, D5, D6, D7 = (1.0 / (2 * k * (2 * k + 1)) for k in range(1, 8))
-C1, C2, C3, C4, C5, C6, C7 = (1.0 / ((2 * k + 1) * (2 * k + 2)) for k in range(1, 8))
+D1, D2, D3, D4, D5, D6, D7 = 1.0 / 6, 1.0 / 20, 1.0 / 42, 1.0 / 72, 1.0 / 110, 1.0 / 156, 1.0 / 210
+C1, C2, C3, C4, C5, C6, C7 = 1.0 / 12, 1.0 / 30, 1.0 / 56, 1.0 / 90, 1.0 / 132, 1.0 / 182, 1.0 / 240
 TERMS = 16  # of the series; the first neglected one is below rounding
 NEGLIGIBLE = 1e-18  # two terms in a row, of a sum that is near one
-ONE_OVER = (0.0, *(1.0 / k for k in range(1, TERMS + 2)))
-ONE_OVER_PAIR = (0.0, *(1.0 / (k * (k + 1)) for k in range(1, TERMS + 1)))
 NOTHING = 1e-100  # an exponent that is zero for every purpose
 NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
 
 
-@by_address
-class Oscillator(NamedTuple):
+# 1 / k and 1 / (k (k + 1))
+if not cython.compiled:
+    ONE_OVER, ONE_OVER_PAIR = [0.0] * (TERMS + 2), [0.0] * (TERMS + 2)
+for k in range(1, TERMS + 2):
+    ONE_OVER[k], ONE_OVER_PAIR[k] = 1.0 / k, 1.0 / (k * (k + 1))
+
+
+class Oscillator:
     """Coefficients of the equation, per unit mass, and of its steady oscillation."""
 
-    delta: float
-    w2: float
-    f0: float
-    X: float
-    Y: float
-    Omega: float
+    def __init__(self, delta: float, w2: float, f0: float, X: float, Y: float, Omega: float) -> None:
+        self.delta, self.w2, self.f0 = delta, w2, f0
+        self.X, self.Y, self.Omega = X, Y, Omega
+
+
+def oscillator_of(m: Model) -> Oscillator | None:
+    """A model's motion between events in closed form; None where it has none."""
+    if not (m.linear and m.n_q == 1 and m.n_c <= 1 and m.flat and not m.force.given):
+        return None
+    return oscillator(m.M[0], m.C[0], m.K[0], m.constant[0], m.cosine[0], m.sine[0], m.omega)
 
 
 def oscillator(
     m: float, c: float, k: float, constant: float, cosine: float, sine: float, omega: float
-) -> Any:
+) -> Oscillator | None:
     """Oscillator of m y'' + c y' + k y = F(t); None where it is undamped and near resonance."""
     delta, w2 = 0.5 * c / m, k / m
     if omega == 0.0 or (cosine == 0.0 and sine == 0.0):
         return Oscillator(delta, w2, (constant + (cosine if omega == 0.0 else 0.0)) / m, 0.0, 0.0, 0.0)
     a, b = w2 - omega * omega, 2.0 * delta * omega
-    if math.hypot(a, b) < NEAR_RESONANCE * (abs(w2) + omega * omega):
+    if hypot(a, b) < NEAR_RESONANCE * (abs(w2) + omega * omega):
         return None
     D = m * (a * a + b * b)
     return Oscillator(
@@ -58,7 +69,6 @@ def oscillator(
     )
 
 
-@inline
 def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """S, S' and P at tau >= 0."""
     if delta == 0.0 and w2 == 0.0:
@@ -66,19 +76,18 @@ def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, floa
     if max(2.0 * abs(delta) * tau, abs(w2) * tau * tau) < SMALL:
         return undamped_series(w2, tau) if delta == 0.0 else series(delta, w2, tau)
     if w2 > 0.0 and delta == 0.0:
-        w = math.sqrt(w2)
-        dS = math.cos(w * tau)
-        return math.sin(w * tau) / w, dS, (1.0 - dS) / w2
+        w = sqrt(w2)
+        dS = cos(w * tau)
+        return sin(w * tau) / w, dS, (1.0 - dS) / w2
     if w2 > delta * delta:
-        w = math.sqrt(w2 - delta * delta)
-        decay = math.exp(-delta * tau)
-        S = decay * math.sin(w * tau) / w
-        dS = decay * math.cos(w * tau) - delta * S
+        w = sqrt(w2 - delta * delta)
+        decay = exp(-delta * tau)
+        S = decay * sin(w * tau) / w
+        dS = decay * cos(w * tau) - delta * S
         return S, dS, (1.0 - dS - 2.0 * delta * S) / w2
     return overdamped(delta, w2, tau)
 
 
-@inline
 def undamped_series(w2: float, tau: float) -> tuple[float, float, float]:
     """The same without damping, by power series in w2 tau^2."""
     t2 = tau * tau
@@ -111,40 +120,20 @@ def series(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
 
 def overdamped(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """The same where both characteristic exponents are real; w2 may be zero or negative."""
-    root = math.sqrt(delta * delta - w2)
-    fast = -delta - math.copysign(root, delta) if delta != 0.0 else -root
+    root = sqrt(delta * delta - w2)
+    fast = -delta - copysign(root, delta) if delta != 0.0 else -root
     slow = w2 / fast
     if abs(fast - slow) * tau < SMALL:
         # Nearly equal exponents: S = tau exp(-delta tau) sinh(x)/x with x = root tau
         x2 = root * root * tau * tau
-        decay = math.exp(-delta * tau)
+        decay = exp(-delta * tau)
         S = tau * decay * (1.0 + x2 / 6.0 * (1.0 + x2 / 20.0 * (1.0 + x2 / 42.0 * (1.0 + x2 / 72.0))))
         cosh = 1.0 + x2 / 2.0 * (1.0 + x2 / 12.0 * (1.0 + x2 / 30.0 * (1.0 + x2 / 56.0)))
         dS = decay * cosh - delta * S
         return S, dS, (1.0 - dS - 2.0 * delta * S) / w2
-    e_fast, e_slow = math.expm1(fast * tau), math.expm1(slow * tau)
+    e_fast, e_slow = expm1(fast * tau), expm1(slow * tau)
     gap = fast - slow
     S = (e_fast - e_slow) / gap
     dS = (fast * (e_fast + 1.0) - slow * (e_slow + 1.0)) / gap
     P_slow = e_slow / slow if abs(slow) * tau > NOTHING else tau
     return S, dS, (e_fast / fast - P_slow) / gap
-
-
-@inline
-def flow(o: Any, t0: float, y0: float, w0: float, tau: float) -> tuple[float, float, float]:
-    """Position, velocity and acceleration at t0 + tau of the motion that starts at t0 with y0, w0."""
-    S, dS, P = fundamental(o.delta, o.w2, tau)
-    steady = steady_velocity = steady_acceleration = 0.0
-    z0, dz0 = y0, w0
-    if o.Omega != 0.0:
-        cosine, sine = math.cos(o.Omega * t0), math.sin(o.Omega * t0)
-        z0 -= o.X * cosine + o.Y * sine
-        dz0 -= o.Omega * (o.Y * cosine - o.X * sine)
-        cosine, sine = math.cos(o.Omega * (t0 + tau)), math.sin(o.Omega * (t0 + tau))
-        steady = o.X * cosine + o.Y * sine
-        steady_velocity = o.Omega * (o.Y * cosine - o.X * sine)
-        steady_acceleration = -o.Omega * o.Omega * steady
-    z = z0 * (dS + 2.0 * o.delta * S) + dz0 * S + o.f0 * P
-    dz = -o.w2 * z0 * S + dz0 * dS + o.f0 * S
-    ddz = o.f0 - 2.0 * o.delta * dz - o.w2 * z
-    return steady + z, steady_velocity + dz, steady_acceleration + ddz

@@ -12,28 +12,20 @@ piece is looked at, however short.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.run import SAMPLES, sample_times, sampled, sampled_length
-from lcpstep.model import ABSENT, Model
+from lcpstep.events.scan import SAMPLES, sample_times, sampled, sampled_length
+from lcpstep.kernels.model import Model
 
 Array = NDArray[np.float64]
 PER_PIECE = 8  # samples between two corners
 AGAIN = 16  # every so many samples, is the motion the same a period later?
 SAME = 1e-9  # relative
 STEEPER, HARDER = 2.0, 1.25  # than in the samples: speeds and accelerations between them
-
-
-def looked_at(scene: Scene, m: Model, f: Any, times: Array) -> Array:
-    """Samples (k, 1, 3) of a callback; zero where there is none."""
-    out = np.zeros((len(times), 1, 3))
-    if f != ABSENT:
-        sampled(f, times, np.array(scene.q0), np.array(scene.v0), m.p, out)
-    return out
 
 
 class Reach(NamedTuple):
@@ -47,13 +39,16 @@ class Reach(NamedTuple):
 
 def reach(scene: Scene, m: Model) -> Reach:
     """The bounds above, and the size of the motion that is seen."""
-    G, offset = float(m.G[0, 0]), float(m.offset[0])
-    if m.frame == ABSENT and m.motion == ABSENT:
+    G, offset = float(m.arrays["G"][0, 0]), float(m.arrays["offset"][0])
+    if not m.frame.given and not m.motion.given:
         return Reach(math.inf, 0.0, 0.0, 0.0)
 
     def samples(times: Array) -> Array:
-        result = G * looked_at(scene, m, m.frame, times) + looked_at(scene, m, m.motion, times)
-        return result[:, 0]
+        frame, motion = (
+            sampled(f, scene, times, (1, 3)) if f.given else np.zeros((len(times), 1, 3))
+            for f in (m.frame, m.motion)
+        )
+        return np.asarray((G * frame + motion)[:, 0])
 
     regular = sample_times(scene)
     found = samples(np.concatenate([regular, _between_corners(scene)]))

@@ -8,41 +8,49 @@ Behavior in Impacting Systems, eq. 3.16.
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.events.clock import RESOLUTION
-from lcpstep.events.contact import NONE
-from lcpstep.events.flight.motion import RESPONSE, on_obstacle
+from lcpstep.events.flight.contact import NONE, RESOLUTION
+
+if not cython.compiled:
+    from lcpstep.events.flight.motion import Flight, on_obstacle
+    from lcpstep.pointers import abs
 
 MAX_ITERATIONS = 100
 PROBES = 4  # samples of alpha per interval while the contact is closed
-QUADRATURE = (  # nodes and weights of Gauss on [0, 1], for the impulse of the contact force
-    (0.019855071751231912, 0.05061426814518813),
-    (0.10166676129318664, 0.11119051722668724),
-    (0.2372337950418355, 0.15685332293894363),
-    (0.4082826787521751, 0.18134189168918100),
-    (0.5917173212478249, 0.18134189168918100),
-    (0.7627662049581645, 0.15685332293894363),
-    (0.8983332387068134, 0.11119051722668724),
-    (0.9801449282487681, 0.05061426814518813),
-)
+NODES = 8  # and weights of Gauss on [0, 1], for the impulse of the contact force
+if not cython.compiled:
+    NODE, WEIGHT = [0.0] * NODES, [0.0] * NODES
+for place, (node, weight) in enumerate(
+    (
+        (0.019855071751231912, 0.05061426814518813),
+        (0.10166676129318664, 0.11119051722668724),
+        (0.2372337950418355, 0.15685332293894363),
+        (0.4082826787521751, 0.18134189168918100),
+        (0.5917173212478249, 0.18134189168918100),
+        (0.7627662049581645, 0.15685332293894363),
+        (0.8983332387068134, 0.11119051722668724),
+        (0.9801449282487681, 0.05061426814518813),
+    )
+):
+    NODE[place], WEIGHT[place] = node, weight
 
 
-def alpha_at(s: Any, t: float) -> float:
+def alpha_at(s: Flight, t: float) -> float:
     """Gap acceleration of the free motion, at rest on the obstacle."""
     _, _, alpha = on_obstacle(s, t, 0.0)
-    return float(alpha)
+    return alpha
 
 
-def contact_impulse(s: Any, a: float, b: float) -> float:
+def contact_impulse(s: Flight, a: float, b: float) -> float:
     """Impulse of the contact force lambda = -alpha / (G M^-1 G^T) over (a, b) [N s]."""
     total = 0.0
-    for node, weight in QUADRATURE:
-        total -= weight * alpha_at(s, a + node * (b - a))
-    return float(total * (b - a) / s.x[RESPONSE])
+    for k in range(NODES):
+        total -= WEIGHT[k] * alpha_at(s, a + NODE[k] * (b - a))
+    return total * (b - a) / s.response
 
 
-def first_release(s: Any, a: float, alpha_a: float, b: float) -> float:
+def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
     """First time in (a, b] at which alpha turns positive, or NONE."""
     h = (b - a) / PROBES
     t_0, f_0, t_1, f_1 = a - h, 2.0 * alpha_a, a, alpha_a
@@ -59,7 +67,7 @@ def first_release(s: Any, a: float, alpha_a: float, b: float) -> float:
     return NONE
 
 
-def alpha_root(s: Any, a: float, f_a: float, b: float, f_b: float) -> float:
+def alpha_root(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
     """Where alpha turns positive between a and b; the secant method safeguarded by bisection."""
     t, f, old, f_old = b, f_b, a, f_a
     before = b - a
@@ -79,7 +87,7 @@ def alpha_root(s: Any, a: float, f_a: float, b: float, f_b: float) -> float:
     return t
 
 
-def summit(s: Any, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:
+def summit(s: Flight, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:
     """Highest alpha near the middle one of three equidistant samples, by parabolas."""
     best, f_best = t_1, f_1
     for _ in range(4):

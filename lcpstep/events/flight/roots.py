@@ -9,12 +9,13 @@ Numerical Recipes, section 9.4.
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.compiled import inline
-from lcpstep.events.clock import RESOLUTION
-from lcpstep.events.contact import EDGE_ALPHA, EDGE_G, EDGE_U, NONE
-from lcpstep.events.flight.motion import free
+from lcpstep.events.flight.contact import NONE, RESOLUTION
+
+if not cython.compiled:
+    from lcpstep.events.flight.motion import Flight, free
+    from lcpstep.pointers import abs, max, min
 
 MAX_ITERATIONS = 100
 STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it
@@ -24,10 +25,9 @@ COARSE = 1e-9  # of the bracket: where a gap turns it changes by the square of t
 POLISHES, POLISH, POLISHED = 3, 1e-3, 1e-8
 
 
-def first_contact(s: Any, a: float, b: float, g_b: float, u_b: float, alpha_b: float) -> float:
+def first_contact(s: Flight, a: float, b: float, g_b: float, u_b: float, alpha_b: float) -> float:
     """First time in (a, b] at which the gap falls to zero, or NONE."""
-    x = s.x
-    g_a, u_a, alpha_a = x[EDGE_G], x[EDGE_U], x[EDGE_ALPHA]
+    g_a, u_a, alpha_a = s.g, s.u, s.alpha
     falling = u_a < 0.0 and u_b < 0.0 and not (alpha_a > 0.0 and alpha_b < 0.0)
     if alpha_a * alpha_b < 0.0 and not falling:
         m = root(s, 2, a, alpha_a, b, alpha_b, NONE)
@@ -37,7 +37,7 @@ def first_contact(s: Any, a: float, b: float, g_b: float, u_b: float, alpha_b: f
     return first_in_half(s, a, g_a, u_a, b, g_b, u_b)
 
 
-def first_in_half(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
+def first_in_half(s: Flight, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
     """The same where the gap velocity is monotone, or does not change its sign."""
     if u_a > 0.0 and u_b < 0.0 and g_a <= 0.0 and g_b <= 0.0:  # up from the obstacle and down to it again
         m = a + (b - a) * u_a / (u_a - u_b)
@@ -55,7 +55,7 @@ def first_in_half(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float
     return NONE
 
 
-def gap_root(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
+def gap_root(s: Flight, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b: float) -> float:
     """Root of the gap between a and b, g_a g_b <= 0; the first guess from the cubic through both ends."""
     h = b - a
     bend = 3.0 * (g_b - g_a) - h * (2.0 * u_a + u_b)
@@ -68,7 +68,7 @@ def gap_root(s: Any, a: float, g_a: float, u_a: float, b: float, g_b: float, u_b
     return root(s, 0, a, g_a, b, g_b, a + sigma * h)
 
 
-def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: float) -> float:
+def root(s: Flight, level: int, a: float, f_a: float, b: float, f_b: float, guess: float) -> float:
     """Root between a and b of the gap (level 0), its velocity (1) or acceleration (2); f_a f_b <= 0.
 
     Halley's method for the gap and Newton's for the others, safeguarded by bisection, from a guess that may be
@@ -78,7 +78,9 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: 
     """
     if f_a == 0.0:
         return a
-    tau, f = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
+    tau, f = a, f_a
+    if abs(f_b) < abs(f_a):
+        tau, f = b, f_b
     new = guess if a < guess < b else tau - f * (b - a) / (f_b - f_a)
     width = before = b - a
     for _ in range(MAX_ITERATIONS):
@@ -113,8 +115,7 @@ def root(s: Any, level: int, a: float, f_a: float, b: float, f_b: float, guess: 
     return tau
 
 
-@inline
-def polish(s: Any, tau: float) -> tuple[float, float, float]:
+def polish(s: Flight, tau: float) -> tuple[float, float, float]:
     """Steps of Newton's towards the root of the gap near tau: its time, gap velocity and acceleration there."""
     u = alpha = 0.0
     for _ in range(POLISHES):

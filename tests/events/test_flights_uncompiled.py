@@ -1,0 +1,36 @@
+"""The kernels of flights as plain Python: the same motions as built, to the last bit."""
+
+import pytest
+
+from tests.processes import python
+from tests.uncompiled import copy_without_what_is_built
+
+PROGRAM = """
+from hashlib import sha256
+from numpy import ascontiguousarray, linspace
+from lagrangian import scenes
+from lcpstep import EventDriven, simulate
+scene = {scene}
+found = []
+for keep in (1, "impacts", linspace(*scene.t_span, 7)):
+    run = simulate(scene, EventDriven(), keep=keep)
+    found += [run.t, run.q, run.v, run.impulse, run.impacts.time, run.impacts.after, run.impacts.kind]
+found += run.at(run.t)
+print(len(run.impacts), sha256(b"".join(ascontiguousarray(x).tobytes() for x in found)).hexdigest())
+"""
+SCENES = {
+    "chattering to rest": ('scenes.CATALOGUE["bouncing-ball"].make(restitution=0.5)', 20),
+    "a cam with corners": ("scenes.cam_follower(rpm=137.0, t_end=0.9)", 30),
+    "absolute, damped": ('scenes.cam_follower(rpm=200.0, b=2.0, coordinates="absolute", t_end=0.3)', 5),
+    "forced": ('scenes.CATALOGUE["sticking-oscillator"].make(t_end=8.0)', 5),
+}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_flights_are_the_same_uncompiled(tmp_path, scene):
+    copy_without_what_is_built(tmp_path)
+    expression, least = SCENES[scene]
+    program = PROGRAM.replace("{scene}", expression)
+    built, uncompiled = python(program), python(program, cwd=tmp_path, PYTHONPATH=str(tmp_path))
+    assert int(built.split()[-2]) >= least
+    assert built == uncompiled
