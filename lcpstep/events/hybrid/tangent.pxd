@@ -18,8 +18,8 @@ cdef class Tangent(RungeKutta):
     cdef readonly Machine m
     cdef Py_ssize_t n_x, mode
     cdef double* J
-    cdef double* A
-    cdef double* D
+    cdef double* F_x
+    cdef double* S
     cdef double* R
     cdef double* R_t
     cdef double* H_x

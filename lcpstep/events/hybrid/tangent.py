@@ -47,8 +47,8 @@ class Tangent(RungeKutta):
 
     n_x, m       of the system, a Machine;  mode   at hand
     J : (n_x, n_x)      the derivative so far
-    A : (n_x, n_x)      F_x, or the derivative of one reset
-    D : (n_x, n_x)      of a switch
+    F_x : (n_x, n_x)    derivative of the field
+    S : (n_x, n_x)      D of a switch, or the derivative of one reset
     R, R_t : (n_x, n_x), (n_x,)   derivatives of all resets at one instant
     H_x, x, start : (n_x,)   gradient of a guard; a shifted state; state at the start of a piece
     F_before, F_after, up, down : (n_x,)   fields and values on both sides
@@ -64,8 +64,8 @@ class Tangent(RungeKutta):
             np.zeros((3, n, n)),
             np.zeros((VECTORS, n)),
         )
-        self.J, self.A, self.R_t = doubles(self.derivative), doubles(self.squares), doubles(self.vectors)
-        self.D, self.R = after(self.A, n * n), after(self.A, 2 * n * n)
+        self.J, self.F_x, self.R_t = doubles(self.derivative), doubles(self.squares), doubles(self.vectors)
+        self.S, self.R = after(self.F_x, n * n), after(self.F_x, 2 * n * n)
         self.H_x, self.x, self.start = after(self.R_t, n), after(self.R_t, 2 * n), after(self.R_t, 3 * n)
         self.F_before, self.F_after = after(self.R_t, 4 * n), after(self.R_t, 5 * n)
         self.up, self.down = after(self.R_t, 6 * n), after(self.R_t, 7 * n)
@@ -155,7 +155,7 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
     for j in range(n):
         d = RELATIVE_STEP * max(1.0, abs(z[j]))
         for i in range(n):
-            s.A[i * n + j] = 0.0
+            s.F_x[i * n + j] = 0.0
         for k in range(2):
             step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
             copy(s.x, z, n)
@@ -165,7 +165,7 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
             s.x[j] = z[j] - step
             field(s.m, s.mode, t, s.x, s.down)
             for i in range(n):
-                s.A[i * n + j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
+                s.F_x[i * n + j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
     copy(s.x, z, n)
     field(s.m, s.mode, t, s.x, s.up)
     for i in range(n):
@@ -173,7 +173,7 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
         for j in range(n):
             total = 0.0
             for k in range(n):
-                total += s.A[i * n + k] * z[n + k * n + j]
+                total += s.F_x[i * n + k] * z[n + k * n + j]
             out[n + i * n + j] = total
 
 
@@ -207,8 +207,8 @@ def switch(s: Tangent, lines: Doubles, further: int, moves: bool) -> bool:
         for j in range(n):
             gain -= s.R[i * n + j] * s.F_before[j]
         for j in range(n):
-            s.D[i * n + j] = s.R[i * n + j] + gain * s.H_x[j] / crossing
-    times(s, s.D)
+            s.S[i * n + j] = s.R[i * n + j] + gain * s.H_x[j] / crossing
+    times(s, s.S)
     return True
 
 
@@ -220,7 +220,7 @@ def compose(s: Tangent, line: Doubles, t: float) -> None:
         for j in range(n):
             differenced(s, guard, t, before, j, RELATIVE_STEP * max(1.0, abs(before[j])))
             for i in range(n):
-                s.D[i * n + j] = s.up[i]
+                s.S[i * n + j] = s.up[i]
         product(s)
         differenced(s, guard, t, before, -1, s.m.dt)
         for i in range(n):
@@ -231,7 +231,7 @@ def compose(s: Tangent, line: Doubles, t: float) -> None:
             square += s.m.H_x[i] * s.m.H_x[i]
         for i in range(n):
             for j in range(n):
-                s.D[i * n + j] = (1.0 if i == j else 0.0) - s.m.H_x[i] * s.m.H_x[j] / square
+                s.S[i * n + j] = (1.0 if i == j else 0.0) - s.m.H_x[i] * s.m.H_x[j] / square
         product(s)
         for i in range(n):
             s.R_t[i] -= s.m.H_x[i] * H_t / square
@@ -244,7 +244,7 @@ def product(s: Tangent) -> None:
         for i in range(n):
             s.down[i] = 0.0
             for k in range(n):
-                s.down[i] += s.D[i * n + k] * (s.R[k * n + j] if j < n else s.R_t[k])
+                s.down[i] += s.S[i * n + k] * (s.R[k * n + j] if j < n else s.R_t[k])
         for i in range(n):
             if j < n:
                 s.R[i * n + j] = s.down[i]
