@@ -1,0 +1,48 @@
+cimport cython
+from libc.math cimport pow, sqrt
+from lcpstep.arrays cimport doubles
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport copy, finite
+from lcpstep.pointers cimport abs, after, inf, max, min
+
+cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS
+cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE
+
+
+cdef class RungeKutta:
+    cdef object tables, numbers
+    cdef readonly object state
+    cdef readonly Py_ssize_t n, positions
+    cdef readonly bint dense
+    cdef public double rtol, atol, length, next_step
+    cdef public Py_ssize_t evaluations
+    cdef Py_ssize_t refused
+    cdef double stretch_end
+    cdef double* A
+    cdef double* C
+    cdef double* D
+    cdef double* E3
+    cdef double* E5
+    cdef double* y
+    cdef double* y_new
+    cdef double* y_stage
+    cdef double* first
+    cdef double* K
+    cdef double* F
+    cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
+    cdef void begin(self, double next_step) noexcept nogil
+    @cython.locals(truncated=bint, again=bint, good=bint, known=bint, error=double)
+    cdef Py_ssize_t take_step(self, double t, double longest, double scan) noexcept nogil
+    cdef bint step(self, double t, double h) noexcept nogil
+    cdef bint complete(self, double t, double h) noexcept nogil
+    cdef bint stages(self, double t, double h, Py_ssize_t first, Py_ssize_t end) noexcept nogil
+    cdef void combine(self, double h, Py_ssize_t stage) noexcept nogil
+    cdef double error_norm(self, double h) noexcept nogil
+    cdef bint refuse(self, double t, double scan) noexcept nogil
+    cdef bint repeats(self, double h) noexcept nogil
+    cdef void interpolant(self, double h) noexcept nogil
+    cdef double dense_error(self, double h) noexcept nogil
+    cdef void at(self, double x, double* out) noexcept nogil
+
+
+cdef double factor(double error) noexcept nogil

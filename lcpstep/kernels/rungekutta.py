@@ -1,0 +1,228 @@
+"""Steps of the Runge-Kutta method DOP853, their control and dense output, for any field.
+
+Order 8 with error estimates of orders 5 and 3 and a dense output of order 7; a class of fields inherits `RungeKutta`
+and has its own `rates`. Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I (Springer
+1993), section II.10; the coefficients stand in `dop853`.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from lcpstep.kernels.dop853 import ALL, DENSE, ERROR_3, ERROR_5, EXTRA_STAGES, STAGES, TIMES, WEIGHTS, table
+from lcpstep.kernels.status import DONE, NOT_FINITE, STEP_TOO_SMALL
+
+if not cython.compiled:
+    from math import pow, sqrt
+
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy, finite
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+
+UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
+SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step
+# Steps refused within a stretch of the scan: the right-hand side has no derivatives that a step could resolve
+HOPELESS, STRETCH = 2000, 1e-3
+TOLERANCES = 3.0  # within which the dense output must be
+LOOK, DEFECT = 0.7, 7.0  # where it is looked at, and what one sees there
+UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
+POLYNOMIALS = 7  # of the dense output, each a number for every component
+
+
+class RungeKutta:
+    """A step y' = f(t, y) from y to y_new: its stages, its dense output, and the control of its size.
+
+    n, positions : numbers in y; the rates of the first `positions` are the following ones
+    dense        whether `take_step` makes the dense output, and holds that of positions to the tolerance as well
+    rtol, atol   tolerances
+    y, y_new : (n,);  y_stage : (n,)   start and end of the step; work space, free between calls
+    K : (16, n)   rates at the stages
+    F : (7, n)    dense output
+    length       of the step last completed
+    next_step    the size to be tried next
+    evaluations  of the field
+    state : (n,) array   y as Python sees it
+
+    Parameters
+    ----------
+    n, positions, rtol, atol, dense   as above
+    """
+
+    def __init__(self, n: int, positions: int, rtol: float, atol: float, dense: bool = True) -> None:
+        self.n, self.positions, self.dense, self.rtol, self.atol = n, positions, dense, rtol, atol
+        self.length, self.evaluations, self.refused = 0.0, 0, 0
+        self.next_step, self.stretch_end = inf, -inf
+        coefficients = [table(rows).ravel() for rows in (WEIGHTS, DENSE, [ERROR_3], [ERROR_5])]
+        self.tables = np.concatenate([*coefficients, np.array(TIMES)])
+        self.A = doubles(self.tables)
+        self.D = after(self.A, ALL * ALL)
+        self.E3 = after(self.D, len(DENSE) * ALL)
+        self.E5 = after(self.E3, ALL)
+        self.C = after(self.E5, ALL)
+        self.state, self.numbers = np.zeros(n), np.zeros((3 + ALL + POLYNOMIALS, n))
+        self.y = doubles(self.state)
+        self.y_new = doubles(self.numbers)
+        self.y_stage = after(self.y_new, n)
+        self.first = after(self.y_stage, n)
+        self.K = after(self.first, n)
+        self.F = after(self.K, ALL * n)
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Dy = f(t, y); False where it is not finite or cannot be evaluated. Every field has its own."""
+        return False
+
+    def begin(self, next_step: float) -> None:
+        """Another motion begins, with a step of this size."""
+        self.next_step, self.stretch_end = next_step, -inf
+        self.length, self.evaluations, self.refused = 0.0, 0, 0
+
+    def take_step(self, t: float, longest: float, scan: float) -> int:
+        """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status.
+
+        scan : the longest step that makes sense
+        """
+        h = min(self.next_step, longest)
+        truncated, again = h < self.next_step, False
+        while True:
+            good = self.step(t, h)
+            self.evaluations += STAGES + 1
+            if good and again and not self.repeats(h):
+                return STEP_TOO_SMALL
+            error = self.error_norm(h) if good else inf
+            if error <= 1.0 and self.dense:
+                if not self.complete(t, h):
+                    return NOT_FINITE
+                self.evaluations += EXTRA_STAGES
+                error = max(error, self.dense_error(h))
+            if error <= 1.0:
+                break
+            # the field may have no value, or an infinite one, beyond what a shorter step reaches
+            known = error < inf
+            h *= max(LEAST, factor(error)) if known else LEAST
+            truncated, again = False, good
+            if not self.refuse(t, scan) or h <= 4.0 * RESOLUTION * max(abs(t), scan):
+                return STEP_TOO_SMALL if good and known else NOT_FINITE
+        self.next_step = max(h * factor(error), self.next_step if truncated else 0.0)
+        self.length = h
+        return DONE
+
+    def step(self, t: float, h: float) -> bool:
+        """A step of size h from y at t to y_new; False where it is not finite."""
+        n = self.n
+        if not self.rates(t, self.y, self.K):
+            return False
+        if not self.stages(t, h, 1, STAGES):
+            return False
+        self.combine(h, STAGES)
+        copy(self.y_new, self.y_stage, n)
+        return self.rates(t + h, self.y_new, after(self.K, STAGES * n)) and finite(self.y_new, n)
+
+    def complete(self, t: float, h: float) -> bool:
+        """Dense output of the step that `step` has just made; False where it is not finite."""
+        if not self.stages(t, h, STAGES + 1, ALL):
+            return False
+        self.interpolant(h)
+        self.length = h
+        return True
+
+    def stages(self, t: float, h: float, first: int, end: int) -> bool:
+        """Stages first .. end - 1 of a step."""
+        for stage in range(first, end):
+            self.combine(h, stage)
+            if not self.rates(t + self.C[stage] * h, self.y_stage, after(self.K, stage * self.n)):
+                return False
+        return True
+
+    def combine(self, h: float, stage: int) -> None:
+        """y_stage = y + h sum_j A[stage, j] K[j]."""
+        n, K, A = self.n, self.K, after(self.A, stage * ALL)
+        for i in range(n):
+            total = 0.0
+            for j in range(stage):
+                total += A[j] * K[j * n + i]
+            self.y_stage[i] = self.y[i] + h * total
+
+    def error_norm(self, h: float) -> float:
+        """Estimated error of y_new over the tolerance; the step is good where it is not above one."""
+        n, K, E3, E5 = self.n, self.K, self.E3, self.E5
+        err5, err3 = 0.0, 0.0
+        for i in range(n):
+            scale = self.atol + self.rtol * max(abs(self.y[i]), abs(self.y_new[i]))
+            e5, e3 = 0.0, 0.0
+            for j in range(STAGES + 1):
+                e5 += E5[j] * K[j * n + i]
+                e3 += E3[j] * K[j * n + i]
+            err5 += (e5 / scale) * (e5 / scale)
+            err3 += (e3 / scale) * (e3 / scale)
+        if err5 + 0.01 * err3 <= UNDERFLOW:
+            return 0.0
+        return abs(h) * err5 / sqrt((err5 + 0.01 * err3) * n)
+
+    def refuse(self, t: float, scan: float) -> bool:
+        """Take note of a step from t that is refused; False where so many are that shorter ones will not help."""
+        if not self.stretch_end - STRETCH * scan <= t <= self.stretch_end:
+            self.refused, self.stretch_end = 0, t + STRETCH * scan
+        self.refused += 1
+        copy(self.first, self.K, self.n)
+        return self.refused <= HOPELESS
+
+    def repeats(self, h: float) -> bool:
+        """Whether the first stage, evaluated again after a refused step, is the same as far as one can tell."""
+        for i in range(self.n):
+            unlike = abs(h * (self.K[i] - self.first[i]))
+            if not unlike <= UNLIKE * (self.atol + self.rtol * abs(self.y[i])):
+                return False
+        return True
+
+    def interpolant(self, h: float) -> None:
+        """Dense output of the step, into F; needs all stages."""
+        n, K, F = self.n, self.K, self.F
+        for i in range(n):
+            delta = self.y_new[i] - self.y[i]
+            F[i] = delta
+            F[n + i] = h * K[i] - delta
+            F[2 * n + i] = 2.0 * delta - h * (K[STAGES * n + i] + K[i])
+            for k in range(4):
+                total = 0.0
+                for j in range(ALL):
+                    total += self.D[k * ALL + j] * K[j * n + i]
+                F[(3 + k) * n + i] = h * total
+
+    def dense_error(self, h: float) -> float:
+        """Estimated error of the dense output of positions over TOLERANCES tolerances.
+
+        The derivative of a position's polynomial and its rate's polynomial part by an error whose shape over the step
+        is always the same: its largest value over that at the place LOOK is DEFECT. No evaluation is needed.
+        """
+        n, m, F, worst = self.n, self.positions, self.F, 0.0
+        for i in range(m):
+            value, slope, speed = 0.0, 0.0, 0.0
+            for k in range(POLYNOMIALS):
+                value += F[(6 - k) * n + i]
+                speed += F[(6 - k) * n + m + i]
+                x, dx = (LOOK, 1.0) if k % 2 == 0 else (1.0 - LOOK, -1.0)
+                slope = slope * x + value * dx
+                value *= x
+                speed *= x
+            defect = abs(slope - h * (self.y[m + i] + speed))
+            worst = max(worst, defect / (self.atol + self.rtol * max(abs(self.y[i]), abs(self.y_new[i]))))
+        return worst / (DEFECT * TOLERANCES)
+
+    def at(self, x: float, out: Doubles) -> None:
+        """State at the fraction x of the step, by its dense output."""
+        n, F = self.n, self.F
+        for i in range(n):
+            total = 0.0
+            for k in range(POLYNOMIALS):
+                total += F[(6 - k) * n + i]
+                total *= x if k % 2 == 0 else 1.0 - x
+            out[i] = self.y[i] + total
+
+
+def factor(error: float) -> float:
+    """By how much to change the step after an error of this size."""
+    if error == 0.0:
+        return MOST
+    return min(MOST, max(LEAST, SAFETY * pow(error, -0.125)))
