@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles
-from lcpstep.pointers cimport Callback, callback_at, nan
+from lcpstep.pointers cimport Callback, after, callback_at, nan
 
 
 @cython.final

@@ -16,7 +16,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles, callback_at, nan
+    from lcpstep.pointers import Doubles, after, callback_at, nan
 
 
 class Function:
@@ -45,3 +45,9 @@ class Function:
         for i in range(self.length):
             out[i] = nan
         self.f(t, q, v, self.p, out, self.sizes)
+
+    def sample(self, times: Any, q: Any, v: Any, out: Any) -> None:
+        """The function at many times of one state, into out (times, ...); called from Python."""
+        t, x, x_t, filled = doubles(times), doubles(q), doubles(v), doubles(out)
+        for k in range(len(times)):
+            self.fill(t[k], x, x_t, after(filled, k * self.length))

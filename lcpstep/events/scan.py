@@ -1,0 +1,87 @@
+"""How finely the motion between events must be looked at: the scan for events must see every turn of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.faults import cause, forget
+from lcpstep.kernels.function import Function
+from lcpstep.kernels.model import Model
+
+Array = NDArray[np.float64]
+PER_PERIOD, PER_FORCING, PER_SPAN = (
+    10,
+    16,
+    50,
+)  # intervals per period of each oscillation, of the forcing, of the span
+SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
+SLOPE = 1e-7  # of the time looked at: step of a difference
+
+
+def scan_interval(scene: Scene, m: Model, rate: float) -> float:
+    """Longest interval on which the gap acceleration may be taken to change its sign only once.
+
+    rate : fastest rate of the free motion [rad/s], 0 where it is not known
+    """
+    scan = min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING)
+    if rate > 0.0:
+        scan = min(scan, 2.0 * math.pi / PER_PERIOD / rate)
+    turn = fastest_turn(scene, m)
+    # A period that is given says how finely to look, unless what moves is much faster.
+    if turn < (2.0 * scan if math.isfinite(scene.period) else math.inf):
+        scan = min(scan, turn / PER_FORCING)
+    return scan
+
+
+def fastest_turn(scene: Scene, m: Model) -> float:
+    """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
+
+    2 pi max |s'| / max |s''| of samples, which need not be dense for that; what has no period may speed up, and is
+    looked at in windows of time.
+    """
+    windows = 1 if math.isfinite(scene.period) else WINDOWS
+    fastest = 0.0
+    for rates in _rates(scene, m, sample_times(scene), SLOPE * sampled_length(scene)):
+        largest = np.abs(rates).reshape(windows, -1, rates.shape[1], 2).max(axis=1)
+        speed, acceleration = largest[..., 0], largest[..., 1]
+        turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
+        fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
+    return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf
+
+
+def sampled_length(scene: Scene) -> float:
+    """How much of the motion of what moves by itself is looked at: a period, or the whole span [s]."""
+    return min(scene.period, scene.t_span[1] - scene.t_span[0])
+
+
+def sample_times(scene: Scene) -> Array:
+    """Times at which it is looked at, (SAMPLES,); irregular, so that no oscillation hides between them."""
+    k = np.arange(SAMPLES)
+    return np.asarray(scene.t_span[0] + sampled_length(scene) * (k + k * GOLDEN % 1.0) / SAMPLES)
+
+
+def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]:
+    """Speeds and accelerations of each frame and obstacle that moves by itself, at these times, (times, n, 2)."""
+    state = np.array(scene.q0), np.array(scene.v0)
+    for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
+        if f.given:
+            rates = np.zeros((len(times), n, 3))
+            sampled(f, times, *state, rates)
+            yield rates[:, :, 1:]
+    if m.gap_t.given:
+        now, then = np.zeros((2, len(times), scene.n_c))
+        for out, t in ((now, times), (then, times + step)):
+            sampled(m.gap_t, t, *state, out)
+        yield np.stack([now, (then - now) / step], axis=2)
+
+
+def sampled(f: Function, times: Array, q: Array, v: Array, out: Array) -> None:
+    """A function at many times of one state. The motion may never come there: what it raises does not count."""
+    f.sample(times, q, v, out)
+    cause()  # but for the keyboard
+    forget()
