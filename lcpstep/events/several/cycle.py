@@ -8,66 +8,61 @@ the search: R. Brent, An improved Monte Carlo factorization algorithm, BIT 20 (1
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.events.bookkeeping import ACCUMULATION
-from lcpstep.events.clock import T0
-from lcpstep.events.several.chatter import stop
-from lcpstep.events.several.impact import apply, speed_noise
-from lcpstep.events.several.keep import log
-from lcpstep.events.several.state import (
-    CLOSED,
-    CYCLE_IMPULSE,
-    CYCLE_SPEED,
-    HELD_ROWS,
-    JOINT_CYCLE_IMPULSE,
-    SINCE,
-    SPEED,
-    STRUCK,
-)
+from lcpstep.events.several.ends import ACCUMULATION
+
+if not cython.compiled:
+    from lcpstep.events.several.chatter import stop
+    from lcpstep.events.several.impact import apply, speed_noise
+    from lcpstep.events.several.keep import log
+    from lcpstep.events.several.state import Mechanism
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.pointers import abs, max
 
 RETURNS = 2.0**-40  # relative deviation from proportion
 FOR_EVER = 1.0 - 2.0**-30  # of rho: nothing is lost
 
 
-def look_back(s: Any) -> None:
+def look_back(s: Mechanism) -> None:
     """Compare with the speeds of now from now on."""
-    for c in range(len(s.G)):
-        s.contact[CYCLE_SPEED, c], s.contact[CYCLE_IMPULSE, c] = s.contact[SPEED, c], 0.0
-    for i in range(len(s.J)):
-        s.joint[JOINT_CYCLE_IMPULSE, i] = 0.0
+    for c in range(s.n_c):
+        s.contact.turn_speed[c], s.contact.turn_impulse[c] = s.contact.speed[c], 0.0
+    for i in range(s.n_j):
+        s.joint.turn_impulse[i] = 0.0
 
 
-def recurrence(s: Any) -> float:
+def recurrence(s: Mechanism) -> float:
     """The ratio rho in which the speeds of all contacts struck since have returned, or 0 if they have not."""
     most, ratio = 0.0, 0.0
-    for c in range(len(s.G)):
-        if s.contact[CYCLE_IMPULSE, c] > 0.0 and abs(s.contact[CYCLE_SPEED, c]) > most:
-            most = abs(s.contact[CYCLE_SPEED, c])
-            ratio = s.contact[SPEED, c] / s.contact[CYCLE_SPEED, c]
+    for c in range(s.n_c):
+        if s.contact.turn_impulse[c] > 0.0 and abs(s.contact.turn_speed[c]) > most:
+            most = abs(s.contact.turn_speed[c])
+            ratio = s.contact.speed[c] / s.contact.turn_speed[c]
     if ratio > 0.0:
-        for c in range(len(s.G)):
-            if s.contact[CYCLE_IMPULSE, c] > 0.0:
-                error = abs(s.contact[SPEED, c] - ratio * s.contact[CYCLE_SPEED, c])
+        for c in range(s.n_c):
+            if s.contact.turn_impulse[c] > 0.0:
+                error = abs(s.contact.speed[c] - ratio * s.contact.turn_speed[c])
                 if error > RETURNS * ratio * most + speed_noise(s, c):
                     return 0.0
     return max(ratio, 0.0)
 
 
-def sum_up(s: Any, record: Any, count: Any, ratio: float) -> None:
+def sum_up(s: Mechanism, record: Record, tally: Tally, ratio: float) -> None:
     """Take the impacts that are left as one: the contacts that they strike are closed."""
-    n_j, n_c, rest = len(s.J), len(s.G), ratio / (1.0 - ratio)
-    s.number[HELD_ROWS] = n_j + n_c
+    n_j, n_c, rest = s.n_j, s.n_c, ratio / (1.0 - ratio)
+    s.n_held = n_j + n_c
     for i in range(n_j + n_c):
-        turn = s.joint[JOINT_CYCLE_IMPULSE, i] if i < n_j else s.contact[CYCLE_IMPULSE, i - n_j]
+        turn = s.joint.turn_impulse[i] if i < n_j else s.contact.turn_impulse[i - n_j]
         s.row[i], s.change[i] = i, rest * turn
-    before = s.x[T0]
+    before = s.t0
     for c in range(n_c):
         if s.change[n_j + c] > 0.0:
-            log(s, record, count, before, c, float(ACCUMULATION), s.contact[SPEED, c], 0.0, s.change[n_j + c])
+            log(s, record, tally, before, c, ACCUMULATION, s.contact.speed[c], 0.0, s.change[n_j + c])
     apply(s)
     for c in range(n_c):
         if s.change[n_j + c] > 0.0:
-            s.mode[CLOSED, c] = 1
-            s.contact[SINCE, c], s.contact[STRUCK, c] = before - s.contact[STRUCK, c], before
+            s.contact.closed[c] = 1
+            s.contact.since[c], s.contact.struck[c] = before - s.contact.struck[c], before
     stop(s)

@@ -7,139 +7,123 @@ Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical System
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.dense import assign, largest
-from lcpstep.dynamics import product
-from lcpstep.events.several.held import (
-    constrain,
-    contradiction,
-    hold,
-    hold_contacts,
-    hold_joints,
-    note,
-    solve_held,
-)
-from lcpstep.events.several.problem import CHECKED, solve_contacts
-from lcpstep.events.several.state import (
-    ACCELERATION,
-    BIAS,
-    CLOSED,
-    CULPRIT,
-    CURVE,
-    FREE_ACCELERATION,
-    HELD,
-    HELD_JOINTS,
-    HELD_ROWS,
-    LCP_B,
-    LCP_NOISE,
-    LCP_Z,
-    LOADED,
-    MEMBERS,
-    MULTIPLIER,
-    NOISE,
-)
+from lcpstep.events.several.ends import NO_FORCES
+from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
-DONE, NO_SOLUTION, CONTRADICTION = range(3)
+if not cython.compiled:
+    from lcpstep.events.several.held import (
+        constrain,
+        contradiction,
+        hold,
+        hold_contacts,
+        hold_joints,
+        note,
+        solve_held,
+    )
+    from lcpstep.events.several.problem import CHECKED, solve_contacts
+    from lcpstep.events.several.state import NOISE, Mechanism
+    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.pointers import abs
 
 
-def contact_forces(s: Any, t: float) -> int:
+def contact_forces(s: Mechanism, t: float) -> int:
     """Forces and accelerations of the closed contacts at time t; those that open are no longer closed.
 
-    The acceleration is left in the state's ACCELERATION, gap accelerations in CURVE, forces in MULTIPLIER.
+    The acceleration is left in `a`, gap accelerations in `curve`, forces in `multiplier`.
     """
-    n_c, n_j, a = len(s.G), len(s.J), s.state[ACCELERATION]
+    n_c, n_j, a = s.n_c, s.n_j, s.a
     hold_joints(s)
-    assign(a, s.state[FREE_ACCELERATION])
+    copy(a, s.a_free, s.n_q)
     constrain(s, a)
     if n_j > 0:
-        s.number[CULPRIT] = contradiction(s, a)
-        if s.number[CULPRIT] >= 0:
-            return CONTRADICTION
-    s.number[MEMBERS] = 0
+        s.culprit = contradiction(s, a)
+        if s.culprit >= 0:
+            return JOINTS_FAILED
+    s.n_members = 0
     for c in range(n_c):
-        s.mode[LOADED, c] = 0
-        s.contact[CURVE, c] = product(s.R, a, n_j + c) + s.contact[BIAS, c]
-        s.contact[MULTIPLIER, c] = 0.0
-        if s.mode[CLOSED, c] == 1:
-            s.member[s.number[MEMBERS]], s.contact[LCP_B, s.number[MEMBERS]] = c, s.contact[CURVE, c]
-            s.contact[LCP_NOISE, s.number[MEMBERS]] = 0.5 * NOISE * terms(s, c)
-            s.number[MEMBERS] += 1
+        s.contact.loaded[c] = 0
+        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
+        s.contact.multiplier[c] = 0.0
+        if s.contact.closed[c] == 1:
+            s.contact.member[s.n_members], s.contact.b[s.n_members] = c, s.contact.curve[c]
+            s.contact.noise[s.n_members] = 0.5 * NOISE * terms(s, c)
+            s.n_members += 1
     solved = True
-    if s.number[MEMBERS] > 0:
+    if s.n_members > 0:
         solved = solve_contacts(s)
         if solved:
             open_contacts(s, t)
             unload(s)
-        assign(a, s.state[FREE_ACCELERATION])
+        copy(a, s.a_free, s.n_q)
         hold_contacts(s)
         constrain(s, a)
     note(s, a)
-    return DONE if solved or presses(s) else NO_SOLUTION
+    return DONE if solved or presses(s) else NO_FORCES
 
 
-def presses(s: Any) -> bool:
+def presses(s: Mechanism) -> bool:
     """Whether the forces of the rows held are those of the closed contacts: none pulls, none is passed."""
-    a, most = s.state[ACCELERATION], largest(s.held[: s.number[HELD_ROWS]], 0.0)
-    size = largest(s.state[FREE_ACCELERATION], largest(a, 0.0))
-    for c in range(len(s.G)):
-        if s.contact[MULTIPLIER, c] < -CHECKED * most:
+    a, most = s.a, largest(s.held, 0.0, s.n_held)
+    size = largest(s.a_free, largest(a, 0.0, s.n_q), s.n_q)
+    for c in range(s.n_c):
+        if s.contact.multiplier[c] < -CHECKED * most:
             return False
-        i = len(s.J) + c
-        if s.mode[CLOSED, c] == 1 and product(s.R, a, i) + s.contact[BIAS, c] < -CHECKED * size:
+        i = s.n_j + c
+        if s.contact.closed[c] == 1 and product(s.R, a, i, s.n_q) + s.contact.bias[c] < -CHECKED * size:
             return False
     return True
 
 
-def open_contacts(s: Any, t: float) -> None:
+def open_contacts(s: Mechanism, t: float) -> None:
     """Of the members, mark those that carry a force, and open those that accelerate away from the surface."""
-    k = s.number[MEMBERS]
-    W = s.W[: k * k].reshape((k, k))
+    k = s.n_members
     for m in range(k):
-        c, alpha = s.member[m], s.contact[LCP_B, m]
+        c, alpha = s.contact.member[m], s.contact.b[m]
         size = terms(s, c)
         for b in range(k):
-            alpha += W[m, b] * s.contact[LCP_Z, b]
-            size += abs(W[m, b] * s.contact[LCP_Z, b])
-        if s.contact[LCP_Z, m] > 0.0:
-            s.mode[LOADED, c], s.contact[MULTIPLIER, c] = 1, s.contact[LCP_Z, m]
-        elif alpha > NOISE * size and not s.contact[HELD, c] > t:
-            s.mode[CLOSED, c] = 0
+            alpha += s.W[m * k + b] * s.contact.z[b]
+            size += abs(s.W[m * k + b] * s.contact.z[b])
+        if s.contact.z[m] > 0.0:
+            s.contact.loaded[c], s.contact.multiplier[c] = 1, s.contact.z[m]
+        elif alpha > NOISE * size and not s.contact.held_until[c] > t:
+            s.contact.closed[c] = 0
 
 
-def terms(s: Any, c: int) -> float:
+def terms(s: Mechanism, c: int) -> float:
     """Size of the terms of a gap acceleration without contact forces."""
-    size = abs(s.contact[BIAS, c])
-    for j in range(s.state.shape[1]):
-        size += abs(s.R[len(s.J) + c, j] * s.state[FREE_ACCELERATION, j])
+    size = abs(s.contact.bias[c])
+    for j in range(s.n_q):
+        size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.a_free[j])
     return size
 
 
-def unload(s: Any) -> None:
+def unload(s: Mechanism) -> None:
     """Shift forces between loaded contacts that depend on each other until the rest of the loaded are independent.
 
     No force becomes negative on the way (Caratheodory): so the rows that will be held carry forces that push.
     """
-    n_j, force = len(s.J), s.contact[MULTIPLIER]
+    n_j, force = s.n_j, s.contact.multiplier
     shifting = True
     while shifting:  # each round takes the load from one contact
         shifting = False
         hold_joints(s)
-        for c in range(len(s.G)):
-            k = s.number[HELD_ROWS]
-            if s.mode[LOADED, c] == 1 and not shifting:
+        for c in range(s.n_c):
+            k = s.n_held
+            if s.contact.loaded[c] == 1 and not shifting:
                 hold(s, n_j + c)
-                if s.number[HELD_ROWS] == k:
+                if s.n_held == k:
                     shifting = True
                     for m in range(k):
-                        s.change[m] = s.D[s.row[m], n_j + c]
+                        s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
                     solve_held(s, k, s.change)
                     share, leaves = force[c], c
-                    for m in range(s.number[HELD_JOINTS], k):
+                    for m in range(s.n_held_joints, k):
                         d = s.row[m] - n_j
                         if force[d] + share * s.change[m] < 0.0:
                             share, leaves = force[d] / -s.change[m], d
-                    for m in range(s.number[HELD_JOINTS], k):
+                    for m in range(s.n_held_joints, k):
                         force[s.row[m] - n_j] += share * s.change[m]
                     force[c] -= share
-                    force[leaves], s.mode[LOADED, leaves] = 0.0, 0
+                    force[leaves], s.contact.loaded[leaves] = 0.0, 0

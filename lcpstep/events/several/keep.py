@@ -2,85 +2,73 @@
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.dense import assign
-from lcpstep.events.bookkeeping import EVENT, NEXT_TIME, ROW, count_event, keeps_events, take_back
-from lcpstep.events.clock import LAST_EVENT, RESOLUTION, T0
-from lcpstep.events.several.motion import state_at
-from lcpstep.events.several.state import (
-    ACCELERATION,
-    CLOSED,
-    IMPULSE,
-    LENGTH,
-    OWED,
-    OWED_UNTIL,
-    Q,
-    V,
-)
-from lcpstep.recording import LEAD, write_event
-from lcpstep.recording import LENGTH as STEP_LENGTH
-from lcpstep.recording import TIME as ROW_TIME
+if not cython.compiled:
+    from lcpstep.events.several.motion import state_at
+    from lcpstep.events.several.state import Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.record import LEAD, LENGTH, Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, after
 
 
 def log(
-    s: Any, record: Any, count: Any, t: float, c: int, kind: float, before: float, after_: float, p: float
+    s: Mechanism,
+    record: Record,
+    tally: Tally,
+    t: float,
+    c: int,
+    kind: int,
+    before: float,
+    after_: float,
+    p: float,
 ) -> None:
     """Note an event; those that pass without the time going on are counted."""
-    write_event(record.events[count[EVENT]], t, c, before, after_, p, int(kind))
-    stalled = abs(s.x[T0] - s.x[LAST_EVENT]) <= 4.0 * RESOLUTION * abs(s.x[T0])
-    count_event(count, stalled)
-    s.x[LAST_EVENT] = s.x[T0]
+    record.note(t, c, before, after_, p, kind)
+    tally.add_event(abs(s.t0 - s.last_event) <= 4.0 * RESOLUTION * abs(s.t0))
+    s.last_event = s.t0
 
 
-def keep_wanted(s: Any, record: Any, count: Any) -> None:
+def keep_wanted(s: Mechanism, record: Record) -> None:
     """Keep the state that is asked for next."""
-    t = record.times[count[NEXT_TIME]]
-    state_at(s, t - s.x[T0])
-    keep(s, record, count, t)
-    count[NEXT_TIME] += 1
+    t = record.times[record.next_time]
+    state_at(s, t - s.t0)
+    keep(s, record, t)
+    record.next_time += 1
 
 
-def keep_event(s: Any, record: Any, count: Any, t: float) -> None:
+def keep_event(s: Mechanism, record: Record, t: float) -> None:
     """Keep the state after an event, if these are kept; events at one time share a row."""
-    if not keeps_events(record):
+    if not record.keeps_events():
         return
-    if take_back(record, count, t):
-        row, n = record.rows[count[ROW]], LEAD + 2 * s.state.shape[1]
-        for c in range(len(s.G)):
-            s.contact[IMPULSE, c] += row[n + c]
-        for i in range(len(s.J)):
-            s.joint[IMPULSE, i] += row[n + len(s.G) + i]
-    keep(s, record, count, t)
+    if record.take_back(t):
+        kept = after(record.rows, record.row * record.row_size + LEAD + 2 * s.n_q)
+        for i in range(s.n_r):
+            s.impulse[i] += kept[i]
+    keep(s, record, t)
 
 
-def keep(s: Any, record: Any, count: Any, t: float) -> None:
+def keep(s: Mechanism, record: Record, t: float) -> None:
     """Keep the state Q, V at time t, and the impulses of contacts and joints since the one before."""
-    row, n = record.rows[count[ROW]], s.state.shape[1]
-    row[ROW_TIME] = t
-    for j in range(n):
-        row[LEAD + j], row[LEAD + n + j] = s.state[Q, j], s.state[V, j]
-    for c in range(len(s.G)):
-        if s.contact[OWED, c] < 0.0:
+    for c in range(s.n_c):
+        if s.contact.owed[c] < 0.0:
             pay(s, c, t)
-        row[LEAD + 2 * n + c], s.contact[IMPULSE, c] = s.contact[IMPULSE, c], 0.0
-    for i in range(len(s.J)):
-        row[LEAD + 2 * n + len(s.G) + i], s.joint[IMPULSE, i] = s.joint[IMPULSE, i], 0.0
-    count[ROW] += 1
+    record.keep(t, 0.0, s.q, s.v, s.impulse)
 
 
-def pay(s: Any, c: int, t: float) -> None:
+def pay(s: Mechanism, c: int, t: float) -> None:
     """Pay what the end of a chattering sequence has taken on account; t: the time of the row to be kept."""
-    p = s.contact[IMPULSE, c] + s.contact[OWED, c]
-    due = p >= 0.0 or s.mode[CLOSED, c] == 0 or t >= s.contact[OWED_UNTIL, c]
-    s.contact[IMPULSE, c], s.contact[OWED, c] = (p, 0.0) if due else (0.0, p)
+    p = s.contact.impulse[c] + s.contact.owed[c]
+    due = p >= 0.0 or s.contact.closed[c] == 0 or t >= s.contact.owed_until[c]
+    s.contact.impulse[c] = p if due else 0.0
+    s.contact.owed[c] = 0.0 if due else p
 
 
-def store_dense(s: Any, record: Any, count: Any) -> None:
+def store_dense(s: Mechanism, record: Record) -> None:
     """Keep the motion from the last kept state on: the dense output of the step, or the acceleration."""
-    if len(record.dense) > 0:
-        if s.constant:
-            assign(record.dense[count[ROW] - 1], s.state[ACCELERATION])
-        else:
-            assign(record.dense[count[ROW] - 1], s.w.F)
-        record.rows[count[ROW] - 1, STEP_LENGTH] = s.x[LENGTH]
+    if record.dense_size > 0:
+        moved = s.a if s.constant else s.smooth.F
+        copy(record.dense_row(record.row - 1), moved, record.dense_size)
+        record.last_row()[LENGTH] = s.length

@@ -10,68 +10,88 @@ from __future__ import annotations
 
 from typing import Any
 
-from lcpstep.events.bookkeeping import (
-    BUFFER_FULL,
-    EVENT,
-    FINISHED,
-    NOT_FINITE,
-    ROW,
-    SLACK,
-    STEP,
-    TOO_MANY_EVENTS,
-    too_many,
-)
-from lcpstep.events.clock import HIGH, T0, find_corners
-from lcpstep.events.several.equations import measure
-from lcpstep.events.several.keep import keep
-from lcpstep.events.several.modes import jump, obey, settle
-from lcpstep.events.several.motion import touching
-from lcpstep.events.several.parabolas import fly
-from lcpstep.events.several.state import GAP, JUMP, MOVE, NEXT, OBEY, SETTLE
-from lcpstep.events.several.step import complete, step
+import cython
+
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
+
+if not cython.compiled:
+    from lcpstep.events.several.equations import measure
+    from lcpstep.events.several.keep import keep
+    from lcpstep.events.several.modes import jump, obey, settle
+    from lcpstep.events.several.motion import touching
+    from lcpstep.events.several.parabolas import fly
+    from lcpstep.events.several.state import JUMP, MOVE, OBEY, SETTLE, Mechanism
+    from lcpstep.events.several.step import complete, step
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+
+SLACK = 4  # rows that one round may need
 
 
-def run(s: Any, record: Any, count: Any, goal: int) -> int:
-    """Go on from x[T0] to the end of the span, or to step number `goal`; says why it returned."""
-    code = FINISHED
-    if count[ROW] == 0 and count[STEP] == 0 and s.number[NEXT] == MOVE:
-        s.number[NEXT] = JUMP
+def run(s: Any, record: Any, tally: Any, goal: Any) -> int:
+    """`go_on`, called from Python."""
+    return released(s, record, tally, goal)
+
+
+def released(s: Mechanism, record: Record, tally: Tally, goal: int) -> int:
+    """`go_on`, without the interpreter's lock."""
+    with cython.nogil:
+        return go_on(s, record, tally, goal)
+
+
+def keep_state(s: Any, record: Any) -> None:
+    """Keep the state at the base time, called from Python."""
+    put_back(s, record)
+
+
+def put_back(s: Mechanism, record: Record) -> None:
+    """Keep the state at the base time."""
+    copy(s.q, s.q0, 2 * s.n_q)
+    keep(s, record, s.t0)
+
+
+def go_on(s: Mechanism, record: Record, tally: Tally, goal: int) -> int:
+    """Go on from t0 to the end of the span, or to step number `goal`; says why it returned."""
+    code = DONE
+    if record.row == 0 and tally.steps == 0 and s.next == MOVE:
+        s.next = JUMP
         if not begin(s):
             return NOT_FINITE
-    while code == FINISHED and (s.number[NEXT] != MOVE or (s.x[T0] < s.plan.t_end and count[STEP] < goal)):
-        if s.number[NEXT] == JUMP:
-            s.number[NEXT] = SETTLE
-            code = jump(s, record, count)
-        elif s.number[NEXT] == SETTLE:
-            s.number[NEXT] = MOVE
-            code = settle(s, record, count)
-        elif s.number[NEXT] == OBEY:
-            s.number[NEXT] = MOVE
-            obey(s, record, count)
-        elif count[ROW] == 0 and len(record.times) == 0:
-            keep(s, record, count, s.x[T0])
-        elif 2 * count[EVENT] > len(record.events) or count[ROW] + SLACK > len(record.rows):
+    while code == DONE and (s.next != MOVE or (s.t0 < s.t_end and tally.steps < goal)):
+        if s.next == JUMP:
+            s.next = SETTLE
+            code = jump(s, record, tally)
+        elif s.next == SETTLE:
+            s.next = MOVE
+            code = settle(s, record, tally)
+        elif s.next == OBEY:
+            s.next = MOVE
+            obey(s, record, tally)
+        elif record.row == 0 and record.n_times == 0:
+            keep(s, record, s.t0)
+        elif 2 * record.event > record.event_capacity or record.row + SLACK > record.row_capacity:
             code = BUFFER_FULL
-        elif too_many(count):
+        elif tally.too_many():
             code = TOO_MANY_EVENTS
-        elif s.x[T0] >= s.x[HIGH]:
-            find_corners(s, s.x[T0])
-            s.number[NEXT] = SETTLE
+        elif s.t0 >= s.high:
+            s.find_corners(s.t0)
+            s.next = SETTLE
         elif s.constant:
-            fly(s, record, count)
+            fly(s, record, tally)
         else:
-            code = step(s, count)
-            if code == FINISHED:
-                code = complete(s, record, count)
+            code = step(s)
+            if code == DONE:
+                code = complete(s, record, tally)
     return code
 
 
-def begin(s: Any) -> bool:
+def begin(s: Mechanism) -> bool:
     """The state at the start of the span, where gaps that are zero to rounding are closed; False where not finite."""
-    find_corners(s, s.x[T0])
-    if not measure(s, s.x[T0]):
+    s.find_corners(s.t0)
+    if not measure(s, s.t0):
         return False
-    for c in range(len(s.G)):
-        if s.contact[GAP, c] <= touching(s, c):
-            s.contact[GAP, c] = 0.0
+    for c in range(s.n_c):
+        if s.contact.gap[c] <= touching(s, c):
+            s.contact.gap[c] = 0.0
     return True

@@ -9,51 +9,52 @@ Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.compiled import call_solver
-from lcpstep.events.several.state import HELD_JOINTS, LCP_B, LCP_NOISE, LCP_Z, LOADED, MEMBERS
 from lcpstep.lcp.status import SOLVED
+
+if not cython.compiled:
+    from lcpstep.events.several.state import Mechanism
+    from lcpstep.kernels.vectors import clear
+    from lcpstep.lcp.kernel import solve_small
 
 CHECKED = 1e-10  # relative violation that an answer found without the solver may have
 
 
-def solve_contacts(s: Any) -> bool:
-    """Solve the members' problem with b in LCP_B; z, at least zero, into LCP_Z, and who carries a force.
+def solve_contacts(s: Mechanism) -> bool:
+    """Solve the members' problem with `b`; z, at least zero, and who carries a force.
 
-    LCP_NOISE is the rounding of b. Where the solver fails (W has lost too many digits), all that could are said to
+    `noise` is the rounding of b. Where the solver fails (W has lost too many digits), all that could are said to
     carry one, with z = 0: an answer to be checked.
     """
-    k = s.number[MEMBERS]
-    z, b = s.contact[LCP_Z], s.contact[LCP_B]
-    W = s.W[: k * k].reshape((k, k))
-    for a in range(k):
-        z[a] = 0.0
-    contact_matrix(s, W)
-    solved = bool(call_solver(s.solver, W, b[:k], z[:k], s.lcp) == SOLVED)
+    k = s.n_members
+    z, b = s.contact.z, s.contact.b
+    clear(z, k)
+    contact_matrix(s)
+    solved = solve_small(s.W, b, z, k, s.lcp) == SOLVED
     if not solved:
         for a in range(k):
-            b[a] += s.contact[LCP_NOISE, a]
+            b[a] += s.contact.noise[a]
             z[a] = 0.0
-        solved = bool(call_solver(s.solver, W, b[:k], z[:k], s.lcp) == SOLVED)
+        solved = solve_small(s.W, b, z, k, s.lcp) == SOLVED
     for a in range(k):
         z[a] = z[a] if solved else 0.0
-        s.mode[LOADED, s.member[a]] = 1 if z[a] > 0.0 or not solved else 0
+        s.contact.loaded[s.contact.member[a]] = 1 if z[a] > 0.0 or not solved else 0
     return solved
 
 
-def contact_matrix(s: Any, W: Any) -> None:
+def contact_matrix(s: Mechanism) -> None:
     """W of the member contacts; the joints must be the rows held."""
-    n_j, k_j, k = len(s.J), s.number[HELD_JOINTS], s.number[MEMBERS]
+    n_j, k_j, k = s.n_j, s.n_held_joints, s.n_members
     for a in range(k):
-        i = n_j + s.member[a]
+        i = n_j + s.contact.member[a]
         for m in range(k_j):  # the rows of the Cholesky factor that follow the joints'
-            total = s.D[i, s.row[m]]
+            total = s.D[i * s.n_r + s.row[m]]
             for j in range(m):
-                total -= s.L[k_j + a, j] * s.L[m, j]
-            s.L[k_j + a, m] = total / s.L[m, m]
+                total -= s.L[(k_j + a) * s.n_r + j] * s.L[m * s.n_r + j]
+            s.L[(k_j + a) * s.n_r + m] = total / s.L[m * s.n_r + m]
         for b in range(a + 1):
-            total = s.D[i, n_j + s.member[b]]
+            total = s.D[i * s.n_r + n_j + s.contact.member[b]]
             for m in range(k_j):
-                total -= s.L[k_j + a, m] * s.L[k_j + b, m]
-            W[a, b] = W[b, a] = total
+                total -= s.L[(k_j + a) * s.n_r + m] * s.L[(k_j + b) * s.n_r + m]
+            s.W[a * k + b] = s.W[b * k + a] = total

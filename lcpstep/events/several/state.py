@@ -1,77 +1,200 @@
-"""The state of a system with several contacts and joints, and the places of its numbers."""
+"""The state of a system with contacts and joints, under the names of mechanics, and its work space."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
-from lcpstep.compiled import by_address
-from lcpstep.events.clock import N_CLOCK, RESOLUTION
+import cython
+import numpy as np
 
-# Places in Several.x after those of the clock: duration of the step at hand; size of the next; whether the
-# acceleration is that without contacts; event in the step at hand, looked for up to SEEN
-LENGTH, NEXT_STEP, BARE, FOUND, SEEN = range(N_CLOCK, N_CLOCK + 5)
-N_NUMBERS = N_CLOCK + 5
-# Rows of Several.state
-Q0, V0, Q, V, ACCELERATION, FREE_ACCELERATION, FORCE, WORK = range(8)
-N_STATE = 8
-# Rows of Several.contact and, the first eight, of Several.joint
-GAP, SPEED, CURVE, MULTIPLIER, RATE, BIAS, IMPULSE, SHIFTED = range(8)  # CURVE: the gap acceleration
-LEFT_GAP, LEFT_SPEED, LEFT_CURVE, LEFT_MULTIPLIER = range(8, 12)  # at the left end of an interval
-STRUCK, SINCE, HELD = range(12, 15)  # time of the last impact, since the one before; no release before HELD
-# Right-hand side and solution of the contacts' problem; whether gap and speed are those of Q, V; end of chattering
-LCP_B, LCP_Z, SYNCHRONOUS, CHATTERS = range(15, 19)
-LCP_NOISE = 22  # rounding of the right-hand side
-# Of the impacts at one instant: size of the terms of a speed; speed, and impulse since, a number of impacts ago
-TERMS, CYCLE_SPEED, CYCLE_IMPULSE = range(19, 22)
-# How long the sequence that is summed up lasts; impulse taken on account, and the time up to which forces pay for it
-REST, OWED, OWED_UNTIL = range(23, 26)
-N_CONTACT = 26
-JOINT_CYCLE_IMPULSE = SHIFTED + 1  # the last row of Several.joint
-N_JOINT = SHIFTED + 2
-# Rows of Several.mode
-CLOSED, WAS_CLOSED, LOADED = range(3)  # lasting contact; so when last told; carries a force
-N_MODE = 3
-# Places in Several.number
-HELD_ROWS, HELD_JOINTS, CULPRIT, MEMBERS, NEXT, SOUGHT = range(6)  # MEMBERS: contacts of the last problem
-N_NUMBER = 6
-# Why the loop returned, beside the reasons of `bookkeeping`
-NO_IMPULSES, NO_FORCES, JOINTS_DISAGREE = range(10, 13)
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import after, indices_after, inf
+
+ROWS, CONTACTS, MARKS = 5, 13, 4  # numbers per row, per contact besides, and marks of a contact
 MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
 NOISE = 64 * RESOLUTION
 
 
-@by_address
-class Several(NamedTuple):
-    """A system with several contacts and joints: what it is, its state, Jacobians and multipliers, and work space."""
+class Seen:
+    """What is looked at of n contacts: gap, velocity and acceleration of the gap, force; all in one piece.
 
-    model: Any
-    joints: Any  # the same for the joints
-    plan: Any
-    constant: bool  # the acceleration is constant between events, and gaps are linear in q
-    corners: Any  # (m,) in [0, period)
-    x: Any  # (N_NUMBERS,)
-    state: Any  # (N_STATE, n_q)
-    contact: Any  # (N_CONTACT, n_c)
-    joint: Any  # (N_JOINT, n_j)
-    mode: Any  # (N_MODE, n_c)
-    number: Any  # (N_NUMBER,) integers
-    y: Any  # (2 n_q,)
-    M: Any  # (n_q, n_q)
-    G: Any  # (n_c, n_q)
-    J: Any  # (n_j, n_q)
-    R: Any  # (n_j + n_c, n_q) both
-    MR: Any  # (n_j + n_c, n_q) rows M^-1 R^T
-    D: Any  # (n_j + n_c, n_j + n_c) Delassus matrix
-    L: Any  # (n_j + n_c, n_j + n_c) Cholesky factor of the rows held
-    row: Any  # (n_j + n_c,) rows held
-    held: Any  # (n_j + n_c,) their multipliers
-    change: Any  # (n_j + n_c,)
-    kept: Any  # (n_j + n_c,) rows held, while others are tried
-    doubt: Any  # (n_j + n_c,) relative error of the diagonal of L, in units of rounding
-    member: Any  # (n_c,) contacts of the problem at hand
-    W: Any  # (n_c^2,) its matrix
-    lcp: Any  # work space of its solver
-    solver: Any
-    w: Any  # of the Runge-Kutta method
-    dy: Any  # (2 n_q,)
-    seen: Any  # (5, n_c), n_c >= 2
+    gap, speed, curve, multiplier : (n,)
+    """
+
+    def __init__(self, n: int) -> None:
+        self.n, self.seen = n, np.zeros(4 * n)
+        self.gap = doubles(self.seen)
+        self.speed = after(self.gap, n)
+        self.curve = after(self.speed, n)
+        self.multiplier = after(self.curve, n)
+
+
+class Rows(Seen):
+    """Contacts or joints at the state of the system; each is a row of the equations.
+
+    rate, bias        gap velocity at rest, and gap acceleration at v' = 0
+    shifted           work space of the bias
+    impulse           since the last kept state
+    turn_impulse      since a number of impacts ago, at one instant
+    G : (n, n_q)      Jacobian; also work space of the bias
+
+    Parameters
+    ----------
+    n : int;  G, impulse : where these lie
+    """
+
+    def __init__(self, n: int) -> None:
+        Seen.__init__(self, n)
+        self.own = np.zeros(ROWS * n)
+        self.rate = doubles(self.own)
+        self.bias = after(self.rate, n)
+        self.shifted = after(self.bias, n)
+        self.turn_impulse = after(self.shifted, n)
+        self.impulse = after(self.turn_impulse, n)
+        self.G = self.rate
+
+
+class Contacts(Rows):
+    """Contacts, what has happened at each, and the problem of those that are closed, its members.
+
+    struck, since     time of the last impact, since the one before
+    held_until        no release before it
+    chatter_end       when its chattering ends
+    rest              how long the sequence that is summed up lasts; negative: none
+    owed, owed_until  impulse taken on account, and the time up to which forces pay for it
+    terms             size of the terms of a gap velocity, at the impacts of one instant
+    turn_speed        speed a number of impacts ago
+    synchronous       whether gap and speed are those of q, v
+    b, z, noise       by member: right-hand side and solution of the problem, rounding of b
+    member            contacts of the problem
+    closed, was_closed, loaded   lasting contact; so when last told; carries a force
+    """
+
+    def __init__(self, n: int) -> None:
+        Rows.__init__(self, n)
+        self.history, self.marks = np.zeros(CONTACTS * n), np.zeros(MARKS * n, dtype=np.intp)
+        self.struck = doubles(self.history)
+        self.since = after(self.struck, n)
+        self.held_until = after(self.since, n)
+        self.chatter_end = after(self.held_until, n)
+        self.rest = after(self.chatter_end, n)
+        self.owed = after(self.rest, n)
+        self.owed_until = after(self.owed, n)
+        self.terms = after(self.owed_until, n)
+        self.turn_speed = after(self.terms, n)
+        self.synchronous = after(self.turn_speed, n)
+        self.b = after(self.synchronous, n)
+        self.z = after(self.b, n)
+        self.noise = after(self.z, n)
+        self.member = indices(self.marks)
+        self.closed = indices_after(self.member, n)
+        self.was_closed = indices_after(self.closed, n)
+        self.loaded = indices_after(self.was_closed, n)
+        for c in range(n):
+            self.struck[c] = self.held_until[c] = self.chatter_end[c] = -inf
+
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return [c for c in range(self.n) if self.closed[c] == 1]
+
+    def members(self, n: int) -> list[int]:
+        """The first n members of the problem."""
+        return sorted([self.member[a] for a in range(n)])
+
+    def latest(self) -> list[int]:
+        """The contacts that have struck last."""
+        times = [self.struck[c] for c in range(self.n)]
+        return [c for c in range(self.n) if times[c] == sorted(times)[-1]]
+
+
+class Mechanism(Clock):
+    """A system with contacts and joints: its equations, its state, and work space.
+
+    model, joints     the same system with its contacts, and with its joints in their place
+    constant          the acceleration is constant between events, and gaps are linear in q
+    scan              longest interval of the scan for events
+    rtol, atol        tolerances;  t_end: end of the span
+    nodes, weights    quadrature of the forces of contacts and joints, on [0, 1]
+    length            duration of the step at hand
+    found, seen_to    event within it, looked for up to here; which contact and what it does
+    bare              whether the acceleration is that without contacts
+    next              what comes next: MOVE, JUMP, SETTLE or OBEY
+    q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
+    a_free, force     acceleration M^-1 f without contacts and joints, f
+    contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
+    R, MR : (n_r, n_q)  rows of joints (first) and contacts, rows M^-1 R^T
+    D, L : (n_r, n_r)   Delassus matrix R M^-1 R^T, Cholesky factor of the rows held
+    row, held         rows held, their multipliers;  n_held, n_held_joints  how many
+    kept              rows held, while others are tried
+    doubt             relative error of the diagonal of L, in units of rounding
+    change            work space by row
+    W                 matrix of the problem of the n_members members of it
+    culprit           joint that contradicts others, or -1
+
+    Parameters
+    ----------
+    model, joints : Model;  constant : bool
+    smooth : RungeKutta    the motion between events, from q0, v0
+    scan, t_span, corners, period, nodes, weights   as above and in `Clock`
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        joints: Model,
+        constant: bool,
+        smooth: RungeKutta,
+        scan: float,
+        t_span: tuple[float, float],
+        corners: Any,
+        period: float,
+        nodes: Any,
+        weights: Any,
+    ) -> None:
+        Clock.__init__(self, t_span, corners, period)
+        n, n_c, n_j = model.n_q, model.n_c, joints.n_c
+        r = n_c + n_j
+        self.model, self.joints, self.smooth, self.constant = model, joints, smooth, constant
+        self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
+        self.scan, self.t_end, self.rtol, self.atol = scan, t_span[1], smooth.rtol, smooth.atol
+        self.rule = np.array([nodes, weights])
+        self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
+        self.weights = after(self.nodes, self.n_nodes)
+        self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, MOVE
+        self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0
+        self.culprit = -1
+        self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c)
+        self.q0 = self.smooth.y
+        self.v0 = after(self.smooth.y, n)
+        self.q = doubles(self.numbers)
+        self.v = after(self.q, n)
+        self.dy = after(self.v, n)
+        self.a = after(self.dy, n)
+        self.trial = after(self.a, n)
+        self.a_free = after(self.trial, 4 * n)
+        self.force = after(self.a_free, n)
+        self.work = after(self.force, n)
+        self.M = after(self.work, n)
+        self.R = after(self.M, n * n)
+        self.MR = after(self.R, r * n)
+        self.D = after(self.MR, r * n)
+        self.L = after(self.D, r * r)
+        self.held = after(self.L, r * r)
+        self.change = after(self.held, r)
+        self.doubt = after(self.change, r)
+        self.impulse = after(self.doubt, r)
+        self.W = after(self.impulse, r)
+        self.lists = np.zeros(2 * r, dtype=np.intp)
+        self.row = indices(self.lists)
+        self.kept = indices_after(self.row, r)
+        self.contact, self.joint = Contacts(n_c), Rows(n_j)
+        self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Workspace(n_c)
+        self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
+        self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
+        for i in range(n):
+            self.q[i], self.v[i] = self.q0[i], self.v0[i]

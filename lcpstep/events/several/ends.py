@@ -1,0 +1,9 @@
+"""How a call of the loop over events ends, besides `lcpstep.kernels.status`, and what an event is."""
+
+from __future__ import annotations
+
+from lcpstep.trajectory import Kind, Status
+
+NO_IMPULSES, NO_FORCES = -2, -3  # no impulses, or no forces, of the contacts that would do
+STATUS = {NO_IMPULSES: Status.LCP_FAILED, NO_FORCES: Status.LCP_FAILED}
+IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in Kind)

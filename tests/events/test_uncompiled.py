@@ -1,0 +1,38 @@
+"""The event loop's kernels as plain Python give what they give when built."""
+
+from tests.processes import python
+from tests.uncompiled import copy_without_what_is_built
+
+PROGRAM = """
+import cython, sys
+from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven, simulate
+
+def weight(t, q, v, p, out):
+    out[0], out[1] = 0.0, -9.81
+
+def length(t, q, v, p, out):
+    out[0] = q[0] * q[0] + q[1] * q[1] - 1.0
+
+def radius(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 2.0 * q[0], 2.0 * q[1]
+
+pendulum = Scene(
+    system=System(2, [[1.0, 0.0], [0.0, 1.0]], weight), q0=[0.6, -0.8], v0=[0.0, 0.0], t_span=(0.0, 0.5),
+    joints=Joints(1, length, radius), contacts=LinearContacts([[1.0, 0.0]], restitution=0.5),
+)
+beads = Scene(
+    system=LinearSystem([[1.0, 0.0], [0.0, 2.0]], force=[-9.81, -19.62]), q0=[0.1, 0.3], v0=[0.0, 0.0],
+    t_span=(0.0, 0.4), contacts=LinearContacts([[1.0, 0.0], [-1.0, 1.0]], restitution=[0.5, 0.8]),
+)
+for scene in (pendulum, beads):
+    run = simulate(scene, EventDriven(rtol=1e-7, atol=1e-7), keep=1)
+    print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
+print(cython.compiled, file=sys.stderr)
+"""
+
+
+def test_motions_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
+    copy_without_what_is_built(tmp_path)
+    said = python(PROGRAM, cwd=tmp_path, PYTHONPATH=str(tmp_path))
+    assert said == python(PROGRAM)
