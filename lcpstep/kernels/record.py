@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import cython
+import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
@@ -84,6 +85,27 @@ class Record:
         t = self.times[self.next_time]
         return t < stop or (t == stop and last)
 
+    def split(
+        self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
+    ) -> None:
+        """The rows, each quantity into an array of its own."""
+        n, n_c = self.n_q, self.n_c
+        for k in range(self.row):
+            row = after(self.rows, k * self.row_size)
+            t[k], mode[k], length[k] = row[TIME], row[MODE], row[LENGTH]
+            for i in range(n):
+                q[k * n + i], v[k * n + i] = row[LEAD + i], row[LEAD + n + i]
+            for i in range(n_c):
+                impulse[k * n_c + i] = row[LEAD + 2 * n + i]
+
+    def states(self) -> tuple[Any, ...]:
+        """Times, modes, durations, positions, velocities and impulses of the rows, as arrays."""
+        rows = self.row
+        t, mode, length = np.empty(rows), np.empty(rows), np.empty(rows)
+        q, v, impulse = np.empty((rows, self.n_q)), np.empty((rows, self.n_q)), np.empty((rows, self.n_c))
+        self.split(doubles(t), doubles(mode), doubles(length), doubles(q), doubles(v), doubles(impulse))
+        return t, mode, length, q, v, impulse
+
     def is_due(self, step: int) -> bool:
         """Whether the state after so many steps is to be kept."""
         return self.every > 0 and step % self.every == 0
@@ -101,11 +123,14 @@ class Record:
 
     def quiet_until(self, step: int, h: float, t0: float, first: int, last: int) -> int:
         """The step, at most `last`, up to which none keeps a state; step `first` begins at t0."""
-        end = last
+        end = self.untimed_until(h, t0, first, last)
         if self.every > 0 and step + self.every - 1 - step % self.every < end:
             end = step + self.every - 1 - step % self.every
+        return end
+
+    def untimed_until(self, h: float, t0: float, first: int, last: int) -> int:
+        """The step, at most `last`, up to which none keeps a state at a given time."""
         if self.next_time < self.n_times:
             before = first + whole((self.times[self.next_time] - t0) / h) - 1
-            if before < end:
-                end = before
-        return end
+            return before if before < last else last
+        return last
