@@ -1,12 +1,9 @@
-"""A run of the event-driven method, from kernel calls to a trajectory: portions, buffers, and how it ended.
-
-The kernels are those built ahead of time; see `run` for the others.
-"""
+"""A run of the event-driven method, from kernel calls to a trajectory: portions, buffers, and how it ended."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,11 +12,10 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.events.status import BUFFER_FULL, FINISHED, NOT_FINITE, SLACK, STEP_TOO_SMALL, TOO_MANY_EVENTS
 from lcpstep.faults import cause
-from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.kernels.tally import Tally
-from lcpstep.model import culprit, kernel_model, unrepeatable
+from lcpstep.model import culprit, unrepeatable
 from lcpstep.pace import Pace
 from lcpstep.recording import TIME, Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
@@ -28,18 +24,9 @@ Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within an interval that failed
 
-STATUS = {
-    FINISHED: Status.DONE,
-    NOT_FINITE: Status.NOT_FINITE,
-    TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
-    STEP_TOO_SMALL: Status.STEP_TOO_SMALL,
-}
-
 
 class Run(ABC):
     """One run: the kernel's arrays, and the portions that it is fed in."""
-
-    status_of: Mapping[int, Status] = STATUS  # by why the loop returned
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
         self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
@@ -61,6 +48,11 @@ class Run(ABC):
     def state(self) -> tuple[Array, Array]:
         """Last known q and v."""
 
+    @property
+    @abstractmethod
+    def evaluations(self) -> int:
+        """How often forces were evaluated."""
+
     @abstractmethod
     def advance(self, goal: int) -> int:
         """Call the kernel, up to step number `goal`; why it returned."""
@@ -73,21 +65,25 @@ class Run(ABC):
     def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones."""
 
+    def status(self, code: int) -> Status:
+        """How the run ended, by what the kernel returned."""
+        return Status(code)
+
     def finish(self, progress: Callable[[float], None]) -> Trajectory:
         """Run to the end of the span, or to where it cannot go on."""
-        code = FINISHED
+        code, raised = DONE, None
         try:
-            while code in (FINISHED, BUFFER_FULL) and self.now < self.scene.t_span[1]:
+            while code in (DONE, BUFFER_FULL) and self.now < self.scene.t_span[1]:
                 code = self.advance(self.pace.goal(self.tally.steps))
-                cause()  # an interrupt of the keyboard, while a function of the user's was at work
+                raised = cause()
                 self.empty()
                 progress(self.now)
         except KeyboardInterrupt:
             message = f"interrupted {self.where}"
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, message)) from None
-        result = self.trajectory(self.status_of[code], self.message(code))
+        result = self.trajectory(self.status(code), self.message(code))
         if result.status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result) from cause()
+            raise SimulationError(result.message, result) from raised
         return result
 
     def empty(self) -> None:
@@ -101,7 +97,7 @@ class Run(ABC):
 
     def trajectory(self, status: Status, message: str) -> Trajectory:
         """Everything computed so far."""
-        record, tally, n_c = self.recorder.record, self.tally, self.scene.n_c
+        record, n_c = self.recorder.record, self.scene.n_c
         nothing = record.row == 0 or self.now > self.recorder.buffers.rows[record.row - 1, TIME]
         if len(self.kept.times) == 0 and nothing:
             self.keep_now()
@@ -111,7 +107,9 @@ class Run(ABC):
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v,
             impulse=np.ascontiguousarray(s.impulse[:, :n_c]),
             impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=message,
-            counts=Counts(steps=tally.steps, force_evaluations=tally.forces, events=tally.events),
+            counts=Counts(
+                steps=self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events
+            ),
             dense=self.dense_output(s), joint_impulse=np.ascontiguousarray(s.impulse[:, n_c:]),
         )  # fmt: skip
 
@@ -124,22 +122,17 @@ class Run(ABC):
     def message(self, code: int) -> str:
         """How the run ended, in words."""
         q, v = self.state
-        if code == FINISHED:
+        if code == Status.DONE:
             return "reached the end of the span"
-        if code == TOO_MANY_EVENTS:
+        if code == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {self.where}"
-        if code == STEP_TOO_SMALL:
+        if code == Status.STEP_TOO_SMALL:
             tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
             words = f"the tolerances {tolerances} cannot be met {self.where}"
             names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
             return f"{words}: {names} must be functions of time and state, and are not" if names else words
         times = np.linspace(self.now, self.interval_end, TRIALS)
         return f"{culprit(self.scene, times, q.copy(), v.copy())} {self.where}"
-
-
-def one_contact_recorder(scene: Scene, kept: Kept, dense: bool) -> Recorder:
-    """The recorder of a run with one contact or none."""
-    return Recorder(scene.n_q, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK, dense=dense)
 
 
 @dataclass(eq=False)
@@ -158,25 +151,6 @@ class Between(ABC):
     @abstractmethod
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
-
-
-@dataclass(eq=False)
-class BetweenByModel(Between):
-    """The same for motions that are evaluated by the scene's equations."""
-
-    scene: Scene
-    made: Model | None  # the scene's model: good in this process only
-
-    @property
-    def model(self) -> Model:
-        """The scene's model, made when it is needed."""
-        if self.made is None:
-            self.made = kernel_model(self.scene)
-        return self.made
-
-    def __getstate__(self) -> dict[str, Any]:
-        """What is good in any process."""
-        return vars(self) | {"made": None}
 
 
 def without_impulses(s: States) -> States:

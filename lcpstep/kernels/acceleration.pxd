@@ -1,0 +1,10 @@
+from lcpstep.kernels.dynamics cimport mass, total_force
+from lcpstep.kernels.linear cimport positive_definite, solve_definite
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy
+
+cdef bint free_acceleration(
+    Model m, double t, double* q, double* v, double* M, double* y, double* a
+) noexcept nogil
+cdef bint divide_by_mass(Model m, double t, double* q, double* v, double* M, double* y, double* a) noexcept nogil
+cdef void inverse_mass(Model m, double* M, double* y, double* x) noexcept nogil
