@@ -37,7 +37,8 @@ from lcpstep.sweep import Arrays, sweep
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 UNKNOWN, OBSTACLE = -1, -2  # labels: no attractor was reached; the cell's centre lies inside of the obstacle
-PART = 8192  # cells of a part
+PARTS = 64  # of a stage, at most, for every part is a file
+LEAST = 8192  # cells of a part
 IMAGES = 2  # exact images of a cell in a round
 ROUNDS, FEW = 24, 0.002  # of images and sharing; the share of cells left at which they end
 STARTS = 200  # random states from which attractors are looked for
@@ -108,15 +109,16 @@ def basins(
     study = _Study(scene, method, grid, targets, phase, longest)
     inputs = study.inputs(known)
     label, x = np.full(n_q * n_v, UNKNOWN), grid.centres(np.arange(n_q * n_v))
-    rest, landed = np.arange(n_q * n_v), np.zeros((n_q * n_v, 0), dtype=np.int64)
+    rest, landed = np.arange(n_q * n_v), np.zeros((n_q * n_v, 0), dtype=np.int32)
 
-    def stage(name: str, work: Callable[..., Any], size: int) -> Arrays:
+    def stage(name: str, work: Callable[..., Any], least: int) -> Arrays:
+        size = max(least, -(-len(rest) // PARTS))
         chains = [[x[rest[i : i + size]]] for i in range(0, len(rest), size)]
         folder = None if out is None else Path(out) / name
         done = sweep(
             work,
             chains,
-            inputs | {"stage": name},
+            inputs | {"stage": name, "cells_of_a_part": size},
             out=folder,
             executor=executor,
             jobs=jobs,
@@ -125,24 +127,23 @@ def basins(
         return {key: np.concatenate([chain[0][key] for chain in done]) for key in done[0][0]}
 
     for k in range(ROUNDS):
-        found = stage(f"round-{k:02d}", study.images if k else study.first_images, PART)
+        found = stage(f"round-{k:02d}", study.images if k else study.first_images, LEAST)
         label[rest], x[rest] = found["label"], found["x"]
-        images = grid.cell(found["images"].reshape(-1, 2)).reshape(len(rest), -1)
-        landed = np.concatenate([landed, images], axis=1)
+        landed = np.concatenate([landed, found["landed"]], axis=1)
         spread(grid, rest, landed, label)
         left = label[rest] == UNKNOWN
         rest, landed = rest[left], landed[left]
         if len(rest) <= FEW * len(label):
             break
     if len(rest):
-        label[rest] = stage("rest", study.to_the_end, PART // 8)["label"]
+        label[rest] = stage("rest", study.to_the_end, LEAST // 8)["label"]
     rest = np.flatnonzero(label == UNKNOWN)
     if len(rest) and complete:  # they may go to attractors that no random start went to
         some = rest[np.linspace(0, len(rest) - 1, min(len(rest), STARTS)).astype(int)]
         more = attractors(scene, method, grid.centres(some), phase=phase, transient=longest)
         known = with_new(known, more)
         study = replace(study, targets=neighbourhoods(scene, method, known.found, phase, longest, seed))
-        label[rest] = stage("second-look", study.to_the_end, PART // 8)["label"]
+        label[rest] = stage("second-look", study.to_the_end, LEAST // 8)["label"]
     wrong = _wrong(study, label, sample, seed)
     return study.dataset(known, label, wrong, seed, sample)
 
@@ -276,9 +277,10 @@ class _Study:
         return self.images(x, handed, strict=True)
 
     def images(self, x: Array, handed: Arrays | None, strict: bool = False) -> tuple[Arrays, Arrays | None]:
-        """Exact images of states, and the labels of those that came near an attractor."""
+        """Exact images of states, by their cells and the last in full; the labels of those near an attractor."""
         found = self.follow(x, IMAGES, 0, strict)
-        return {"images": found.states, "x": found.final, "label": self.label(found)}, None
+        landed = self.grid.cell(found.states.reshape(-1, 2)).reshape(len(x), -1)
+        return {"landed": landed.astype(np.int32), "x": found.final, "label": self.label(found)}, None
 
     def to_the_end(self, x: Array, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
         """Labels of states that are followed until they are near an attractor."""
@@ -294,7 +296,7 @@ class _Study:
     def label(self, found: Any) -> Ints:
         """Labels of runs."""
         owner = np.append(self.targets[1], UNKNOWN)
-        return np.where(found.status == INSIDE, OBSTACLE, owner[found.reached]).astype(np.int64)
+        return np.where(found.status == INSIDE, OBSTACLE, owner[found.reached]).astype(np.int16)
 
     def inputs(self, known: Attractors) -> dict[str, Any]:
         """What the result depends on."""
@@ -341,7 +343,7 @@ class _Study:
 
 def _wrong(study: _Study, label: Ints, sample: int, seed: int) -> float:
     """Upper 95 % bound on the share of wrong labels, from cells followed one by one without sharing any."""
-    from scipy.stats import binomtest
+    from scipy.special import betaincinv  # its statistics take half a second to import
 
     candidates = np.flatnonzero(label != OBSTACLE)
     sample = min(int(checks.number("sample", sample, least=0)), len(candidates))
@@ -350,4 +352,5 @@ def _wrong(study: _Study, label: Ints, sample: int, seed: int) -> float:
     cells = np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
     truth, _ = study.to_the_end(study.grid.centres(cells), None)
     errors = int(np.sum(truth["label"] != label[cells]))
-    return float(binomtest(errors, sample).proportion_ci(CONFIDENCE).high)
+    # Clopper and Pearson's
+    return float(betaincinv(errors + 1, sample - errors, 0.5 + 0.5 * CONFIDENCE)) if errors < sample else 1.0

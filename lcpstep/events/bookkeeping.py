@@ -8,22 +8,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from lcpstep.compiled import by_address
-from lcpstep.events.status import ACCUMULATION as ACCUMULATION
-from lcpstep.events.status import BUFFER_FULL as BUFFER_FULL
-from lcpstep.events.status import FINISHED as FINISHED
-from lcpstep.events.status import IMPACT as IMPACT
-from lcpstep.events.status import NEVER_LEFT as NEVER_LEFT
-from lcpstep.events.status import NOT_FINITE as NOT_FINITE
-from lcpstep.events.status import RELEASE as RELEASE
-from lcpstep.events.status import SLACK as SLACK
-from lcpstep.events.status import STEP_TOO_SMALL as STEP_TOO_SMALL
-from lcpstep.events.status import STICK as STICK
-from lcpstep.events.status import TOO_MANY_EVENTS as TOO_MANY_EVENTS
 from lcpstep.recording import TIME
 
+# Why a loop returned
+FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, NEVER_LEFT = range(6)
 # Places in the array of counters
 STEP, ROW, EVENT, FORCES, NEXT_TIME, EVENTS, STALLED, MAX_EVENTS = range(8)
 N_COUNTERS = 8
+# Kinds of events, the values of `trajectory.Kind`
+IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
+SLACK = 4  # rows and events that one round of a loop may need
 MAX_STALLED = 100_000  # events at one time
 
 

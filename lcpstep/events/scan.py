@@ -1,4 +1,4 @@
-"""How finely the motion must be looked at for events: the longest interval without more than one turn of the gap."""
+"""How finely the motion between events must be looked at: the scan for events must see every turn of it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
 
 Array = NDArray[np.float64]
-# The scan for events must see every turn of the motion: intervals per period of each of its oscillations
-PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
+PER_PERIOD, PER_FORCING, PER_SPAN = (
+    10,
+    16,
+    50,
+)  # intervals per period of each oscillation, of the forcing, of the span
 SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
 SLOPE = 1e-7  # of the time looked at: step of a difference
 
@@ -64,18 +67,21 @@ def sample_times(scene: Scene) -> Array:
 
 def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]:
     """Speeds and accelerations of each frame and obstacle that moves by itself, at these times, (times, n, 2)."""
+    state = np.array(scene.q0), np.array(scene.v0)
     for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
         if f.given:
-            yield sampled(f, scene, times, (n, 3))[:, :, 1:]
+            rates = np.zeros((len(times), n, 3))
+            sampled(f, times, *state, rates)
+            yield rates[:, :, 1:]
     if m.gap_t.given:
-        now, then = (sampled(m.gap_t, scene, t, (scene.n_c,)) for t in (times, times + step))
+        now, then = np.zeros((2, len(times), scene.n_c))
+        for out, t in ((now, times), (then, times + step)):
+            sampled(m.gap_t, t, *state, out)
         yield np.stack([now, (then - now) / step], axis=2)
 
 
-def sampled(f: Function, scene: Scene, times: Array, shape: tuple[int, ...]) -> Array:
-    """A function at many times of the initial state. The motion may never come there: what it raises is no fault."""
-    out = np.zeros((len(times), *shape))
-    f.sample(times, np.array(scene.q0), np.array(scene.v0), out)
-    cause()  # an interrupt of the keyboard counts
+def sampled(f: Function, times: Array, q: Array, v: Array, out: Array) -> None:
+    """A function at many times of one state. The motion may never come there: what it raises does not count."""
+    f.sample(times, q, v, out)
+    cause()  # but for the keyboard
     forget()
-    return out

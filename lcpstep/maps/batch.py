@@ -132,15 +132,12 @@ def periods(
     fast: follow.Follower | lockstep.Lockstep | None = None
     if isinstance(method, EventDriven) and scene.n_c <= 1:
         fast = follow.Follower(scene, method)
-        codes = follow.CODES
     elif isinstance(method, Moreau) and targets is None:
         fast = lockstep.Lockstep(scene, method)
-        codes = lockstep.CODES
     if fast is not None and fast.usable:
         if tangents and isinstance(fast, follow.Follower):
             task = task._replace(tangents=np.full((len(task.starts), n - drop, 2, 2), np.nan))
         fast.run(task, strict)
-        task = task._replace(codes=np.array([codes.get(int(c), int(c)) for c in task.codes], dtype=np.int64))
     else:
         one_by_one(scene, method, task, strict)
     if tangents and not task.tangents.shape[1]:

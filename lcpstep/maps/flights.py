@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import ON_THE_SURFACE
-from lcpstep.events.status import BUFFER_FULL, FINISHED, IMPACT, STICK
+from lcpstep.events.flight.contact import IMPACT, ON_THE_SURFACE, STICK
+from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.maps.task import INSIDE, UNREACHED, Task
 
 if not cython.compiled:
@@ -60,14 +60,14 @@ def follow_all(r: Runs, until: int) -> bool:
     while r.run < r.answers.runs:
         if not r.begun:
             begin(r, r.run)
-        while r.period < r.answers.periods and r.code == FINISHED and r.answers.reached[r.run] == UNREACHED:
+        while r.period < r.answers.periods and r.code == DONE and r.answers.reached[r.run] == UNREACHED:
             if r.taken >= until:
                 return False
             r.code = one_period(r, r.run, r.period - r.answers.drop)
             r.taken += 1
             r.period += 1
             look_for_cycle(r)
-            if r.code == FINISHED:
+            if r.code == DONE:
                 answer(r, r.run, r.period - 1 - r.answers.drop)
         r.answers.final[2 * r.run], r.answers.final[2 * r.run + 1] = r.s.q[0], r.s.v[0]
         r.answers.codes[r.run], r.answers.taken[r.run] = r.code, r.period
@@ -79,7 +79,7 @@ def follow_all(r: Runs, until: int) -> bool:
 def begin(r: Runs, i: int) -> None:
     """Run i at its start."""
     r.s.q[0], r.s.v[0] = r.answers.starts[2 * i], r.answers.starts[2 * i + 1]
-    r.begun, r.code, r.period = True, FINISHED, 0
+    r.begun, r.code, r.period = True, DONE, 0
     r.age, r.power, r.kicked, r.noisy, r.length, r.speed = 0, 1, 0, 0, 0.0, 0.0
     if r.answers.strict and not admissible(r.s, r.answers.t_start):
         r.code = INSIDE

@@ -13,10 +13,9 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.events import EventDriven
+from lcpstep.events.flight.contact import SLACK
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import bounds, flight_of
-from lcpstep.events.runs import STATUS
-from lcpstep.events.status import SLACK
 from lcpstep.faults import cause
 from lcpstep.kernels.tally import Tally
 from lcpstep.maps.flights import Runs, follow
@@ -28,7 +27,6 @@ from lcpstep.model import kernel_model
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 
-CODES = STATUS
 PERIODS_OF_SPAN = 4  # of the span that the scan for events is made for
 PORTION = 65536  # periods between two looks at the outside world, at most
 

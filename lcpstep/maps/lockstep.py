@@ -21,10 +21,8 @@ from lcpstep.stepping.theta import Plan
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
-DONE, NOT_FINITE = 0, 1
 PORTION = 65536  # steps between two looks at the outside world, at most
 ROUNDING = 64 * np.finfo(float).eps
-CODES = {DONE: Status.DONE, NOT_FINITE: Status.NOT_FINITE}
 
 
 class Lockstep:
@@ -75,8 +73,8 @@ class Lockstep:
                 task.states[:, k, 0], task.states[:, k, 1] = own["q"], own["v"]
         task.final[:, 0], task.final[:, 1] = own["q"], own["v"]
         task.taken[:] = task.periods
-        lost = ~np.all(np.isfinite(task.final), axis=1) & (task.codes == DONE)
-        task.codes[lost] = NOT_FINITE
+        lost = ~np.all(np.isfinite(task.final), axis=1) & (task.codes == Status.DONE)
+        task.codes[lost] = Status.NOT_FINITE
         task.taken[task.codes == INSIDE] = 0
 
     def measure(self, own: dict[str, Array], t: float) -> None:

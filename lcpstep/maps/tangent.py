@@ -14,7 +14,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.events.status import IMPACT, STICK
+from lcpstep.events.flight.contact import IMPACT, STICK
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices

@@ -144,7 +144,7 @@ def test_basins_agree_with_runs_followed_one_by_one_and_divide_into_any_parts(mo
     assert sum(shares.values()) == pytest.approx(1.0)
     assert np.all(data["label"].sel(q=slice(None, 0.0999)) == OBSTACLE)
     assert data.attrs["wrong_labels_upper_bound"] < 0.01
-    monkeypatch.setattr(module, "PART", 700)
+    monkeypatch.setattr(module, "LEAST", 700)
     again = basins(scene, *corners, (60, 60), sample=600, jobs=1)
     assert np.array_equal(again["label"], data["label"])
 

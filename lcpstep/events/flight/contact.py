@@ -11,8 +11,14 @@ G. Osorio, Complex Behavior in Impacting Systems, eqs. 3.16 and 4.2; A. Nordmark
 stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58 (2009).
 """
 
+from __future__ import annotations
+
+from lcpstep.trajectory import Kind
+
 RESOLUTION = 2.0**-52
 FREE, CLOSED = 0.0, 1.0  # modes
+IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in Kind)
+SLACK = 4  # rows and events that one round of the loop may need
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
 ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
 UNSEEN = 4 * RESOLUTION  # of the time: a hop this short is none

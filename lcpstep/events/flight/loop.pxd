@@ -9,7 +9,7 @@ from lcpstep.events.flight.roots cimport first_contact, polish
 from lcpstep.kernels.clock cimport NUDGE
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef Py_ssize_t BUFFER_FULL, FINISHED, NOT_FINITE, SLACK, TOO_MANY_EVENTS
+cdef Py_ssize_t BUFFER_FULL, DONE, NOT_FINITE, SLACK, TOO_MANY_EVENTS
 cdef double CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, STRIDE, UNSEEN
 
 cpdef Py_ssize_t advance(Flight s, Py_ssize_t goal) except? -1

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, STRIDE, UNSEEN
-from lcpstep.events.status import BUFFER_FULL, FINISHED, NOT_FINITE, SLACK, TOO_MANY_EVENTS
+from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, SLACK, STRIDE, UNSEEN
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
 
 if not cython.compiled:
     from lcpstep.events.flight.clear import WORTH, clear_until, suspect
@@ -52,7 +52,7 @@ def run(s: Flight, goal: int) -> int:
         s.tally.steps += 1
         if not (rest(s) if s.mode == CLOSED else fly(s)):
             return NOT_FINITE
-    return FINISHED
+    return DONE
 
 
 def finite(g: float, u: float, alpha: float) -> bool:

@@ -10,8 +10,17 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UNSEEN
-from lcpstep.events.status import ACCUMULATION, IMPACT, RELEASE, STICK
+from lcpstep.events.flight.contact import (
+    ACCUMULATION,
+    CLOSED,
+    FREE,
+    IMPACT,
+    NONE,
+    ON_THE_SURFACE,
+    RELEASE,
+    STICK,
+    UNSEEN,
+)
 
 if not cython.compiled:
     from lcpstep.events.flight.keep import keep_event

@@ -11,16 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.flight.contact import STRIDE
+from lcpstep.events.flight.contact import SLACK, STRIDE
 from lcpstep.events.flight.keep import evaluate, keep_now
 from lcpstep.events.flight.loop import advance
 from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import Oscillator, oscillator_of
 from lcpstep.events.flight.reach import reach
-from lcpstep.events.runs import BetweenByModel, Run, one_contact_recorder, without_impulses
+from lcpstep.events.running import PORTION, Between, Run, without_impulses
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.model import Model
-from lcpstep.recording import Kept, States
+from lcpstep.model import kernel_model
+from lcpstep.recording import Kept, Recorder, States
 
 Array = NDArray[np.float64]
 
@@ -47,11 +48,16 @@ def flight_of(scene: Scene, m: Model, o: Any, given: dict[str, float], *counted:
     return flight
 
 
+def recorder(scene: Scene, kept: Kept) -> Recorder:
+    """What is kept of one contact or none."""
+    return Recorder(1, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK)
+
+
 class ClosedForm(Run):
     """A run in closed form."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, m: Model, o: Oscillator) -> None:
-        super().__init__(method, scene, kept, one_contact_recorder(scene, kept, dense=False))
+        super().__init__(method, scene, kept, recorder(scene, kept))
         self.model, self.oscillator = m, o
         self.given = bounds(scene, m, o, method)
         self.flight = flight_of(scene, m, o, self.given, self.recorder.record, self.tally)
@@ -72,6 +78,11 @@ class ClosedForm(Run):
         """Last known q and v."""
         return self.flight.state[0], self.flight.state[1]
 
+    @property
+    def evaluations(self) -> int:
+        """Forces are not evaluated: their motion is known."""
+        return 0
+
     def advance(self, goal: int) -> int:
         """Call the kernel, up to step number `goal`; why it returned."""
         return advance(self.flight, goal)
@@ -87,14 +98,20 @@ class ClosedForm(Run):
 
 
 @dataclass(eq=False)
-class Flights(BetweenByModel):
+class Flights(Between):
     """States between kept ones, in closed form."""
 
+    scene: Scene
+    model: Model | None  # of the scene, good in this process only
     given: dict[str, float]  # see `bounds`
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is good in any process."""
+        return vars(self) | {"model": None}
 
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
-        o = oscillator_of(self.model)
+        m = self.model = self.model or kernel_model(self.scene)
         q, v = np.zeros((2, len(times), 1))
-        evaluate(flight_of(self.scene, self.model, o, self.given), self.s, times, row, q, v)
+        evaluate(flight_of(self.scene, m, oscillator_of(m), self.given), self.s, times, row, q, v)
         return q, v
