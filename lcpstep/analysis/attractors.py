@@ -3,8 +3,9 @@
 Runs from many states are followed until they have settled. A motion that comes back after n periods, with m impacts
 on the way, is an O(n, m); where infinitely many impacts (complete chattering) belong to it, that is said in place
 of m. Of a system with modes the m events are its switches. One that does not come back is aperiodic: chaotic if its
-largest Lyapunov exponent is positive beyond its standard error. Source: G. Osorio, Complex Behavior in Impacting
-Systems, section 3.2.3.
+largest Lyapunov exponent is positive beyond its standard error. Where that is negative beyond it, neighbours come
+together, and so to a periodic motion: one that was not waited for long enough, which is said in place of a name.
+Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.2.3.
 """
 
 from __future__ import annotations
@@ -36,6 +37,10 @@ STARTS, FORGET, KICK = 32, 60, 1e-9  # of these samples: runs, periods until the
 # Exponents of periodic motions by time-stepping: shares of h, runs on each, turns averaged over, and before
 GRIDS, RUNS, AVERAGED, FORGOTTEN = (1.0, 0.9, 0.8, 0.71, 0.6, 0.5), 2, 60, 40
 UNSURE = 0.5  # of an exponent: an error beyond which it is not told
+QUARTERS, FALLEN = (
+    4,
+    0.5,
+)  # of the window; what a change falls to at least, from the first to the last of them
 MOST, MOST_OF_MANY = 512, 64  # impacts of a period that are kept, of a periodic motion and of others
 
 
@@ -59,6 +64,7 @@ class Attractor:
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
     modes : whether the scene is one with modes, so that `impacts` are its switches and landings begin to slide
+    unsettled : why the motion has no name although it must be periodic in the end; empty for all others
     """
 
     periods: int
@@ -73,13 +79,16 @@ class Attractor:
     lyapunov: Lyapunov
     share: float = 1.0
     modes: bool = False
+    unsettled: str = ""
 
     @property
     def name(self) -> str:
-        """O(n, m), O(n, chattering), chaotic, or aperiodic where chaos is not certain."""
+        """O(n, m), O(n, chattering), chaotic, aperiodic where chaos is not certain, or unsettled."""
         if self.periods:
             endless = self.landings and not self.modes
             return f"O({self.periods}, {'chattering' if endless else round(self.impacts)})"
+        if self.unsettled:
+            return "unsettled"
         return "chaotic" if self.lyapunov.chaotic else "aperiodic"
 
 
@@ -152,7 +161,8 @@ def attractors(
         returning = [settled[i].periods for i in members if settled[i].periods]
         n = int(np.bincount(returning).argmax()) if returning else 0
         typical = [settled[i].number for i in members if settled[i].periods == n]
-        found.append(described(P, runs, typical, n, points, len(members) / len(label)))
+        one = described(P, runs, typical, n, points, len(members) / len(label))
+        found.append(replace(one, unsettled=unsettled(P, one, runs.states[typical[0]], transient, longest)))
     settings = {
         "transient": transient, "window": window, "longest": longest, "phase": phase,
         "tolerance": TOLERANCE if tolerance is None else tolerance,
@@ -249,6 +259,43 @@ def described(
         share=share,
         modes=isinstance(P.scene, HybridScene),
     )
+
+
+def unsettled(P: PeriodMap, found: Attractor, states: Array, transient: int, longest: int) -> str:
+    """Why a motion that must be periodic in the end has not been seen to be, or nothing.
+
+    states : (window, d)   of a run on it
+    """
+    if found.periods or found.lyapunov.chaotic or not isinstance(P.method, EventDriven):
+        return ""  # time-stepping scatters what it repeats
+    more = periods_to_settle(states, longest)
+    if more:
+        return f"still on its way to a periodic motion: take a transient of some {transient + more} periods"
+    rate, error = found.lyapunov.largest, found.lyapunov.error
+    if not -math.inf < rate < -3.0 * error:
+        return ""
+    return (
+        f"neighbours come together (exponent {rate:.3g} per period), so it ends in a periodic motion, but does "
+        f"not repeat within {longest} periods: take a larger longest, or a longer transient"
+    )
+
+
+def periods_to_settle(states: Array, longest: int) -> int:
+    """After how many periods a motion (window, d) will come back within TOLERANCE; 0 where it does not approach.
+
+    It approaches where the largest change over n periods falls from each quarter of the window to the next, for the
+    n <= longest that it changes least over.
+    """
+    size, best = max(float(np.max(np.abs(states))), 1e-300), np.full(QUARTERS, math.inf)
+    for n in range(1, min(longest, len(states) // 2) + 1):
+        change = np.max(np.abs(states[n:] - states[:-n]), axis=1)
+        largest = np.array([np.max(quarter) for quarter in np.array_split(change, QUARTERS)])
+        best = largest if largest[-1] < best[-1] else best
+    falling = np.all(np.diff(best) < 0.0) and best[-1] < FALLEN * best[0]
+    if not falling or best[-1] <= 0.0:
+        return 0
+    rate = math.log(best[-1] / best[0]) / ((QUARTERS - 1) / QUARTERS * len(states))
+    return max(1, math.ceil(math.log(TOLERANCE * size / best[0]) / rate))
 
 
 def _whole(number: float, n: int) -> float:

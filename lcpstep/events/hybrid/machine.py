@@ -31,8 +31,9 @@ def machine(scene: HybridScene) -> Machine:
         "values": [value or anything for value, *_ in table],
         "resets": [reset or anything for _, reset, *_ in table],
     }
-    called_back: dict[Any, CalledBack] = {}
-    addresses = {name: [_address(scene, f, called_back) for f in fs] for name, fs in functions.items()}
+    once = {id(f): f for fs in functions.values() for f in fs}
+    made = {k: _c_function(scene, f) for k, f in once.items()}
+    addresses = {name: [made[id(f)][0] for f in fs] for name, fs in functions.items()}
     not_sliding = [NOT_SLIDING] * len(modes)
     integers = {
         "has_reset": [reset is not None for _, reset, *_ in table],
@@ -46,7 +47,7 @@ def machine(scene: HybridScene) -> Machine:
     span = min(scene.period, scene.t_span[1] - scene.t_span[0])
     return Machine(
         system.n_x, np.array(scene.p), addresses, integers, [row[2] for row in table], TIME_DIFFERENCE * span,
-        list(called_back.values()),
+        list(made.values()),
     )  # fmt: skip
 
 
@@ -73,13 +74,12 @@ def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, flo
     return [(guard.value, guard.reset, sign, at_once, PLAIN, index[guard.target]) for sign in signs]
 
 
-def _address(scene: HybridScene, f: Any, called_back: dict[Any, CalledBack]) -> int:
-    """Of a function as a C function; what is called back in Python is made once, and kept."""
+def _c_function(scene: HybridScene, f: Any) -> tuple[int, CalledBack | None]:
+    """Address of a C function: machine code, or what must be kept around what stays in Python."""
     if not compiled.jit_disabled():
         try:
-            return callbacks.plain_first_order_address(f)
+            return callbacks.plain_first_order_address(f), None
         except NotCompiled as why:
             callbacks.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
-    if id(f) not in called_back:
-        called_back[id(f)] = CalledBack(f, first_order=True)
-    return called_back[id(f)].address
+    called_back = CalledBack(f, first_order=True)
+    return called_back.address, called_back

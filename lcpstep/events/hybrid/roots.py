@@ -28,6 +28,17 @@ CHECKS = 2  # further samples, which say whether the polynomial is the guard
 MAX_ITERATIONS = 60
 
 
+def bernstein(s: Any) -> Any:
+    """The Bernstein polynomials at the points s, a column each."""
+    basis = [math.comb(DEGREE, j) for j in range(DEGREE + 1)]
+    return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
+
+
+NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+AT_CHECKS = np.array([0.3819, 0.8137])
+FROM_NODES, FROM_CHECKS = np.linalg.inv(bernstein(NODES)), bernstein(AT_CHECKS)
+
+
 class Scan:
     """Sample points, conversion to Bernstein form, and work space; N = DEGREE + 1.
 
@@ -39,12 +50,10 @@ class Scan:
 
     def __init__(self) -> None:
         n = DEGREE + 1
-        nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(n) / DEGREE)
-        checks = np.array([0.3819, 0.8137])
         self.arrays = [
-            np.concatenate([nodes, checks]),
-            np.ascontiguousarray(np.linalg.inv(bernstein(nodes))),
-            np.ascontiguousarray(bernstein(checks)),
+            np.concatenate([NODES, AT_CHECKS]),
+            np.ascontiguousarray(FROM_NODES),
+            np.ascontiguousarray(FROM_CHECKS),
             np.zeros(n + CHECKS),
             np.zeros((2, n)),
             np.zeros((DEPTH + 3, n + 2)),
@@ -54,12 +63,6 @@ class Scan:
         self.c, self.stack = doubles(self.arrays[4]), doubles(self.arrays[5])
         self.half, self.low = after(self.c, n), after(self.stack, (DEPTH + 3) * n)
         self.high = after(self.low, DEPTH + 3)
-
-
-def bernstein(s: Any) -> Any:
-    """The Bernstein polynomials at the points s, a column each."""
-    basis = [math.comb(DEGREE, j) for j in range(DEGREE + 1)]
-    return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
 
 
 def convert(scan: Scan) -> float:
