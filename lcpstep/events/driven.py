@@ -10,7 +10,6 @@ from lcpstep.events.flight.run import ClosedForm, oscillator_of
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.events.several.run import Several
-from lcpstep.events.single.run import RungeKutta
 from lcpstep.model import model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
@@ -80,4 +79,4 @@ class EventDriven:
         o = oscillator_of(scene, m)
         if o is not None:
             return ClosedForm(self, scene, kept, m, fast, o).finish(progress)
-        return RungeKutta(self, scene, kept, m, fast).finish(progress)
+        return Several(self, scene, kept).finish(progress)

@@ -22,12 +22,11 @@ if not cython.compiled:
     from lcpstep.events.several.keep import log
     from lcpstep.events.several.motion import gap_tolerance, speed_tolerance
     from lcpstep.events.several.parabolas import accumulation, first_root, hop
-    from lcpstep.events.several.state import NOISE, Mechanism
+    from lcpstep.events.several.state import Mechanism, NOISE
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import abs, after, max, min, nan
-
 
 def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
     """Close the contacts whose further impacts stay below the tolerance; whether there was one."""

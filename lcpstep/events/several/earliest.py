@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.events.several.equations import biases, constraint_rows
     from lcpstep.events.several.held import note, right_hand_side
     from lcpstep.events.several.impact import speed_noise
-    from lcpstep.events.several.state import NOISE, Mechanism
+    from lcpstep.events.several.state import Mechanism, NOISE
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.vectors import copy, largest, product

@@ -17,7 +17,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, after
 
-
 def measure(s: Mechanism, t: float) -> bool:
     """Everything at the state Q, V and time t: gaps, speeds, R, D, free acceleration; False where M is singular."""
     q, v, a = s.q, s.v, s.a_free

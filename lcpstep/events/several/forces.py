@@ -13,20 +13,11 @@ from lcpstep.events.several.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
-    from lcpstep.events.several.held import (
-        constrain,
-        contradiction,
-        hold,
-        hold_contacts,
-        hold_joints,
-        note,
-        solve_held,
-    )
+    from lcpstep.events.several.held import constrain, contradiction, hold, hold_contacts, hold_joints, note, solve_held
     from lcpstep.events.several.problem import CHECKED, solve_contacts
-    from lcpstep.events.several.state import NOISE, Mechanism
+    from lcpstep.events.several.state import Mechanism, NOISE
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
-
 
 def contact_forces(s: Mechanism, t: float) -> int:
     """Forces and accelerations of the closed contacts at time t; those that open are no longer closed.

@@ -15,11 +15,10 @@ import cython
 if not cython.compiled:
     from lcpstep.events.several.held import REFINEMENTS, hold, hold_joints, solve_held
     from lcpstep.events.several.problem import CHECKED, solve_contacts
-    from lcpstep.events.several.state import NOISE, Mechanism
+    from lcpstep.events.several.state import Mechanism, NOISE
     from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.vectors import clear, largest, product
     from lcpstep.pointers import abs, inf, max, min
-
 
 def strike(s: Mechanism) -> bool:
     """The impact of the contacts whose gap is zero and that do not separate; p into `z`, by member.

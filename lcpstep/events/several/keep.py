@@ -13,7 +13,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after
 
-
 def log(
     s: Mechanism,
     record: Record,

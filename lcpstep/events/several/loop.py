@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.several.modes import jump, obey, settle
     from lcpstep.events.several.motion import touching
     from lcpstep.events.several.parabolas import fly
-    from lcpstep.events.several.state import JUMP, MOVE, OBEY, SETTLE, Mechanism
+    from lcpstep.events.several.state import JUMP, MOVE, Mechanism, OBEY, SETTLE
     from lcpstep.events.several.step import complete, step
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally

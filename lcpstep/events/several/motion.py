@@ -11,7 +11,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
-
 def rebase(s: Mechanism, t: float) -> None:
     """Begin a new piece at time t with the state Q, V."""
     copy(s.q0, s.q, 2 * s.n_q)

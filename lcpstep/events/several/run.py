@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -19,7 +20,7 @@ from lcpstep.events.several.state import Mechanism
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.status import DONE
-from lcpstep.model import kernel_models
+from lcpstep.model import kernel_joint_model, kernel_model
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
 
@@ -37,27 +38,24 @@ def is_constant(m: Model, joints: Model) -> bool:
     return bool(m.linear and m.flat and joints.flat and still and not forced)
 
 
+@functools.cache
+def quadrature() -> tuple[Array, Array]:
+    """Gauss' nodes and weights on [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
+    return 0.5 * (1.0 + nodes), 0.5 * weights
+
+
 def start(scene: Scene, method: Any) -> Mechanism:
     """The state at the start of the span; `method` has rtol and atol."""
-    m, joints, _ = kernel_models(scene)
-    constant = is_constant(m, joints)
-    scan = scan_interval(scene, m, 0.0)
-    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
+    m = kernel_model(scene)
+    joints = kernel_joint_model(scene) if scene.n_j > 0 else m
+    constant, scan = is_constant(m, joints), scan_interval(scene, m, 0.0)
     smooth = Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol)
-    smooth.state[:] = np.concatenate([scene.q0, scene.v0])
+    smooth.state[: scene.n_q], smooth.state[scene.n_q :] = scene.q0, scene.v0
     smooth.next_step = FIRST_STEP * scan
     corners = () if constant else scene.corners
     smooth.mechanism = Mechanism(
-        m,
-        joints,
-        constant,
-        smooth,
-        scan,
-        scene.t_span,
-        corners,
-        scene.period,
-        0.5 * (1.0 + nodes),
-        0.5 * weights,
+        m, joints, scene.n_j, constant, smooth, scan, scene.t_span, corners, scene.period, *quadrature()
     )
     return smooth.mechanism
 

@@ -9,7 +9,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.clock import Clock, RESOLUTION
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.lcp.workspace import Workspace
@@ -138,7 +138,7 @@ class Mechanism(Clock):
 
     Parameters
     ----------
-    model, joints : Model;  constant : bool
+    model, joints : Model;  n_j : how many joints;  constant : bool
     smooth : RungeKutta    the motion between events, from q0, v0
     scan, t_span, corners, period, nodes, weights   as above and in `Clock`
     """
@@ -147,6 +147,7 @@ class Mechanism(Clock):
         self,
         model: Model,
         joints: Model,
+        n_j: int,
         constant: bool,
         smooth: RungeKutta,
         scan: float,
@@ -157,7 +158,7 @@ class Mechanism(Clock):
         weights: Any,
     ) -> None:
         Clock.__init__(self, t_span, corners, period)
-        n, n_c, n_j = model.n_q, model.n_c, joints.n_c
+        n, n_c = model.n_q, model.n_c
         r = n_c + n_j
         self.model, self.joints, self.smooth, self.constant = model, joints, smooth, constant
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.events.several.keep import keep, keep_wanted, store_dense
     from lcpstep.events.several.motion import lift, press_between, rebase
     from lcpstep.events.several.parabolas import hop
-    from lcpstep.events.several.state import JUMP, OBEY, SETTLE, Mechanism
+    from lcpstep.events.several.state import JUMP, Mechanism, OBEY, SETTLE
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
