@@ -10,7 +10,6 @@ from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Moreau, simulate
 from lcpstep.compiled import by_address, compiled, jit_disabled
 from lcpstep.events.flight.loop import run as run_flights
-from lcpstep.events.single.loop import run as run_single
 from lcpstep.stepping import theta
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -72,8 +71,7 @@ def test_the_event_driven_kernels_have_one_signature_for_all_scenes(keep):
     for scene in [*varied(), *general()]:
         if scene.n_c <= 1:
             simulate(scene, EventDriven(1e-8, 1e-8), keep=keep)
-    for kernel in (run_flights, run_single):
-        assert len(compiled(kernel).signatures) == 1
+    assert len(compiled(run_flights).signatures) == 1
 
 
 WHOLE_RUN = """

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.events.flight.run import ClosedForm, oscillator_of
+from lcpstep.events.general.run import General
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.events.several.run import Several
 from lcpstep.model import model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
@@ -73,10 +73,9 @@ class EventDriven:
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
         require(scene, "EventDriven", joints=True, friction=False)
-        if scene.n_c > 1 or scene.n_j > 0:
-            return Several(self, scene, kept).finish(progress)
-        m, fast = model(scene)
-        o = oscillator_of(scene, m)
-        if o is not None:
-            return ClosedForm(self, scene, kept, m, fast, o).finish(progress)
-        return Several(self, scene, kept).finish(progress)
+        if scene.n_c <= 1 and scene.n_j == 0:
+            m, fast = model(scene)
+            o = oscillator_of(scene, m)
+            if o is not None:
+                return ClosedForm(self, scene, kept, m, fast, o).finish(progress)
+        return General(self, scene, kept).finish(progress)

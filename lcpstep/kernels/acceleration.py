@@ -14,6 +14,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles
 
+
 def free_acceleration(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, y: Doubles, a: Doubles) -> bool:
     """A = M^-1 f; False where M is singular or f is not finite."""
     total_force(m, t, q, v, a)
