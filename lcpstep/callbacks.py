@@ -66,13 +66,8 @@ def plain_address(f: Callback, ndim: int) -> int:
     return int(_made(f, SECOND_ORDER, ndim).plain_address)
 
 
-def first_order_address(f: Callback) -> int:
-    """Address of a function f(t, x, p, out) of a first-order system in machine code; raises NotCompiled."""
-    return int(_made(f, FIRST_ORDER, 1).address)
-
-
 def plain_first_order_address(f: Callback) -> int:
-    """The same of a C function of plain pointers."""
+    """Address of a function f(t, x, p, out) of a first-order system as a C function of plain pointers, too."""
     return int(_made(f, FIRST_ORDER, 1).plain_address)
 
 

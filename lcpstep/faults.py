@@ -77,17 +77,3 @@ def plain(f: Callback) -> Callback:
             raise
 
     return watched
-
-
-def plain_first_order(f: Callback) -> Callback:
-    """The same for a function of a first-order system."""
-    f, name = python(f), name_of(f)
-
-    def watched(t: float, x: Array, p: Array, out: Array) -> None:
-        try:
-            f(t, read_only(x), read_only(p), out)
-        except Exception as error:
-            note(Fault(name, t, x.copy(), np.zeros(0), said(error)))
-            raise
-
-    return watched

@@ -53,7 +53,7 @@ def double_of(bits: int) -> float:
 
 def callback_at(address: int) -> Callable[..., None]:
     """The function with this address, of the signature that `lcpstep.kernels.function` describes."""
-    f = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 5)(address)
+    f = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 5)(int(address))
 
     def call(t: float, *arrays: NDArray[Any]) -> None:
         f(t, *(x.ctypes.data for x in arrays))

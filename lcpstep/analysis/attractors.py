@@ -3,8 +3,9 @@
 Runs from many states are followed until they have settled. A motion that comes back after n periods, with m impacts
 on the way, is an O(n, m); where infinitely many impacts (complete chattering) belong to it, that is said in place
 of m. Of a system with modes the m events are its switches. One that does not come back is aperiodic: chaotic if its
-largest Lyapunov exponent is positive beyond its standard error. Source: G. Osorio, Complex Behavior in Impacting
-Systems, section 3.2.3.
+largest Lyapunov exponent is positive beyond its standard error. Where that is negative beyond it, neighbours come
+together, and so to a periodic motion: one that was not waited for long enough, which is said in place of a name.
+Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.2.3.
 """
 
 from __future__ import annotations
@@ -59,6 +60,7 @@ class Attractor:
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
     modes : whether the scene is one with modes, so that `impacts` are its switches and landings begin to slide
+    unsettled : why the motion has no name although it must be periodic in the end; empty for all others
     """
 
     periods: int
@@ -73,13 +75,16 @@ class Attractor:
     lyapunov: Lyapunov
     share: float = 1.0
     modes: bool = False
+    unsettled: str = ""
 
     @property
     def name(self) -> str:
-        """O(n, m), O(n, chattering), chaotic, or aperiodic where chaos is not certain."""
+        """O(n, m), O(n, chattering), chaotic, aperiodic where chaos is not certain, or unsettled."""
         if self.periods:
             endless = self.landings and not self.modes
             return f"O({self.periods}, {'chattering' if endless else round(self.impacts)})"
+        if self.unsettled:
+            return "unsettled"
         return "chaotic" if self.lyapunov.chaotic else "aperiodic"
 
 
@@ -152,7 +157,8 @@ def attractors(
         returning = [settled[i].periods for i in members if settled[i].periods]
         n = int(np.bincount(returning).argmax()) if returning else 0
         typical = [settled[i].number for i in members if settled[i].periods == n]
-        found.append(described(P, runs, typical, n, points, len(members) / len(label)))
+        one = described(P, runs, typical, n, points, len(members) / len(label))
+        found.append(replace(one, unsettled=unsettled(P, one, transient, longest)))
     settings = {
         "transient": transient, "window": window, "longest": longest, "phase": phase,
         "tolerance": TOLERANCE if tolerance is None else tolerance,
@@ -249,6 +255,19 @@ def described(
         share=share,
         modes=isinstance(P.scene, HybridScene),
     )
+
+
+def unsettled(P: PeriodMap, found: Attractor, transient: int, longest: int) -> str:
+    """Why a motion that must be periodic in the end has not been seen to be, or nothing."""
+    rate, error = found.lyapunov.largest, found.lyapunov.error
+    exact = isinstance(P.method, EventDriven)  # time-stepping scatters what it repeats
+    if found.periods or not exact or not -math.inf < rate < -3.0 * error:
+        return ""
+    needed = math.ceil(math.log(TOLERANCE) / rate)
+    why = f"neighbours come together (exponent {rate:.3g} per period), so it ends in a periodic motion, "
+    if needed > transient:
+        return f"{why}but after some {needed} periods only, and {transient} were waited for: take a longer transient"
+    return f"{why}but one that does not repeat within {longest} periods: take a larger longest, or a longer transient"
 
 
 def _whole(number: float, n: int) -> float:

@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep import compiled
 from lcpstep.errors import LcpStepError
-from lcpstep.events.hybrid import tangent
 from lcpstep.events.hybrid.machine import machine
+from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
 from lcpstep.trajectory import Status
@@ -31,10 +30,6 @@ def monodromy(run: HybridTrajectory) -> Array:
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
     scene = run.scene
-    m, fast = machine(scene)
-    walk = compiled.compiled(tangent.walk) if fast else tangent.walk
-    s, names = tangent.tangent(m, scene.n_x), scene.system.names
-    log = log_of(run)
+    s, mode = Tangent(machine(scene)), scene.system.names.index(scene.mode)
     start, end = float(run.pieces.t[0]), float(run.pieces.t[-1])
-    code = walk(s, log, len(log), names.index(scene.mode), start, np.array(scene.x0), end)
-    return told(code, scene, s.J)
+    return told(s.along(log_of(run), mode, start, scene.x0, end), scene, s.derivative)

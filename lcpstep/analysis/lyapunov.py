@@ -9,6 +9,7 @@ matrices; divide by the period for exponents per second. Source: G. Benettin et 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,11 +17,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.analysis.derivative import along
+from lcpstep.analysis.growth import growth_along
 from lcpstep.maps.iteration import Map
+from lcpstep.pace import FIRST, Pace
 
 Array = NDArray[np.float64]
 RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
+PIECES = 1000  # of a run that sums are kept of
+PORTION = 65536  # iterations between two looks at the outside world, at most
+Progress = Callable[[int, "Lyapunov", Array], None]
 
 
 @dataclass(frozen=True)
@@ -61,38 +67,61 @@ def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
 
 def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:
     """Largest exponent from the growth in each iteration, nan where a landing wiped out all deviations."""
-    landings = int(np.sum(np.isnan(growth)))
-    if landings > RARE * len(growth):
-        return Lyapunov(-math.inf, 0.0, landings)
-    growth = growth[np.isfinite(growth)]
-    means = [np.mean(block) for block in np.array_split(growth, min(blocks, len(growth)))]
-    error = float(np.std(means, ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.inf
-    return Lyapunov(float(np.mean(growth)), error, landings)
+    summed = Growth(len(growth))
+    summed.add(growth)
+    return summed.exponent(blocks)
 
 
-def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0) -> Lyapunov:
+class Growth:
+    """The growth in n iterations, summed over pieces of them, so that none need be kept."""
+
+    def __init__(self, n: int) -> None:
+        self.n, self.done, self.landings = n, 0, 0
+        self.total, self.count = np.zeros(min(n, PIECES)), np.zeros(min(n, PIECES), dtype=np.int64)
+
+    def add(self, growth: Array) -> None:
+        """The next iterations; nan where a landing wiped out all deviations."""
+        piece = np.arange(self.done, self.done + len(growth)) * len(self.total) // self.n
+        known = np.isfinite(growth)
+        np.add.at(self.total, piece[known], growth[known])
+        np.add.at(self.count, piece[known], 1)
+        self.done, self.landings = self.done + len(growth), self.landings + int(np.sum(~known))
+
+    def exponent(self, blocks: int = BLOCKS) -> Lyapunov:
+        """Largest exponent of the iterations so far, with the standard error of means over blocks."""
+        if self.landings > RARE * self.done:
+            return Lyapunov(-math.inf, 0.0, self.landings)
+        known = self.count > 0
+        total, count = self.total[known], self.count[known]
+        parts = np.array_split(np.arange(len(count)), min(blocks, len(count)))
+        means = [np.sum(total[part]) / np.sum(count[part]) for part in parts]
+        error = float(np.std(means, ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.inf
+        return Lyapunov(float(np.sum(total) / np.sum(count)), error, self.landings)
+
+
+def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress | None = None) -> Lyapunov:
     """Largest Lyapunov exponent of a map along the orbit of x.
 
     Parameters
     ----------
     P : map
     x : (d,)   where the orbit starts
-    n : iterations that are averaged over
+    n : iterations that are averaged over; their number costs time, not memory
     drop : iterations before
+    progress : called now and then with the iterations averaged so far, their exponent, and the state reached (d,)
 
     Raises
     ------
     ValueError   n is not positive or drop is negative
     """
-    x = np.array(checks.vector("x", x))
+    state = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
-    growth = np.zeros(n)
-    direction = np.eye(len(x))[0]
-    for k, J in enumerate(along(P, x, n, drop)[1]):
-        direction = J @ direction
-        length = math.sqrt(direction @ direction)
-        if length == 0.0:
-            direction, growth[k] = np.eye(len(x))[0], math.nan
-        else:
-            direction, growth[k] = direction / length, math.log(length)
-    return mean_growth(growth)
+    growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST)
+    while growth.done < n:
+        portion = min(pace.goal(growth.done), n) - growth.done
+        images, derivatives = along(P, state, portion, 0 if growth.done else drop)
+        growth.add(growth_along(derivatives, direction))
+        state = images[-1]
+        if progress is not None:
+            progress(growth.done, growth.exponent(), state)
+    return growth.exponent()

@@ -24,7 +24,7 @@ from lcpstep.analysis.variation import IMPACTS, PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.maps.batch import Periods
-from lcpstep.maps.modes import Placing
+from lcpstep.maps.modes import mode_at
 from lcpstep.simulate import Method, fitted, simulate
 
 Array = NDArray[np.float64]
@@ -157,7 +157,7 @@ def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
 
 def _started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
     if isinstance(scene, HybridScene):
-        return scene.started(x, Placing(scene)(span[0], x), span)
+        return scene.started(x, mode_at(scene, span[0], x), span)
     return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)
 
 

@@ -29,7 +29,7 @@ from lcpstep.simulate import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
-IMPACTS = 512  # of a period that a derivative is made of
+IMPACTS = 512  # of a period by time-stepping that a derivative is made of
 TOLERANCE = 1e-11  # of the variational flow where it is integrated
 
 
@@ -232,7 +232,8 @@ class PeriodMap(StroboscopicMap):
 
     def along(self, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
         """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d)."""
-        run = self.follow(x, drop + n, drop, most=IMPACTS, tangents=True)
+        most = 0 if isinstance(self.method, EventDriven) else IMPACTS  # of which derivatives are made
+        run = self.follow(x, drop + n, drop, most=most, tangents=True)
         if run.tangents.shape[1]:
             return run.states[0], run.tangents[0]
         before = self.follow(x, drop).final[0] if drop else checks.array("x", x, (self.scene.n_x,))

@@ -21,6 +21,8 @@ from lcpstep.plot.words import method_words, scene_words
 from lcpstep.simulate import Method
 from lcpstep.stepping.moreau import Moreau
 
+LONGEST = 60  # periods that a motion may repeat after, where not given
+
 
 def add(commands: Any) -> None:
     """Arguments of the command."""
@@ -38,6 +40,12 @@ def add(commands: Any) -> None:
     )
     p.add_argument("--transient", type=int, default=500, help="periods dropped (500)")
     p.add_argument("--window", type=int, default=240, help="periods looked at (240)")
+    p.add_argument(
+        "--longest",
+        type=int,
+        metavar="N",
+        help="most periods to a repetition (60, or half the window)",
+    )
     p.add_argument(
         "--compare", type=int, default=0, metavar="PERIODS",
         help="also by the other method: drawn below, and compared on the first attractor over so many periods each",
@@ -58,10 +66,13 @@ def run_attractor(options: argparse.Namespace) -> int:
     names = files(options, "attractors")
     starts = outside(scene, random_starts(box(options), options.starts, options.seed), options.phase)
 
+    longest = min(LONGEST, options.window // 2) if options.longest is None else options.longest
+    window = max(options.window, 2 * longest)
+
     def search(by: Method) -> Attractors:
         return attractors(
-            scene, by, starts, transient=options.transient, window=options.window,
-            longest=min(60, options.window // 2), phase=options.phase, points=options.points,
+            scene, by, starts, transient=options.transient, window=window, longest=longest, phase=options.phase,
+            points=options.points,
         )  # fmt: skip
 
     found = search(method)
@@ -89,6 +100,8 @@ def run_attractor(options: argparse.Namespace) -> int:
             f"{r['name']:20} share {r['share']:6.1%}   {event} per period {r['impacts_per_period']:8.4g}   "
             f"Lyapunov exponent per period {_exponent(r)}   {r['method'] if len(rows) > 1 else ''}".rstrip()
         )
+        if r["unsettled"]:
+            print(f"  {r['unsettled']}")
     for name, x in compared.items():
         print(
             f"time-stepping against event-driven, {name}: distance {x.distance:.4g} "
@@ -118,7 +131,7 @@ def _row(method: str, a: Any) -> dict[str, Any]:
     per_period, found = a.impacts / a.periods if a.periods else a.impacts, a.lyapunov
     return {
         "method": method, "name": a.name, "share": a.share, "impacts_per_period": per_period,
-        "lyapunov": None if math.isnan(found.largest) else found.largest,
+        "unsettled": a.unsettled, "lyapunov": None if math.isnan(found.largest) else found.largest,
         "lyapunov_error": None if math.isnan(found.error) else found.error, "lyapunov_reason": found.reason,
     }  # fmt: skip
 

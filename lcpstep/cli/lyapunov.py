@@ -5,11 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
-from lcpstep.analysis.lyapunov import lyapunov
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.analysis.lyapunov import Lyapunov, Progress, lyapunov
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.cli.common import DONE, scene_arguments
+from lcpstep.cli import interrupt
+from lcpstep.cli.common import DONE, INTERRUPTED, scene_arguments
 from lcpstep.cli.studies import method_of, study_scene
 
 
@@ -36,21 +42,65 @@ def add(commands: Any) -> None:
 
 
 def run_lyapunov(options: argparse.Namespace) -> int:
-    """`lcpstep lyapunov`."""
+    """`lcpstep lyapunov`; what there is of it is printed where it is interrupted."""
     scene = study_scene(options)
     P = PeriodMap(scene, method_of(options), options.phase)
     x = scene.x0 if options.start is None else options.start
-    found = lyapunov(P, x, options.periods, options.transient)
+    latest: list[tuple[int, Lyapunov, NDArray[np.float64]]] = []
+    options.wanted = options.periods
+    interrupt.keeps(options, lambda: _kept(latest), lambda: _go_on(options, latest))
+    with _periods_bar(options, latest) as progress:
+        try:
+            found, status = lyapunov(P, x, options.periods, options.transient, progress=progress), DONE
+        except KeyboardInterrupt:
+            if not latest:
+                raise
+            interrupt.answer()
+            (options.periods, found, _), status = latest[-1], INTERRUPTED
+    _print(options, scene, found)
+    return status
+
+
+def _kept(latest: list[Any]) -> str:
+    return f"the exponent over {latest[-1][0]} periods" if latest else ""
+
+
+def _go_on(options: argparse.Namespace, latest: list[Any]) -> list[str]:
+    """The command for the periods that are left."""
+    done, _, x = latest[-1]
+    start = [repr(float(y)) for y in x]
+    return [*options.words, "--from", *start, "--transient", "0", "--periods", str(options.wanted - done)]
+
+
+@contextmanager
+def _periods_bar(options: argparse.Namespace, latest: list[Any]) -> Iterator[Progress]:
+    """A bar over the periods, on a terminal only; the exponent so far goes into `latest`."""
+    from tqdm import tqdm
+
+    with tqdm(total=options.periods, desc="lyapunov", unit="period", disable=None, leave=False) as bar:
+
+        def progress(done: int, found: Lyapunov, x: NDArray[np.float64]) -> None:
+            latest[:] = [(done, found, x)]
+            bar.set_postfix_str(f"{found.largest:.6g} +- {found.error:.2g}", refresh=False)
+            bar.update(done - bar.n)
+
+        yield progress
+
+
+def _print(options: argparse.Namespace, scene: Any, found: Lyapunov) -> None:
     words = "chaotic" if found.chaotic else "not chaotic"
     if options.json:
         numbers = {k: v for k, v in vars(found).items() if not isinstance(v, str)}
         finite = {k: v if math.isfinite(v) else str(v) for k, v in numbers.items()}
-        print(json.dumps({"scene": scene.name, "period": scene.period, "verdict": words} | finite, indent=2))
-        return DONE
+        what = {"scene": scene.name, "period": scene.period, "periods": options.periods, "verdict": words}
+        print(json.dumps(what | finite, indent=2))
+        return
     print(
         f"{scene.name}: largest Lyapunov exponent {found.largest:.6g} +- {found.error:.2g} per period, {words}"
     )
-    print(f"{found.largest / scene.period:.6g} +- {found.error / scene.period:.2g} per second")
+    print(
+        f"{found.largest / scene.period:.6g} +- {found.error / scene.period:.2g} per second, "
+        f"over {options.periods} periods"
+    )
     if found.landings:
         print(f"all deviations vanish in {found.landings} of {options.periods} periods")
-    return DONE

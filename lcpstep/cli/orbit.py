@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from lagrangian import HybridScene
 from lagrangian.scenes import SCENES
 from lcpstep import dataset
+from lcpstep.analysis.attractors import TOLERANCE, return_time
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
 from lcpstep.analysis.fixed_points import periodic_point
@@ -162,6 +163,10 @@ def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progres
 
 def _print(orbit: PeriodicOrbit) -> None:
     print(f"{orbit.name}, {'stable' if orbit.stable else 'unstable'}; residual {orbit.residual:.2g}")
+    size = max(float(np.max(np.abs(orbit.x))), 1e-300)
+    least = return_time(np.concatenate([orbit.x, orbit.x]), len(orbit.x), TOLERANCE * size)
+    if least < len(orbit.x):
+        print(f"it repeats after {least} of these {len(orbit.x)} periods already (--periods {least})")
     print("states on the section: " + "; ".join(str(x.tolist()) for x in orbit.x))
     event, unit = ("switch", "") if isinstance(orbit.scene, HybridScene) else ("impact", " m/s")
     rate = "rate of the guard" if event == "switch" else "gap velocity"

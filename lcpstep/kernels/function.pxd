@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
+from lcpstep.arrays cimport doubles, indices
 from lcpstep.pointers cimport Callback, after, callback_at, nan
 
 
@@ -12,3 +12,12 @@ cdef class Function:
     cdef Py_ssize_t length
     cdef readonly bint given
     cdef void fill(self, double t, double* q, double* v, double* out) noexcept nogil
+
+
+@cython.final
+cdef class Functions:
+    cdef object array
+    cdef Function like
+    cdef Py_ssize_t* addresses
+    cdef Py_ssize_t length
+    cdef void fill(self, Py_ssize_t k, double t, double* q, double* v, double* out) noexcept nogil

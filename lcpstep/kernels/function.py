@@ -15,7 +15,7 @@ import cython
 import numpy as np
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles
+    from lcpstep.arrays import doubles, indices
     from lcpstep.pointers import Doubles, after, callback_at, nan
 
 
@@ -51,3 +51,24 @@ class Function:
         t, x, x_t, filled = doubles(times), doubles(q), doubles(v), doubles(out)
         for k in range(len(times)):
             self.fill(t[k], x, x_t, after(filled, k * self.length))
+
+
+class Functions:
+    """Several functions with the same arguments, by their number.
+
+    Parameters
+    ----------
+    addresses : (k,) int   of C functions; what lies there must outlive this object
+    p, n_q, n_v, shape   as for `Function`, the same for all
+    """
+
+    def __init__(self, addresses: Any, p: Any, n_q: int, n_v: int, shape: tuple[int, ...]) -> None:
+        self.array = np.array(addresses, dtype=np.intp)
+        self.like = Function(0, p, n_q, n_v, shape)
+        self.addresses, self.length = indices(self.array), self.like.length
+
+    def fill(self, k: int, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+        """Evaluate function k; what it leaves out, or where it fails, is not a number."""
+        for i in range(self.length):
+            out[i] = nan
+        callback_at(self.addresses[k])(t, q, v, self.like.p, out, self.like.sizes)

@@ -29,7 +29,7 @@ TOLERANCES = 3.0  # within which the dense output must be
 LOOK, DEFECT = 0.7, 7.0  # where it is looked at, and what one sees there
 UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
 POLYNOMIALS = 7  # of the dense output, each a number for every component
-TABLES = np.concatenate([*(table(rows).ravel() for rows in (WEIGHTS, DENSE, [ERROR_3], [ERROR_5])), TIMES])
+COEFFICIENTS = np.concatenate([*table([*WEIGHTS, *DENSE, ERROR_3, ERROR_5]), TIMES])
 
 
 class RungeKutta:
@@ -55,7 +55,7 @@ class RungeKutta:
         self.n, self.positions, self.dense, self.rtol, self.atol = n, positions, dense, rtol, atol
         self.length, self.evaluations, self.refused = 0.0, 0, 0
         self.next_step, self.stretch_end = inf, -inf
-        self.tables = TABLES
+        self.tables = COEFFICIENTS
         self.A = doubles(self.tables)
         self.D = after(self.A, ALL * ALL)
         self.E3 = after(self.D, len(DENSE) * ALL)

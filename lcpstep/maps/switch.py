@@ -20,13 +20,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import HybridScene, checks
-from lcpstep import compiled
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
-from lcpstep.events.hybrid import tangent
-from lcpstep.events.hybrid.field import field, guard_gradient
+from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.events.hybrid.machine import machine
-from lcpstep.events.hybrid.state import SWITCH_LEAD
+from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.impact import TWO_PI, NoReturn
 from lcpstep.maps.modes import told
@@ -138,20 +136,17 @@ class SwitchMap:
             float(back.log[back.last, 0]),
             np.array(back.run.scene.x0),
         )
-        m, fast = machine(back.run.scene)
-        walk = compiled.compiled(tangent.walk) if fast else tangent.walk
-        s, mode = tangent.tangent(m, n), scene.system.names.index(self.mode)
+        m = machine(back.run.scene)
+        s, mode = Tangent(m), scene.system.names.index(self.mode)
         before, after = (
-            told(walk(s, back.log, count, mode, t, start, time), scene, s.J)
+            told(s.along(back.log[:count], mode, t, start, time), scene, s.derivative)
             for count in (back.first, back.last + 1)
         )
-        line, end, plain = back.log[back.first], back.log[back.last], machine(back.run.scene, plain=True)[0]
-        source, F, F_after, F_start = int(line[1]), *np.zeros((3, n))
-        H_t = guard_gradient(plain, source, int(line[3]), time, line[SWITCH_LEAD : SWITCH_LEAD + n])
-        H_x = plain.work.g_x.copy()
-        field(plain, source, time, line[SWITCH_LEAD : SWITCH_LEAD + n], F)
-        field(plain, mode, time, end[SWITCH_LEAD + n :], F_after)
-        field(plain, mode, t, start, F_start)
+        line, end = back.log[back.first], back.log[back.last]
+        source, x = int(line[1]), line[SWITCH_LEAD : SWITCH_LEAD + n]
+        H_x, H_t = m.guard_slope_at(source, int(line[3]), time, x)
+        F, F_start = m.rates_at(source, time, x), m.rates_at(mode, t, start)
+        F_after = m.rates_at(mode, time, end[SWITCH_LEAD + n :])
         t_x = -(H_x @ before) / (H_x @ F + H_t)
         DP = after + np.outer(F_after, t_x)
         if not self.driven:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian.scenes import cam_follower, impact_oscillator
+from lagrangian.scenes import cam_follower, driven_bilinear_oscillator, impact_oscillator
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors, random_starts, return_time
 from lcpstep.analysis.basins import OBSTACLE, Grid, basins, homogeneous, spread
@@ -189,3 +189,23 @@ def test_two_chaotic_runs_of_one_method_are_one_attractor():
     a, b = (sample(scene, EventDriven(), x, 4000, drop=200) for x in ([0.4, 0.4], [0.9, -3.0]))
     found = likeness(a, b)
     assert min(x.p_value for x in found.values()) > 0.01
+
+
+def test_a_motion_that_was_not_waited_for_is_not_named_but_says_so():
+    """The two multipliers of the bilinear oscillator turn, and their product is exp(-damping period)."""
+    slow = driven_bilinear_oscillator(damping=0.03, omega=3.0)
+    starts = random_starts([[-2.0, -4.0], [2.0, 4.0]], 4, seed=1)
+    rate = -0.015 * slow.period
+    early = attractors(slow, EventDriven(1e-9, 1e-9), starts, transient=50, points=2000).found[0]
+    assert early.name == "unsettled"
+    assert early.lyapunov.largest == pytest.approx(rate, rel=0.3)
+    assert "and 50 were waited for: take a longer transient" in early.unsettled
+    late = attractors(slow, EventDriven(1e-9, 1e-9), starts, transient=600).found[0]
+    assert (late.name, late.unsettled) == ("O(2, 2)", "")
+    assert late.lyapunov.largest == pytest.approx(rate, rel=1e-6)
+    cam, box = cam_follower(rpm=358.5), [[0.0, -60.0], [1.5, 60.0]]
+    found = attractors(
+        cam, EventDriven(), random_starts(box, 12, seed=1), transient=200, longest=2, points=2000
+    ).found
+    assert {a.name for a in found} == {"unsettled", "O(1, 2)"}  # the other one is an O(3, 8)
+    assert all("does not repeat within 2 periods" in a.unsettled for a in found if not a.periods)

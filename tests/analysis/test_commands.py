@@ -1,12 +1,13 @@
 """The commands attractor, bifurcation, basin and orbit: files, numbers, and what wrong arguments get."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 
-from lcpstep.cli import main
-from lcpstep.cli.common import DONE, FAILED, USAGE
+from lcpstep.cli import lyapunov, main
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
 
 xarray = pytest.importorskip("xarray")
 
@@ -234,3 +235,27 @@ def test_the_exponent_of_a_linear_oscillator_is_its_damping(capsys):
         status, _, err = run(capsys, "lyapunov", name)
         assert status == USAGE
         assert said in err
+
+
+def test_an_exponent_that_is_interrupted_is_told_as_far_as_it_came(capsys, monkeypatch):
+    begun = lyapunov.lyapunov
+
+    def until_interrupted(*arguments, progress):
+        def impatient(done, found, x):
+            progress(done, found, x)
+            if done >= 20:
+                raise KeyboardInterrupt
+
+        return begun(*arguments, progress=impatient)
+
+    monkeypatch.setattr(lyapunov, "lyapunov", until_interrupted)
+    command = ("lyapunov", "cam-follower", "--rpm", 660, "--transient", 10, "--periods", 100_000_000)
+    status, out, err = run(capsys, *command)
+    assert status == INTERRUPTED
+    done = int(re.search(r"over (\d+) periods", out)[1])
+    assert 20 <= done < 100_000_000
+    assert f"kept: the exponent over {done} periods" in err
+    assert f"--transient 0 --periods {100_000_000 - done}" in err
+    monkeypatch.undo()
+    whole = run(capsys, *command[:-1], done, "--json")
+    assert f"exponent {json.loads(whole[1])['largest']:.6g} +-" in out

@@ -1,11 +1,12 @@
-"""Growth of deviations where a landing wipes them out."""
+"""Growth of deviations: where a landing wipes them out, over any number of iterations, with its error."""
 
 import math
 
 import numpy as np
 import pytest
 
-from lcpstep.analysis.lyapunov import lyapunov
+from lcpstep.analysis.lyapunov import lyapunov, mean_growth
+from lcpstep.maps import iterate
 
 
 def test_rare_landings_are_counted_and_left_out_and_frequent_ones_end_all_growth():
@@ -26,3 +27,41 @@ def test_rare_landings_are_counted_and_left_out_and_frequent_ones_end_all_growth
     assert (rare.largest, rare.landings) == (pytest.approx(math.log(2.0)), 2)
     assert rare.chaotic
     assert lyapunov(Doubling(10), [0.3], 1000).largest == -math.inf
+
+
+class Logistic:
+    """x -> 4 x (1 - x), by many at a time; notes how many."""
+
+    def __init__(self):
+        self.asked = []
+
+    def __call__(self, x):
+        return 4.0 * x * (1.0 - x)
+
+    def along(self, x, n, drop):
+        self.asked.append(n)
+        points = iterate(self, x, drop + n)[drop:]
+        return points[1:], (4.0 - 8.0 * points[:-1])[:, :, None]
+
+
+def test_the_exponent_of_any_number_of_iterations_is_summed_in_portions(monkeypatch):
+    monkeypatch.setattr("lcpstep.analysis.lyapunov.PORTION", 7)
+    small, reached = Logistic(), []
+    found = lyapunov(small, [0.3], 5001, drop=3, progress=lambda *x: reached.append(x))
+    assert max(small.asked) <= 7
+    assert [x[0] for x in reached] == list(np.cumsum(small.asked))
+    assert reached[-1][:2] == (5001, found)
+    monkeypatch.setattr("lcpstep.analysis.lyapunov.PORTION", 5001)
+    monkeypatch.setattr("lcpstep.analysis.lyapunov.FIRST", 1)
+    whole = Logistic()
+    assert lyapunov(whole, [0.3], 5001, drop=3) == found  # to the last bit
+    assert len(whole.asked) < len(small.asked)
+    assert found.largest == pytest.approx(math.log(2.0), abs=4.0 * found.error)
+
+
+def test_the_error_is_that_of_means_over_blocks():
+    growth = np.random.default_rng(3).normal(size=4000)
+    means = np.mean(growth.reshape(20, -1), axis=1)
+    found = mean_growth(growth)
+    assert found.largest == pytest.approx(np.mean(growth), rel=1e-12)
+    assert found.error == pytest.approx(np.std(means, ddof=1) / math.sqrt(20.0), rel=1e-12)

@@ -8,160 +8,220 @@ mode. Gradients are differences of fourth order, exact for linear functions.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
-from lcpstep.compiled import by_address, call_first_order
-from lcpstep.dense import assign
-from lcpstep.events.clock import RESOLUTION
+import cython
+import numpy as np
 
-# What a guard is: the user's; a surface reached; the end of sliding, below and above
-PLAIN, ARRIVE, EXIT_BELOW, EXIT_ABOVE = range(4)
-NOT_SLIDING = -1
+from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.function import Functions
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, abs, after, max
+
 DIFFERENCE = 2.0**-10  # step of differences, relative
 INNER, OUTER = 2.0 / 3.0, -1.0 / 12.0
 TINY = 1e-300  # a band is never empty
+VECTORS = 8
 
 
-@by_address
-class Space(NamedTuple):
-    """Work space for a state of n numbers."""
+class Machine:
+    """Everything that a kernel needs to evaluate a system with modes, and work space; `machine` makes it.
 
-    F: Any  # (n,)
-    F1: Any
-    F2: Any
-    out: Any  # (1,)
-    H_x: Any  # (n,) gradient of a surface
-    g_x: Any  # (n,) gradient of a guard
-    x: Any  # (n,) shifted state of the surface's differences
-    x_guard: Any  # (n,) the same for guards
-    moved: Any  # (n,) state after a reset
+    n, n_guards      numbers in a state; guards
+    fields, surfaces : Functions by mode; H of a sliding mode, whose field is not used
+    values, resets : Functions by guard
+    first : (modes + 1,)   the guards of mode m are first[m] .. first[m + 1] - 1
+    sign, at_once, kind, target, has_reset : by guard
+        it acts where sign times its value rises through zero; at once on entering; PLAIN, ..; the mode entered, for
+        ARRIVE the sliding one
+    below, above     modes beside a sliding one, or NOT_SLIDING
+    dt               step of differences in time
+    F, F1, F2, H_x, g_x : (n,)   a field; those on both sides; gradients of a surface and of a guard
+    x, x_guard : (n,)   shifted states of their differences
+    moved : (n,)     state after a reset
+
+    Parameters
+    ----------
+    n : int;  p : (n_p,)   parameters
+    functions : dict   addresses of the functions by name;  tables : dict   the integers
+    sign, dt   as above;  kept : what must outlive this object
+    """
+
+    def __init__(
+        self,
+        n: int,
+        p: Any,
+        functions: dict[str, Any],
+        tables: dict[str, Any],
+        sign: Any,
+        dt: float,
+        kept: Any,
+    ) -> None:
+        own = {name: np.array(table, dtype=np.intp) for name, table in tables.items()}
+        self.numbers, self.out_array, self.signs = (
+            np.zeros((VECTORS, n)),
+            np.zeros(1),
+            np.array(sign, dtype=float),
+        )
+        self.n, self.n_modes, self.n_guards, self.dt = n, len(own["below"]), len(own["kind"]), dt
+        self.kept = p, own, kept
+        self.fields = Functions(functions["fields"], p, n, 0, (n,))
+        self.surfaces = Functions(functions["surfaces"], p, n, 0, (1,))
+        self.values = Functions(functions["values"], p, n, 0, (1,))
+        self.resets = Functions(functions["resets"], p, n, 0, (n,))
+        self.has_reset, self.first, self.at_once = (
+            indices(own["has_reset"]),
+            indices(own["first"]),
+            indices(own["at_once"]),
+        )
+        self.kind, self.target = indices(own["kind"]), indices(own["target"])
+        self.below, self.above = indices(own["below"]), indices(own["above"])
+        self.sign, self.out, self.F = doubles(self.signs), doubles(self.out_array), doubles(self.numbers)
+        self.F1, self.F2 = after(self.F, n), after(self.F, 2 * n)
+        self.H_x, self.g_x = after(self.F, 3 * n), after(self.F, 4 * n)
+        self.x, self.x_guard = after(self.F, 5 * n), after(self.F, 6 * n)
+        self.moved = after(self.F, 7 * n)
+
+    def rates_at(self, mode: int, t: float, x: Any) -> Any:
+        """The vector field of a mode, (n,)."""
+        x, out = np.array(x, dtype=float), np.zeros(self.n)
+        field(self, mode, t, doubles(x), doubles(out))
+        return out
+
+    def approaches_at(self, mode: int, t: float, x: Any) -> tuple[float, float]:
+        """L1 and L2 of a sliding mode."""
+        x = np.array(x, dtype=float)
+        return approaches(self, mode, t, doubles(x))
+
+    def surface_at(self, mode: int, t: float, x: Any) -> float:
+        """H of a sliding mode."""
+        x = np.array(x, dtype=float)
+        return scalar(self, self.surfaces, mode, t, doubles(x))
+
+    def guard_slope_at(self, mode: int, k: int, t: float, x: Any) -> tuple[Any, float]:
+        """Derivatives of guard k of a mode by the state (n,) and by time."""
+        x = np.array(x, dtype=float)
+        g_t = guard_gradient(self, mode, k, t, doubles(x))
+        return self.numbers[4].copy(), g_t
+
+    def slides(self, mode: int) -> bool:
+        """Whether this is a mode of sliding."""
+        return self.below[mode] != NOT_SLIDING
+
+    def arrives(self, k: int) -> bool:
+        """Whether guard k is a surface that is reached."""
+        return self.kind[k] == ARRIVE
+
+    def target_of(self, k: int) -> int:
+        """The mode that guard k leads to."""
+        return self.target[k]
 
 
-@by_address
-class Machine(NamedTuple):
-    """Everything that a kernel needs to evaluate a system with modes."""
-
-    fields: Any  # (modes,) functions; a sliding mode repeats one that it does not use
-    surfaces: Any  # (modes,) H of a sliding mode
-    values: Any  # (guards,) functions
-    resets: Any  # (guards,) functions
-    has_reset: Any  # (guards,)
-    first: Any  # (modes + 1,) the guards of mode m are first[m] .. first[m + 1] - 1
-    sign: Any  # (guards,) a guard acts where sign times its value rises through zero
-    at_once: Any  # (guards,)
-    kind: Any  # (guards,) PLAIN, ...
-    target: Any  # (guards,) mode entered; for ARRIVE the sliding mode
-    below: Any  # (modes,) modes beside a sliding one, or NOT_SLIDING
-    above: Any
-    p: Any  # (n_p,)
-    dt: float  # step of differences in time
-    work: Any  # a Space
+def scalar(m: Machine, f: Functions, k: int, t: float, x: Doubles) -> float:
+    """Value of function k of those with one result."""
+    f.fill(k, t, x, x, m.out)
+    return m.out[0]
 
 
-def scalar(f: Any, m: Any, t: float, x: Any) -> float:
-    """Value of a user's function with one result."""
-    call_first_order(f, t, x, m.p, m.work.out)
-    return m.work.out[0]
-
-
-def field(m: Any, mode: int, t: float, x: Any, out: Any) -> None:
+def field(m: Machine, mode: int, t: float, x: Doubles, out: Doubles) -> None:
     """The vector field of a mode."""
-    w = m.work
     if m.below[mode] == NOT_SLIDING:
-        call_first_order(m.fields[mode], t, x, m.p, out)
+        m.fields.fill(mode, t, x, x, out)
         return
     L1, L2 = approaches(m, mode, t, x)
-    for i in range(len(out)):
-        out[i] = (L2 * w.F1[i] - L1 * w.F2[i]) / (L2 - L1)
+    for i in range(m.n):
+        out[i] = (L2 * m.F1[i] - L1 * m.F2[i]) / (L2 - L1)
 
 
-def approaches(m: Any, mode: int, t: float, x: Any) -> tuple[float, float]:
+def approaches(m: Machine, mode: int, t: float, x: Doubles) -> tuple[float, float]:
     """L1 and L2 of a sliding mode, the rates of H along the fields on both sides, which are left in F1 and F2."""
-    w = m.work
-    call_first_order(m.fields[m.below[mode]], t, x, m.p, w.F1)
-    call_first_order(m.fields[m.above[mode]], t, x, m.p, w.F2)
+    m.fields.fill(m.below[mode], t, x, x, m.F1)
+    m.fields.fill(m.above[mode], t, x, x, m.F2)
     H_t = surface_gradient(m, mode, t, x)
     L1, L2 = H_t, H_t
-    for i in range(len(x)):
-        L1 += w.H_x[i] * w.F1[i]
-        L2 += w.H_x[i] * w.F2[i]
+    for i in range(m.n):
+        L1 += m.H_x[i] * m.F1[i]
+        L2 += m.H_x[i] * m.F2[i]
     return L1, L2
 
 
-def surface_gradient(m: Any, mode: int, t: float, x: Any) -> float:
+def surface_gradient(m: Machine, mode: int, t: float, x: Doubles) -> float:
     """H_x into the work space; returns H_t."""
-    w = m.work
-    H = m.surfaces[mode]
-    assign(w.x, x)
-    for i in range(len(x)):
+    copy(m.x, x, m.n)
+    for i in range(m.n):
         d, slope = DIFFERENCE * max(1.0, abs(x[i])), 0.0
         for k in range(2):
             step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-            w.x[i] = x[i] + step
-            up, value = w.x[i], scalar(H, m, t, w.x)
-            w.x[i] = x[i] - step
-            slope += 2.0 * (1 + k) * weight * (value - scalar(H, m, t, w.x)) / (up - w.x[i])
-        w.x[i], w.H_x[i] = x[i], slope
+            m.x[i] = x[i] + step
+            up, value = m.x[i], scalar(m, m.surfaces, mode, t, m.x)
+            m.x[i] = x[i] - step
+            slope += 2.0 * (1 + k) * weight * (value - scalar(m, m.surfaces, mode, t, m.x)) / (up - m.x[i])
+        m.x[i], m.H_x[i] = x[i], slope
     d, H_t = m.dt, 0.0
     for k in range(2):
         step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-        H_t += weight * (scalar(H, m, t + step, x) - scalar(H, m, t - step, x)) / d
+        later = scalar(m, m.surfaces, mode, t + step, x)
+        H_t += weight * (later - scalar(m, m.surfaces, mode, t - step, x)) / d
     return H_t
 
 
-def guard(m: Any, mode: int, k: int, t: float, x: Any) -> float:
+def guard(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
     """Value of guard k of a mode; it acts where this rises through zero."""
     if m.kind[k] == EXIT_BELOW:
         return -approaches(m, mode, t, x)[0]
     if m.kind[k] == EXIT_ABOVE:
         return approaches(m, mode, t, x)[1]
-    return m.sign[k] * scalar(m.values[k], m, t, x)
+    return m.sign[k] * scalar(m, m.values, k, t, x)
 
 
-def guard_gradient(m: Any, mode: int, k: int, t: float, x: Any) -> float:
+def guard_gradient(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
     """Gradient of guard k by the state into the work space; returns its derivative by time."""
-    w = m.work
-    assign(w.x_guard, x)
-    for i in range(len(x)):
+    copy(m.x_guard, x, m.n)
+    for i in range(m.n):
         d, slope = DIFFERENCE * max(1.0, abs(x[i])), 0.0
         for j in range(2):
             step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-            w.x_guard[i] = x[i] + step
-            up, value = w.x_guard[i], guard(m, mode, k, t, w.x_guard)
-            w.x_guard[i] = x[i] - step
-            slope += 2.0 * (1 + j) * weight * (value - guard(m, mode, k, t, w.x_guard)) / (up - w.x_guard[i])
-        w.x_guard[i], w.g_x[i] = x[i], slope
+            m.x_guard[i] = x[i] + step
+            up, value = m.x_guard[i], guard(m, mode, k, t, m.x_guard)
+            m.x_guard[i] = x[i] - step
+            slope += 2.0 * (1 + j) * weight * (value - guard(m, mode, k, t, m.x_guard)) / (up - m.x_guard[i])
+        m.x_guard[i], m.g_x[i] = x[i], slope
     d, g_t = m.dt, 0.0
     for j in range(2):
         step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-        g_t += weight * (guard(m, mode, k, t + step, x) - guard(m, mode, k, t - step, x)) / d
+        later = guard(m, mode, k, t + step, x)
+        g_t += weight * (later - guard(m, mode, k, t - step, x)) / d
     return g_t
 
 
-def band_and_rate(m: Any, mode: int, k: int, t: float, x: Any, flow: Any) -> tuple[float, float, float]:
-    """How well guard k is known; its rate along the motion, and how well that is known; flow: with the tolerances."""
-    w = m.work
+def band_and_rate(
+    m: Machine, mode: int, k: int, t: float, x: Doubles, rtol: float, atol: float
+) -> tuple[float, float, float]:
+    """How well guard k is known under these tolerances; its rate along the motion, and how well that is known."""
     g_t = guard_gradient(m, mode, k, t, x)
-    field(m, mode, t, x, w.F)
+    field(m, mode, t, x, m.F)
     rate, band, size = g_t, TINY + abs(g_t) * 16.0 * RESOLUTION * abs(t), abs(g_t)
-    for i in range(len(x)):
-        rate += w.g_x[i] * w.F[i]
-        size += abs(w.g_x[i] * w.F[i])
-        band += abs(w.g_x[i]) * (flow.atol + (flow.rtol + 16.0 * RESOLUTION) * abs(x[i]))
+    for i in range(m.n):
+        rate += m.g_x[i] * m.F[i]
+        size += abs(m.g_x[i] * m.F[i])
+        band += abs(m.g_x[i]) * (atol + (rtol + 16.0 * RESOLUTION) * abs(x[i]))
     band += 16.0 * RESOLUTION * abs(t) * abs(rate)
     if m.kind[k] >= EXIT_BELOW:  # made of differences itself
         L1, L2 = approaches(m, mode, t, x)
-        band += flow.atol + flow.rtol * (abs(L1) + abs(L2))
+        band += atol + rtol * (abs(L1) + abs(L2))
     return band, rate, 64.0 * RESOLUTION * size
 
 
-def project(m: Any, mode: int, t: float, x: Any) -> None:
+def project(m: Machine, mode: int, t: float, x: Doubles) -> None:
     """The nearest state on the surface of a sliding mode, by one Newton step."""
-    w = m.work
     surface_gradient(m, mode, t, x)
-    H, square = scalar(m.surfaces[mode], m, t, x), 0.0
-    for i in range(len(x)):
-        square += w.H_x[i] * w.H_x[i]
+    H, square = scalar(m, m.surfaces, mode, t, x), 0.0
+    for i in range(m.n):
+        square += m.H_x[i] * m.H_x[i]
     if square > 0.0:
-        for i in range(len(x)):
-            x[i] -= w.H_x[i] * H / square
+        for i in range(m.n):
+            x[i] -= m.H_x[i] * H / square

@@ -7,193 +7,165 @@ touches the band and turns back is not transversal: tolerances decide whether it
 
 from __future__ import annotations
 
-from typing import Any
+import cython
 
-from lcpstep.compiled import call_first_order
-from lcpstep.dense import assign
-from lcpstep.events.dop853 import interpolate
-from lcpstep.events.hybrid.field import (
-    ARRIVE,
-    EXIT_ABOVE,
-    EXIT_BELOW,
-    NOT_SLIDING,
-    RESOLUTION,
-    approaches,
-    band_and_rate,
-    guard,
-    project,
-)
-from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
-from lcpstep.events.hybrid.state import (
-    BEGUN,
+from lcpstep.kernels.status import (
     BUFFER_FULL,
-    CULPRIT,
-    ENDLESS,
-    EVENTS,
-    FINISHED,
-    LAST_SWITCH,
-    LEAD,
-    LENGTH,
-    MODE,
-    NEXT,
+    DONE,
+    ENDLESS_SWITCHING,
     NOT_FINITE,
     NOT_TRANSVERSAL,
-    NOW,
-    ROW,
-    ROW_MODE,
-    STALLED,
-    STEP,
-    SWITCH,
-    SWITCH_LEAD,
-    TIME,
+    STEP_TOO_SMALL,
     TOO_MANY_EVENTS,
-    WAS_ARMED,
 )
-from lcpstep.events.hybrid.step import complete, take_step
+
+if not cython.compiled:
+    from lcpstep.events.hybrid.field import (
+        ARRIVE,
+        EXIT_ABOVE,
+        EXIT_BELOW,
+        NOT_SLIDING,
+        approaches,
+        band_and_rate,
+        guard,
+        project,
+    )
+    from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+    from lcpstep.events.hybrid.state import Motion
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, min
 
 MAX_STALLED = 100  # switches at one instant
 NEVER_LEFT = 10  # how many of them a switch counts for by a guard whose band was not left
 
 
-def run(s: Any, goal: int) -> int:
-    """Go on from x[NOW] with the state w.y to the end of the span, or to step number `goal`; says why it returned."""
-    x, count, memory, flow = s.x, s.count, s.memory, s.flow
-    if count[BEGUN] == 0:
-        count[BEGUN] = 1
-        count[CULPRIT] = enter(s, -1)
-    while x[NOW] < flow.t_end and count[STEP] < goal:
-        if count[CULPRIT] >= 0:  # a switch is due
-            code = settle(s, count[CULPRIT])
-            if code != FINISHED:
+def run(s: Motion, goal: int) -> int:
+    """Go on to the end of the span, or to step number `goal`; a status, or BUFFER_FULL."""
+    with cython.nogil:
+        return go_on(s, goal)
+
+
+def go_on(s: Motion, goal: int) -> int:
+    """The same from within a kernel."""
+    if not s.begun:
+        s.begun = True
+        s.culprit = enter(s, -1)
+    while s.now < s.t_end and s.steps < goal:
+        if s.culprit >= 0:  # a switch is due
+            code = settle(s, s.culprit)
+            if code != DONE:
                 return code
-        if count[EVENTS] >= flow.max_events:
+        if s.events >= s.max_events:
             return TOO_MANY_EVENTS
-        if len(memory.rows) > 0 and count[ROW] + 1 >= len(memory.rows):
+        if s.row_capacity > 0 and s.row + 1 >= s.row_capacity:
             return BUFFER_FULL
         code = advance(s)
-        if code != FINISHED:
+        if code != DONE:
             return code
-    if x[NOW] >= flow.t_end and count[CULPRIT] >= 0:
-        return settle(s, count[CULPRIT])
-    return FINISHED
+    if s.now >= s.t_end and s.culprit >= 0:
+        return settle(s, s.culprit)
+    return DONE
 
 
-def advance(s: Any) -> int:
+def advance(s: Motion) -> int:
     """One step, or the part of it up to the first guard that acts."""
-    w, x, count, memory = s.w, s.x, s.count, s.memory
-    t, mode, t_end = x[NOW], count[MODE], s.flow.t_end
-    h = take_step(s, min(min(x[NEXT], s.flow.longest), t_end - t))
-    if h < 0.0:
-        return int(-h)
+    t = s.now
+    left = s.t_end - t
+    s.next_step = min(s.next_step, s.longest)
+    if not s.next_step > 4.0 * RESOLUTION * abs(t) and s.next_step < left:
+        return STEP_TOO_SMALL
+    code = s.take_step(t, left, s.longest)
+    if code != DONE:
+        return code
+    h = s.length
     k, at, slope, curvature = find(s, h)
     if k == UNKNOWN:
         return NOT_FINITE
     tau = h
     if k >= 0:
-        memory.armed[k] = x[WAS_ARMED] > 0.0
-        if memory.armed[k] and slope * slope <= -4.0 * memory.band[k] * curvature:
-            keep(s, h)
-            interpolate(w.F, w.y, at, w.y_new)
-            assign(w.y, w.y_new)
-            count[CULPRIT], x[NOW] = k, t + at * h
+        s.armed[k] = s.was_armed
+        if s.was_armed and slope * slope <= -4.0 * s.band[k] * curvature:
+            s.keep(h)
+            s.at(at, s.y_new)
+            copy(s.y, s.y_new, s.n)
+            s.culprit, s.now = k, t + at * h
             return NOT_TRANSVERSAL
         tau = locate(s, k, h, at, slope)
-        complete(s, tau)
-        count[CULPRIT] = k
-    keep(s, tau)
-    assign(w.y, w.y_new)
-    x[NOW] = t_end if tau >= t_end - t else t + tau
-    if s.m.below[mode] != NOT_SLIDING:
-        project(s.m, mode, x[NOW], w.y)
-    count[STEP] += 1
-    return FINISHED
+        s.complete(t, tau)
+        s.culprit = k
+    s.keep(tau)
+    copy(s.y, s.y_new, s.n)
+    s.now = s.t_end if tau >= left else t + tau
+    if s.m.below[s.mode] != NOT_SLIDING:
+        project(s.m, s.mode, s.now, s.y)
+    s.steps += 1
+    return DONE
 
 
-def keep(s: Any, h: float) -> None:
-    """One row: the state, the step that follows and its dense output."""
-    memory, count = s.memory, s.count
-    if len(memory.rows) == 0 or h == 0.0:
-        return
-    row = memory.rows[count[ROW]]
-    row[TIME], row[LENGTH], row[ROW_MODE] = s.x[NOW], h, count[MODE]
-    for i in range(len(s.w.y)):
-        row[LEAD + i] = s.w.y[i]
-    if h > 0.0:
-        assign(memory.dense[count[ROW]], s.w.F)
-    count[ROW] += 1
-
-
-def settle(s: Any, k: int) -> int:
+def settle(s: Motion, k: int) -> int:
     """Guard k acts, and after it whatever acts at the same instant."""
-    count = s.count
     while k >= 0:
-        if count[SWITCH] >= len(s.memory.log):
-            count[CULPRIT] = k
+        if s.switches >= s.log_capacity:
+            s.culprit = k
             return BUFFER_FULL
         k = switch(s, k)
-        if count[STALLED] > MAX_STALLED:
-            return ENDLESS
-        if count[EVENTS] >= s.flow.max_events and k >= 0:
+        if s.stalled > MAX_STALLED:
+            return ENDLESS_SWITCHING
+        if s.events >= s.max_events and k >= 0:
             return TOO_MANY_EVENTS
-    count[CULPRIT] = -1
-    return FINISHED
+    s.culprit = -1
+    return DONE
 
 
-def switch(s: Any, k: int) -> int:
-    """Guard k acts at w.y: log, reset, new mode. Returns the guard that acts at once in that mode, or -1."""
-    m, y, moved, count, x = s.m, s.w.y, s.m.work.moved, s.count, s.x
-    t, mode, n = x[NOW], count[MODE], len(y)
-    if t - x[LAST_SWITCH] <= 4.0 * RESOLUTION * abs(t):
-        count[STALLED] += 1
-    elif not s.memory.armed[k] and count[EVENTS] > 0:
-        count[STALLED] += NEVER_LEFT
+def switch(s: Motion, k: int) -> int:
+    """Guard k acts at y: log, reset, new mode. Returns the guard that acts at once in that mode, or -1."""
+    t, n = s.now, s.n
+    if t - s.last_switch <= 4.0 * RESOLUTION * abs(t):
+        s.stalled += 1
+    elif s.armed[k] == 0 and s.events > 0:
+        s.stalled += NEVER_LEFT
     else:
-        count[STALLED] = 0
-    assign(moved, y)
-    if m.has_reset[k]:
-        call_first_order(m.resets[k], t, y, m.p, moved)
+        s.stalled = 0
+    copy(s.m.moved, s.y, n)
+    if s.m.has_reset[k] != 0:
+        s.m.resets.fill(k, t, s.y, s.y, s.m.moved)
     target, left = target_of(s, k)
-    if m.below[target] != NOT_SLIDING:
-        project(m, target, t, moved)
-    line = s.memory.log[count[SWITCH]]
-    line[0], line[1], line[2], line[3] = t, mode, target, k
-    for i in range(n):
-        line[SWITCH_LEAD + i], line[SWITCH_LEAD + n + i] = y[i], moved[i]
-    assign(y, moved)
-    count[SWITCH] += 1
-    count[EVENTS] += 1
-    count[MODE], x[LAST_SWITCH] = target, t
+    if s.m.below[target] != NOT_SLIDING:
+        project(s.m, target, t, s.m.moved)
+    s.note(target, k, s.m.moved)
+    copy(s.y, s.m.moved, n)
+    s.mode, s.last_switch = target, t
     return enter(s, left)
 
 
-def target_of(s: Any, k: int) -> tuple[int, int]:
-    """The mode that guard k leads to from w.y, and the sliding mode that it ends, or -1."""
-    m, mode = s.m, s.count[MODE]
-    target, left = m.target[k], -1
-    if m.kind[k] == ARRIVE:
-        L1, L2 = approaches(m, target, s.x[NOW], s.w.y)
-        if mode == m.below[target] and L2 > 0.0:
-            target = m.above[target]
-        elif mode == m.above[target] and L1 < 0.0:
-            target = m.below[target]
-    elif m.kind[k] == EXIT_BELOW:
-        target, left = m.below[mode], mode
-    elif m.kind[k] == EXIT_ABOVE:
-        target, left = m.above[mode], mode
+def target_of(s: Motion, k: int) -> tuple[int, int]:
+    """The mode that guard k leads to from y, and the sliding mode that it ends, or -1."""
+    mode = s.mode
+    target, left = s.m.target[k], -1
+    if s.m.kind[k] == ARRIVE:
+        L1, L2 = approaches(s.m, target, s.now, s.y)
+        if mode == s.m.below[target] and L2 > 0.0:
+            target = s.m.above[target]
+        elif mode == s.m.above[target] and L1 < 0.0:
+            target = s.m.below[target]
+    elif s.m.kind[k] == EXIT_BELOW:
+        target, left = s.m.below[mode], mode
+    elif s.m.kind[k] == EXIT_ABOVE:
+        target, left = s.m.above[mode], mode
     return target, left
 
 
-def enter(s: Any, left: int) -> int:
-    """Begin a mode at w.y; the guard that leaves it at once, or -1. left: the sliding mode just ended, or -1."""
-    m, memory, mode, t, y = s.m, s.memory, s.count[MODE], s.x[NOW], s.w.y
-    leaves = -1
-    for k in range(m.first[mode], m.first[mode + 1]):
-        band, rate, noise = band_and_rate(m, mode, k, t, y, s.flow)
-        g = guard(m, mode, k, t, y)
-        memory.band[k], memory.armed[k] = band, g < -band
+def enter(s: Motion, left: int) -> int:
+    """Begin a mode at y; the guard that leaves it at once, or -1. left: the sliding mode just ended, or -1."""
+    mode, t, leaves = s.mode, s.now, -1
+    for k in range(s.m.first[mode], s.m.first[mode + 1]):
+        band, rate, noise = band_and_rate(s.m, mode, k, t, s.y, s.rtol, s.atol)
+        g = guard(s.m, mode, k, t, s.y)
+        s.band[k], s.armed[k] = band, g < -band
         passed = g > band or (g >= -band and rate > noise)
-        if m.kind[k] == ARRIVE and m.target[k] == left:
+        if s.m.kind[k] == ARRIVE and s.m.target[k] == left:
             passed = g > band
-        if passed and m.at_once[k] and leaves < 0:
+        if passed and s.m.at_once[k] != 0 and leaves < 0:
             leaves = k
     return leaves

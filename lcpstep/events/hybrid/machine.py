@@ -9,22 +9,16 @@ import numpy as np
 from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
 from lcpstep import callbacks, compiled
 from lcpstep.callbacks import NotCompiled
-from lcpstep.events.hybrid.field import (
-    ARRIVE,
-    EXIT_ABOVE,
-    EXIT_BELOW,
-    NOT_SLIDING,
-    PLAIN,
-    Machine,
-    Space,
-)
-from lcpstep.faults import name_of, plain_first_order
+from lcpstep.events.hybrid.field import Machine
+from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, PLAIN
+from lcpstep.faults import name_of
+from lcpstep.kernels.uncompiled import CalledBack
 
 TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
 
 
-def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
-    """The system as kernels see it, its functions compiled unless `plain`, and whether all of them could be."""
+def machine(scene: HybridScene) -> Machine:
+    """The system as kernels see it; its functions are C functions, compiled or around Python."""
     system, names = scene.system, scene.system.names
     index = {name: k for k, name in enumerate(names)}
     modes, surfaces = list(system.modes.values()), system.surfaces
@@ -37,7 +31,9 @@ def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
         "values": [value or anything for value, *_ in table],
         "resets": [reset or anything for _, reset, *_ in table],
     }
-    addresses, fast = _addresses(scene, functions, plain)
+    once = {id(f): f for fs in functions.values() for f in fs}
+    made = {k: _c_function(scene, f) for k, f in once.items()}
+    addresses = {name: [made[id(f)][0] for f in fs] for name, fs in functions.items()}
     not_sliding = [NOT_SLIDING] * len(modes)
     integers = {
         "has_reset": [reset is not None for _, reset, *_ in table],
@@ -50,13 +46,9 @@ def machine(scene: HybridScene, plain: bool = False) -> tuple[Machine, bool]:
     }
     span = min(scene.period, scene.t_span[1] - scene.t_span[0])
     return Machine(
-        **addresses,
-        **{name: np.array(x, dtype=np.int64) for name, x in integers.items()},
-        sign=np.array([row[2] for row in table], dtype=float),
-        p=np.array(scene.p),
-        dt=TIME_DIFFERENCE * span,
-        work=space(system.n_x),
-    ), fast
+        system.n_x, np.array(scene.p), addresses, integers, [row[2] for row in table], TIME_DIFFERENCE * span,
+        list(made.values()),
+    )  # fmt: skip
 
 
 def _rows(
@@ -82,27 +74,12 @@ def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, flo
     return [(guard.value, guard.reset, sign, at_once, PLAIN, index[guard.target]) for sign in signs]
 
 
-def _addresses(
-    scene: HybridScene, functions: dict[str, list[Any]], plain: bool
-) -> tuple[dict[str, Any], bool]:
-    made: dict[str, list[int]] = {}
-    if not (plain or compiled.jit_disabled()):
-        made = {name: _compiled(scene, fs) for name, fs in functions.items()}
-    if all(len(made.get(name, ())) == len(fs) for name, fs in functions.items()):
-        return {name: np.array(x, dtype=np.int64) for name, x in made.items()}, True
-    return {name: tuple(map(plain_first_order, fs)) for name, fs in functions.items()}, False
-
-
-def _compiled(scene: HybridScene, functions: list[Any]) -> list[int]:
-    addresses = []
-    for f in functions:
+def _c_function(scene: HybridScene, f: Any) -> tuple[int, CalledBack | None]:
+    """Address of a C function: machine code, or what must be kept around what stays in Python."""
+    if not compiled.jit_disabled():
         try:
-            addresses.append(callbacks.first_order_address(f))
+            return callbacks.plain_first_order_address(f), None
         except NotCompiled as why:
             callbacks.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
-    return addresses
-
-
-def space(n: int) -> Space:
-    """Work space of a state of n numbers."""
-    return Space(*(np.zeros(1 if name == "out" else n) for name in Space._fields))
+    called_back = CalledBack(f, first_order=True)
+    return called_back.address, called_back

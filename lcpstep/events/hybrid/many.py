@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,14 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep import compiled
 from lcpstep.events.hybrid import loop
-from lcpstep.events.hybrid import state as at
-from lcpstep.events.hybrid.run import STATUS, prepared
+from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.run import prepared
+from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.pace import Pace
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
+SWITCHES = 256  # between two looks at the log
+FIRST_STEP = 1e-3  # of the longest
 PORTION = 65536  # steps between two looks at the outside world, at most
 
 
@@ -50,23 +51,20 @@ class Follower:
 
         self.scene = replace(scene, t_span=(0.0, duration), exact=None)
         self.names = scene.system.names
-        s, fast = prepared(self.scene, method, 0, switches + loop.MAX_STALLED + 2)
-        self.loop = s._replace(flow=s.flow._replace(max_events=switches))
-        self.kernel = compiled.compiled(loop.run) if fast else loop.run
+        self.motion = prepared(self.scene, method, 0, SWITCHES)
+        self.motion.max_events = switches
 
     def __call__(self, x0: ArrayLike, mode: str) -> End:
         """The end of the run from x0 (n_x,) in a mode."""
-        s = self.loop
-        s.count[:], s.x[:] = 0, 0.0
-        s.count[at.MODE] = self.names.index(mode)
-        s.x[at.LAST_SWITCH], s.x[at.NEXT] = -math.inf, 1e-3 * s.flow.longest
-        s.w.y[:] = x0
-        pace, code = Pace(PORTION, len(s.w.y)), at.FINISHED
-        while code == at.FINISHED and s.x[at.NOW] < s.flow.t_end:
-            code = self.kernel(s, pace.goal(int(s.count[at.STEP])))
-        n, log = len(s.w.y), s.memory.log[: s.count[at.SWITCH]].copy()
-        lead = at.SWITCH_LEAD
+        s = self.motion
+        s.start(0.0, x0, self.names.index(mode))
+        s.next_step = FIRST_STEP * s.longest
+        pace, logs, code, n = Pace(PORTION, s.n), [], BUFFER_FULL, s.n
+        while code == BUFFER_FULL or (code == Status.DONE and s.now < s.t_end):
+            code = loop.run(s, pace.goal(s.steps))
+            logs.append(s.take()[2])
+        log = np.concatenate(logs)
         return End(
-            STATUS[int(code)], float(s.x[at.NOW]), s.w.y.copy(), self.names[s.count[at.MODE]],
-            log[:, 0], [self.names[int(k)] for k in log[:, 2]], log[:, lead : lead + n], log[:, lead + n :],
+            Status(code), s.now, s.state.copy(), self.names[s.mode], log[:, 0],
+            [self.names[int(k)] for k in log[:, 2]], log[:, SWITCH_LEAD : SWITCH_LEAD + n], log[:, SWITCH_LEAD + n :],
         )  # fmt: skip

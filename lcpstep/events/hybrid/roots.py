@@ -10,13 +10,16 @@ Curves and Surfaces for CAGD (Morgan Kaufmann 2002), section 5.3.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
+import cython
 import numpy as np
 
-from lcpstep.compiled import by_address
-from lcpstep.dense import assign
-from lcpstep.events.clock import RESOLUTION
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, abs, after, max
 
 DEGREE = 9
 DEPTH = 42  # halvings at most
@@ -25,57 +28,62 @@ CHECKS = 2  # further samples, which say whether the polynomial is the guard
 MAX_ITERATIONS = 60
 
 
-@by_address
-class Scan(NamedTuple):
-    """Sample points, conversion to Bernstein form, and work space."""
-
-    s: Any  # (DEGREE + 1 + CHECKS,) where the guard is sampled, in [0, 1]
-    to_bernstein: Any  # (DEGREE + 1, DEGREE + 1)
-    at_checks: Any  # (CHECKS, DEGREE + 1)
-    sample: Any  # (DEGREE + 1 + CHECKS,)
-    c: Any  # (DEGREE + 1,) Bernstein coefficients of the guard
-    half: Any  # (DEGREE + 1,)
-    stack: Any  # (DEPTH + 3, DEGREE + 1)
-    low: Any  # (DEPTH + 3,)
-    high: Any
+def bernstein(s: Any) -> Any:
+    """The Bernstein polynomials at the points s, a column each."""
+    basis = [math.comb(DEGREE, j) for j in range(DEGREE + 1)]
+    return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
 
 
-def scan() -> Scan:
-    """Chebyshev points and the inverse of the Bernstein basis there."""
-    n = DEGREE + 1
-    nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(n) / DEGREE)
-    checks = np.array([0.3819, 0.8137])
-    basis = [math.comb(DEGREE, j) for j in range(n)]
-
-    def bernstein(s: Any) -> Any:
-        return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
-
-    return Scan(
-        s=np.concatenate([nodes, checks]), to_bernstein=np.linalg.inv(bernstein(nodes)), at_checks=bernstein(checks),
-        sample=np.zeros(n + CHECKS), c=np.zeros(n), half=np.zeros(n), stack=np.zeros((DEPTH + 3, n)),
-        low=np.zeros(DEPTH + 3), high=np.zeros(DEPTH + 3),
-    )  # fmt: skip
+NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+AT_CHECKS = np.array([0.3819, 0.8137])
+FROM_NODES, FROM_CHECKS = np.linalg.inv(bernstein(NODES)), bernstein(AT_CHECKS)
 
 
-def convert(scan: Any) -> float:
+class Scan:
+    """Sample points, conversion to Bernstein form, and work space; N = DEGREE + 1.
+
+    points, sample : (N + CHECKS,)   where the guard is sampled, in [0, 1]; its values there
+    to_bernstein : (N, N);  at_checks : (CHECKS, N)
+    c, half : (N,)   Bernstein coefficients of the guard; work space
+    stack : (DEPTH + 3, N);  low, high : (DEPTH + 3,)   polynomials on parts of the interval, and their ends
+    """
+
+    def __init__(self) -> None:
+        n = DEGREE + 1
+        self.arrays = [
+            np.concatenate([NODES, AT_CHECKS]),
+            np.ascontiguousarray(FROM_NODES),
+            np.ascontiguousarray(FROM_CHECKS),
+            np.zeros(n + CHECKS),
+            np.zeros((2, n)),
+            np.zeros((DEPTH + 3, n + 2)),
+        ]
+        self.points, self.to_bernstein = doubles(self.arrays[0]), doubles(self.arrays[1])
+        self.at_checks, self.sample = doubles(self.arrays[2]), doubles(self.arrays[3])
+        self.c, self.stack = doubles(self.arrays[4]), doubles(self.arrays[5])
+        self.half, self.low = after(self.c, n), after(self.stack, (DEPTH + 3) * n)
+        self.high = after(self.low, DEPTH + 3)
+
+
+def convert(scan: Scan) -> float:
     """Bernstein coefficients of the samples; how far the polynomial is from the further samples."""
     n = DEGREE + 1
     for j in range(n):
         scan.c[j] = 0.0
         for i in range(n):
-            scan.c[j] += scan.to_bernstein[j, i] * scan.sample[i]
+            scan.c[j] += scan.to_bernstein[j * n + i] * scan.sample[i]
     worst = 0.0
     for k in range(CHECKS):
         value = 0.0
         for j in range(n):
-            value += scan.at_checks[k, j] * scan.c[j]
+            value += scan.at_checks[k * n + j] * scan.c[j]
         worst = max(worst, abs(value - scan.sample[n + k]))
     return worst
 
 
-def taylor(d: Any, s: float, work: Any) -> tuple[float, float, float]:
+def taylor(d: Doubles, s: float, work: Doubles) -> tuple[float, float, float]:
     """Value, first and second derivative of a polynomial in Bernstein form."""
-    assign(work, d)
+    copy(work, d, DEGREE + 1)
     n, slope, curvature = DEGREE, 0.0, 0.0
     for i in range(n):
         if i == n - 2:
@@ -87,15 +95,16 @@ def taylor(d: Any, s: float, work: Any) -> tuple[float, float, float]:
     return work[0], slope, curvature
 
 
-def first_rise(scan: Any, sign: float, level: float, start: float) -> float:
+def first_rise(scan: Scan, sign: float, level: float, start: float) -> float:
     """First s in (start, 1] where sign times the polynomial rises through the level, or NONE."""
-    for j in range(DEGREE + 1):
-        scan.stack[0, j] = sign * scan.c[j] - level
+    n = DEGREE + 1
+    for j in range(n):
+        scan.stack[j] = sign * scan.c[j] - level
     scan.low[0], scan.high[0] = 0.0, 1.0
     top = 1
     while top > 0:
         top -= 1
-        d, a, b = scan.stack[top], scan.low[top], scan.high[top]
+        d, a, b = after(scan.stack, top * n), scan.low[top], scan.high[top]
         if b <= start:
             continue
         changes = 0
@@ -112,8 +121,8 @@ def first_rise(scan: Any, sign: float, level: float, start: float) -> float:
             if d[0] < 0.0 <= d[DEGREE]:
                 return b
             continue
-        left = scan.stack[top + 1]
-        for i in range(DEGREE + 1):
+        left = after(scan.stack, (top + 1) * n)
+        for i in range(n):
             left[i] = d[0]
             for j in range(DEGREE - i):
                 d[j] = 0.5 * (d[j] + d[j + 1])
@@ -124,12 +133,12 @@ def first_rise(scan: Any, sign: float, level: float, start: float) -> float:
     return NONE
 
 
-def single_root(d: Any, work: Any) -> float:
+def single_root(d: Doubles, work: Doubles) -> float:
     """The root in [0, 1] of a polynomial that rises through zero once: Newton's method within a bracket."""
     a, b = 0.0, 1.0
     s = d[0] / (d[0] - d[DEGREE])
     for _ in range(MAX_ITERATIONS):
-        f, slope, _ = taylor(d, s, work)
+        f, slope, _curvature = taylor(d, s, work)
         if f < 0.0:
             a = s
         else:

@@ -1,56 +1,115 @@
-"""What the loop over a system with modes works on: bounds, memory, and the places of its numbers."""
+"""A motion of a system with modes: its mode and state, what is known of the guards, and what has been kept."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
-from lcpstep.compiled import by_address
+import cython
+import numpy as np
 
-# Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, TOO_MANY_EVENTS, STEP_TOO_SMALL, ENDLESS, NOT_TRANSVERSAL = range(7)
-# Places in the array of counters
-STEP, ROW, SWITCH, FORCES, MODE, EVENTS, STALLED, BEGUN, CULPRIT = range(9)
-N_COUNTERS = 9
-# Places in the array of numbers
-NOW, NEXT, LAST_SWITCH, EVENT_AT, WAS_ARMED = range(5)
-N_NUMBERS = 5
-# In a row: time, duration and mode of the step that follows; then the state
-TIME, LENGTH, ROW_MODE, LEAD = range(4)
-# In a line of the switch log: time, modes left and entered, guard; then the states before and after
-SWITCH_LEAD = 4
+from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
 
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.events.hybrid.field import Machine, field
+    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.vectors import copy, finite
+    from lcpstep.pointers import Doubles, after, inf
 
-@by_address
-class Flow(NamedTuple):
-    """Span, tolerances and bounds."""
-
-    t_end: float
-    rtol: float
-    atol: float
-    longest: float  # step
-    max_events: int
+FIRST_STEP = 0.1  # of the longest
 
 
-@by_address
-class Memory(NamedTuple):
-    """What a run knows of its guards, and where it writes."""
+class Motion(RungeKutta):
+    """A motion under way; its field is that of the mode at hand.
 
-    armed: Any  # (guards,) whether each has been below its band since the mode began
-    band: Any  # (guards,)
-    states: Any  # (DEGREE + 1 + CHECKS, n) samples of a step
-    rows: Any  # (rows, LEAD + n)
-    dense: Any  # (rows, 7, n); no rows where nothing but switches is kept
-    log: Any  # (switches, SWITCH_LEAD + 2 n)
+    t_end, longest, max_events   span and bounds: of the longest step, of switches
+    now, mode, begun             where it is, and whether guards have been looked at
+    culprit                      the guard by which a switch is due, or -1
+    steps, events, stalled       taken; switches, those at one instant
+    last_switch                  time of it
+    event_at, was_armed          of the event found: the value of its guard, whether that was below its band before
+    armed, band : (guards,)      whether each has been below its band since the mode began; how well it is known
+    states : (samples, n)        of a step
+    row, switches                rows and lines of the log written
+    rows : (row_capacity, LEAD + n);  dense_rows : (row_capacity, 7, n);  log : (log_capacity, SWITCH_LEAD + 2 n)
 
+    Parameters
+    ----------
+    machine : Machine
+    t_end, longest, max_events   as above
+    rtol, atol : tolerances
+    rows, switches : int   room; rows = 0 where nothing but switches is kept
+    """
 
-@by_address
-class Loop(NamedTuple):
-    """Everything that the loop is handed."""
+    def __init__(
+        self, machine: Machine, t_end: float, rtol: float, atol: float, longest: float, max_events: int,
+        rows: int, switches: int,
+    ) -> None:  # fmt: skip
+        n = machine.n
+        super().__init__(n, 0, rtol, atol)
+        self.m, self.scan = machine, Scan()
+        self.t_end, self.longest, self.max_events = t_end, longest, max_events
+        self.kept_rows, self.kept_dense = np.zeros((rows, LEAD + n)), np.zeros((rows, 7, n))
+        self.kept_log = np.zeros((switches, SWITCH_LEAD + 2 * n))
+        self.lists, self.of_guards = np.zeros(machine.n_guards, dtype=np.intp), np.zeros(machine.n_guards)
+        self.samples = np.zeros((DEGREE + 1 + CHECKS, n))
+        self.row_capacity, self.log_capacity = rows, switches
+        self.rows, self.dense_rows = doubles(self.kept_rows), doubles(self.kept_dense)
+        self.log, self.armed = doubles(self.kept_log), indices(self.lists)
+        self.band, self.states = doubles(self.of_guards), doubles(self.samples)
+        self.start_from(0.0, 0)
 
-    m: Any  # the system, a `field.Machine`
-    flow: Any
-    memory: Any
-    scan: Any  # of guards, a `roots.Scan`
-    w: Any  # of the Runge-Kutta method
-    count: Any  # (N_COUNTERS,)
-    x: Any  # (N_NUMBERS,)
+    def start_from(self, t: float, mode: int) -> None:
+        """Begin at time t in a mode with the state y."""
+        self.begin(FIRST_STEP * self.longest)
+        self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
+        self.event_at, self.was_armed = 0.0, False
+        self.steps, self.events, self.stalled, self.row, self.switches = 0, 0, 0, 0, 0
+
+    def start(self, t: float, x: Any, mode: int) -> None:
+        """Begin at time t with the state x (n,) in a mode."""
+        self.state[:] = x
+        self.start_from(t, mode)
+
+    def take(self) -> tuple[Any, Any, Any]:
+        """Rows, dense output and switches kept since the last time; there is room again."""
+        taken = (
+            self.kept_rows[: self.row].copy(),
+            self.kept_dense[: self.row].copy(),
+            self.kept_log[: self.switches].copy(),
+        )
+        self.row, self.switches = 0, 0
+        return taken
+
+    def make_room(self) -> None:
+        """Twice as many lines of the log."""
+        self.kept_log = np.concatenate([self.kept_log, np.zeros_like(self.kept_log)])
+        self.log, self.log_capacity = doubles(self.kept_log), len(self.kept_log)
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """The field of the mode."""
+        field(self.m, self.mode, t, y, dy)
+        return finite(dy, self.n)
+
+    def keep(self, h: float) -> None:
+        """One row: the state, the step that follows and its dense output."""
+        n = self.n
+        if self.row_capacity == 0 or h == 0.0:
+            return
+        row = after(self.rows, self.row * (LEAD + n))
+        row[TIME], row[LENGTH], row[ROW_MODE] = self.now, h, self.mode
+        copy(after(row, LEAD), self.y, n)
+        if h > 0.0:
+            copy(after(self.dense_rows, self.row * 7 * n), self.F, 7 * n)
+        self.row += 1
+
+    def note(self, target: int, guard: int, moved: Doubles) -> None:
+        """One line of the log: guard acts at y, and leads to another mode and state."""
+        n = self.n
+        line = after(self.log, self.switches * (SWITCH_LEAD + 2 * n))
+        line[0], line[1], line[2], line[3] = self.now, self.mode, target, guard
+        copy(after(line, SWITCH_LEAD), self.y, n)
+        copy(after(line, SWITCH_LEAD + n), moved, n)
+        self.switches += 1
+        self.events += 1

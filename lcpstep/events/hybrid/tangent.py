@@ -13,180 +13,190 @@ Mechanical Systems (Springer 2004), chapter 7.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
+import cython
 import numpy as np
 
-from lcpstep.compiled import by_address, call_first_order
-from lcpstep.dense import assign
-from lcpstep.events import dop853
-from lcpstep.events.dop853 import STAGES, combine, error_norm, factor
-from lcpstep.events.hybrid.field import (
-    ARRIVE,
-    INNER,
-    NOT_SLIDING,
-    OUTER,
-    RESOLUTION,
-    field,
-    guard_gradient,
-    surface_gradient,
-)
-from lcpstep.events.hybrid.state import SWITCH_LEAD
+from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL
 
-WALKED, NOT_TRANSVERSAL, NOT_INTEGRATED = range(3)
-TOLERANCE = 1e-12  # of the variational flow
-DIFFERENCE = np.finfo(float).eps ** 0.2 * 0.1  # step of the differences of fields and resets, relative
-SHORTEST = 1e-10  # step, relative to the span
-
-
-@by_address
-class Tangent(NamedTuple):
-    """Work space for the derivative of a motion of n states."""
-
-    m: Any  # the system, a `field.Machine`
-    w: Any  # of the Runge-Kutta method, for the state and its derivative together, n + n^2 numbers
-    J: Any  # (n, n) the derivative so far
-    A: Any  # (n, n) F_x, or the derivative of one reset
-    D: Any  # (n, n) of a switch
-    R: Any  # (n, n) R_x of all resets at one instant
-    R_t: Any  # (n,)
-    H_x: Any  # (n,)
-    x: Any  # (n,) a shifted state
-    start: Any  # (n,) state at the start of a piece
-    F_before: Any  # (n,)
-    F_after: Any
-    up: Any  # (n,) values on both sides
-    down: Any
-
-
-def tangent(m: Any, n: int) -> Tangent:
-    """Work space for a system of n states."""
-    square, vector = iter(np.zeros((4, n, n))), iter(np.zeros((8, n)))
-    return Tangent(
-        m, dop853.work(n + n * n), *(next(square) for _ in range(4)), *(next(vector) for _ in range(8))
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.events.hybrid.field import (
+        ARRIVE,
+        INNER,
+        NOT_SLIDING,
+        OUTER,
+        Machine,
+        field,
+        guard_gradient,
+        surface_gradient,
     )
+    from lcpstep.events.hybrid.state import SWITCH_LEAD
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, abs, after, max, whole
+
+TOLERANCE = 1e-12  # of the variational flow
+RELATIVE_STEP = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets
+VECTORS = 8
 
 
-def walk(s: Any, log: Any, count: int, mode: int, t: float, x: Any, t_end: float) -> int:
-    """Derivative of the state at t_end by the state x at t, into s.J.
+class Tangent(RungeKutta):
+    """A state and its derivative by the initial one, which move together: n_x + n_x^2 numbers.
 
-    log : the `count` switches between, see `state.Memory`
-    mode : at t, before any switch there
+    n_x, m       of the system, a Machine;  mode   at hand
+    J : (n_x, n_x)      the derivative so far
+    F_x : (n_x, n_x)    derivative of the field
+    S : (n_x, n_x)      D of a switch, or the derivative of one reset
+    R, R_t : (n_x, n_x), (n_x,)   derivatives of all resets at one instant
+    H_x, x, start : (n_x,)   gradient of a guard; a shifted state; state at the start of a piece
+    F_before, F_after, up, down : (n_x,)   fields and values on both sides
+    derivative : (n_x, n_x) array   J as Python sees it
     """
-    n, k = len(s.x), 0
-    assign(s.start, x)
-    for i in range(n):
-        for j in range(n):
-            s.J[i, j] = 1.0 if i == j else 0.0
+
+    def __init__(self, machine: Machine) -> None:
+        n = machine.n
+        super().__init__(n + n * n, 0, TOLERANCE, TOLERANCE, False)
+        self.n_x, self.m, self.mode = n, machine, 0
+        self.derivative, self.squares, self.vectors = (
+            np.zeros((n, n)),
+            np.zeros((3, n, n)),
+            np.zeros((VECTORS, n)),
+        )
+        self.J, self.F_x, self.R_t = doubles(self.derivative), doubles(self.squares), doubles(self.vectors)
+        self.S, self.R = after(self.F_x, n * n), after(self.F_x, 2 * n * n)
+        self.H_x, self.x, self.start = after(self.R_t, n), after(self.R_t, 2 * n), after(self.R_t, 3 * n)
+        self.F_before, self.F_after = after(self.R_t, 4 * n), after(self.R_t, 5 * n)
+        self.up, self.down = after(self.R_t, 6 * n), after(self.R_t, 7 * n)
+
+    def along(self, log: Any, mode: int, t: float, x: Any, t_end: float) -> int:
+        """Derivative of the state at t_end by the state x (n_x,) at t; a status.
+
+        log : (m, SWITCH_LEAD + 2 n_x)   the switches between
+        mode : at t, before any switch there
+        """
+        log, x = np.ascontiguousarray(log, dtype=float), np.array(x, dtype=float)
+        lines, count, begin = doubles(log), len(log), doubles(x)
+        return walk(self, lines, count, mode, t, begin, t_end)
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Rates of the state and of its derivative: F and F_x J."""
+        variation(self, t, y, dy)
+        return True
+
+
+def walk(s: Tangent, log: Doubles, count: int, mode: int, t: float, x: Doubles, t_end: float) -> int:
+    """Derivative of the state at t_end by the state x at t, into s.J, along `count` lines of a log; a status."""
+    n, k = s.n_x, 0
+    line = SWITCH_LEAD + 2 * n
+    copy(s.start, x, n)
+    unit(s.J, n)
     now, t_first = t, t
+    s.mode = mode
     if s.m.below[mode] != NOT_SLIDING:
-        put_on_surface(s, mode, t)
+        put_on_surface(s, t)
         times(s, s.R)
     while k < count:
-        if not flow(s, mode, now, log[k, 0]):
-            return NOT_INTEGRATED
+        time = log[k * line]
+        code = flow(s, now, time)
+        if code != DONE:
+            return code
         first = k
-        now = log[k, 0]
-        while k + 1 < count and log[k + 1, 0] == now:
+        now = time
+        while k + 1 < count and log[(k + 1) * line] == now:
             k += 1
-        if not switch(s, log, first, k, now > t_first):
+        if not switch(s, after(log, first * line), k - first, now > t_first):
             return NOT_TRANSVERSAL
-        mode = int(log[k, 2])
-        for i in range(n):
-            s.start[i] = log[k, SWITCH_LEAD + n + i]
+        s.mode = whole(log[k * line + 2])
+        copy(s.start, after(log, k * line + SWITCH_LEAD + n), n)
         k += 1
-    return WALKED if flow(s, mode, now, t_end) else NOT_INTEGRATED
+    return flow(s, now, t_end)
 
 
-def times(s: Any, D: Any) -> None:
+def unit(J: Doubles, n: int) -> None:
+    """J <- 1."""
+    for i in range(n):
+        for j in range(n):
+            J[i * n + j] = 1.0 if i == j else 0.0
+
+
+def times(s: Tangent, D: Doubles) -> None:
     """J <- D J."""
-    n = len(s.x)
+    n = s.n_x
     for j in range(n):
         for i in range(n):
             s.up[i] = 0.0
             for k in range(n):
-                s.up[i] += D[i, k] * s.J[k, j]
+                s.up[i] += D[i * n + k] * s.J[k * n + j]
         for i in range(n):
-            s.J[i, j] = s.up[i]
+            s.J[i * n + j] = s.up[i]
 
 
-def flow(s: Any, mode: int, a: float, b: float) -> bool:
-    """Smooth motion in a mode from s.start at a to b, state and derivative together; False where it fails."""
-    n, w = len(s.x), s.w
-    for i in range(n):
-        w.y[i] = s.start[i]
-        for j in range(n):
-            w.y[n + i * n + j] = s.J[i, j]
-    t, h, whole = a, b - a, b - a
+def flow(s: Tangent, a: float, b: float) -> int:
+    """Smooth motion in the mode from s.start at a to b, state and derivative together; a status."""
+    n, span, t = s.n_x, b - a, a
+    copy(s.y, s.start, n)
+    copy(after(s.y, n), s.J, n * n)
+    s.begin(span)
     while t < b:
-        h = min(h, b - t)
-        variation(s, mode, t, w.y, w.K[0])
-        for stage in range(1, STAGES):
-            combine(w, h, stage)
-            variation(s, mode, t + w.tab.C[stage] * h, w.y_stage, w.K[stage])
-        combine(w, h, STAGES)
-        assign(w.y_new, w.y_stage)
-        variation(s, mode, t + h, w.y_new, w.K[STAGES])
-        error = error_norm(w, h, TOLERANCE, TOLERANCE)
-        if error < 1.0:
-            t = b if h >= b - t else t + h
-            assign(w.y, w.y_new)
-        elif not h > SHORTEST * whole + 4.0 * RESOLUTION * abs(t):
-            return False
-        h *= factor(error) if error < 1e30 else 0.1
-    for i in range(n):
-        for j in range(n):
-            s.J[i, j] = w.y[n + i * n + j]
-    return True
+        code = s.take_step(t, b - t, span)
+        if code != DONE:
+            return code
+        t = b if s.length >= b - t else t + s.length
+        copy(s.y, s.y_new, n + n * n)
+    copy(s.J, after(s.y, n), n * n)
+    return DONE
 
 
-def variation(s: Any, mode: int, t: float, z: Any, out: Any) -> None:
+def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
     """Rates of the state and of its derivative: F and F_x J."""
-    n = len(s.x)
+    n = s.n_x
     for j in range(n):
-        d = DIFFERENCE * max(1.0, abs(z[j]))
+        d = RELATIVE_STEP * max(1.0, abs(z[j]))
         for i in range(n):
-            s.A[i, j] = 0.0
+            s.F_x[i * n + j] = 0.0
         for k in range(2):
             step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-            for i in range(n):
-                s.x[i] = z[i]
-            s.x[j] = above = z[j] + step
-            field(s.m, mode, t, s.x, s.up)
+            copy(s.x, z, n)
+            above = z[j] + step
+            s.x[j] = above
+            field(s.m, s.mode, t, s.x, s.up)
             s.x[j] = z[j] - step
-            field(s.m, mode, t, s.x, s.down)
+            field(s.m, s.mode, t, s.x, s.down)
             for i in range(n):
-                s.A[i, j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
-    for i in range(n):
-        s.x[i] = z[i]
-    field(s.m, mode, t, s.x, s.up)
+                s.F_x[i * n + j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
+    copy(s.x, z, n)
+    field(s.m, s.mode, t, s.x, s.up)
     for i in range(n):
         out[i] = s.up[i]
         for j in range(n):
             total = 0.0
             for k in range(n):
-                total += s.A[i, k] * z[n + k * n + j]
+                total += s.F_x[i * n + k] * z[n + k * n + j]
             out[n + i * n + j] = total
 
 
-def switch(s: Any, log: Any, first: int, last: int, moves: bool) -> bool:
-    """J <- D J for the switches first .. last of one instant; moves: whether the instant depends on the state."""
-    n, m, t = len(s.x), s.m, log[first, 0]
-    before = log[first, SWITCH_LEAD : SWITCH_LEAD + n]
-    source, guard = int(log[first, 1]), int(log[first, 3])
+def switch(s: Tangent, lines: Doubles, further: int, moves: bool) -> bool:
+    """J <- D J for a switch and those `further` at its instant; moves: whether this depends on the state.
+
+    lines : of the log, from the first of them on
+    """
+    n, t, line = s.n_x, lines[0], SWITCH_LEAD + 2 * s.n_x
+    before, last = after(lines, SWITCH_LEAD), after(lines, further * line)
+    unit(s.R, n)
     for i in range(n):
         s.R_t[i] = 0.0
-        for j in range(n):
-            s.R[i, j] = 1.0 if i == j else 0.0
-    for k in range(first, last + 1):
-        compose(s, log, k, t)
+    for k in range(further + 1):
+        compose(s, after(lines, k * line), t)
     if not moves:
         times(s, s.R)
         return True
-    H_t = guard_gradient(m, source, guard, t, before)
-    assign(s.H_x, m.work.g_x)
-    field(m, source, t, before, s.F_before)
-    field(m, int(log[last, 2]), t, log[last, SWITCH_LEAD + n : SWITCH_LEAD + 2 * n], s.F_after)
+    source = whole(lines[1])
+    H_t = guard_gradient(s.m, source, whole(lines[3]), t, before)
+    copy(s.H_x, s.m.g_x, n)
+    field(s.m, source, t, before, s.F_before)
+    field(s.m, whole(last[2]), t, after(last, SWITCH_LEAD + n), s.F_after)
     crossing = H_t
     for i in range(n):
         crossing += s.H_x[i] * s.F_before[i]
@@ -195,79 +205,76 @@ def switch(s: Any, log: Any, first: int, last: int, moves: bool) -> bool:
     for i in range(n):
         gain = s.F_after[i] - s.R_t[i]
         for j in range(n):
-            gain -= s.R[i, j] * s.F_before[j]
+            gain -= s.R[i * n + j] * s.F_before[j]
         for j in range(n):
-            s.D[i, j] = s.R[i, j] + gain * s.H_x[j] / crossing
-    times(s, s.D)
+            s.S[i * n + j] = s.R[i * n + j] + gain * s.H_x[j] / crossing
+    times(s, s.S)
     return True
 
 
-def compose(s: Any, log: Any, k: int, t: float) -> None:
-    """R and R_t with the reset of switch k after them, and the surface of a sliding mode that it leads to."""
-    n, m, guard, target = len(s.x), s.m, int(log[k, 3]), int(log[k, 2])
-    if m.has_reset[guard]:
-        before = log[k, SWITCH_LEAD : SWITCH_LEAD + n]
+def compose(s: Tangent, line: Doubles, t: float) -> None:
+    """R and R_t with the reset of a switch after them, and the surface of a sliding mode that it leads to."""
+    n, guard, target = s.n_x, whole(line[3]), whole(line[2])
+    if s.m.has_reset[guard] != 0:
+        before = after(line, SWITCH_LEAD)
         for j in range(n):
-            d = DIFFERENCE * max(1.0, abs(before[j]))
-            differenced(s, guard, t, before, j, d)
+            differenced(s, guard, t, before, j, RELATIVE_STEP * max(1.0, abs(before[j])))
             for i in range(n):
-                s.D[i, j] = s.up[i]
+                s.S[i * n + j] = s.up[i]
         product(s)
-        differenced(s, guard, t, before, -1, m.dt)
+        differenced(s, guard, t, before, -1, s.m.dt)
         for i in range(n):
             s.R_t[i] += s.up[i]
-    if m.below[target] != NOT_SLIDING and m.kind[guard] != ARRIVE:
-        H_t, square = surface_gradient(m, target, t, log[k, SWITCH_LEAD + n : SWITCH_LEAD + 2 * n]), 0.0
+    if s.m.below[target] != NOT_SLIDING and s.m.kind[guard] != ARRIVE:
+        H_t, square = surface_gradient(s.m, target, t, after(line, SWITCH_LEAD + n)), 0.0
         for i in range(n):
-            square += m.work.H_x[i] ** 2
+            square += s.m.H_x[i] * s.m.H_x[i]
         for i in range(n):
             for j in range(n):
-                s.D[i, j] = (1.0 if i == j else 0.0) - m.work.H_x[i] * m.work.H_x[j] / square
+                s.S[i * n + j] = (1.0 if i == j else 0.0) - s.m.H_x[i] * s.m.H_x[j] / square
         product(s)
         for i in range(n):
-            s.R_t[i] -= m.work.H_x[i] * H_t / square
+            s.R_t[i] -= s.m.H_x[i] * H_t / square
 
 
-def product(s: Any) -> None:
+def product(s: Tangent) -> None:
     """R <- D R, R_t <- D R_t."""
-    n = len(s.x)
+    n = s.n_x
     for j in range(n + 1):
         for i in range(n):
             s.down[i] = 0.0
             for k in range(n):
-                s.down[i] += s.D[i, k] * (s.R[k, j] if j < n else s.R_t[k])
+                s.down[i] += s.S[i * n + k] * (s.R[k * n + j] if j < n else s.R_t[k])
         for i in range(n):
             if j < n:
-                s.R[i, j] = s.down[i]
+                s.R[i * n + j] = s.down[i]
             else:
                 s.R_t[i] = s.down[i]
 
 
-def differenced(s: Any, guard: int, t: float, x: Any, j: int, d: float) -> None:
+def differenced(s: Tangent, guard: int, t: float, x: Doubles, j: int, d: float) -> None:
     """Derivative of a reset by state j, or by the time where j is -1, into s.up."""
-    n = len(s.x)
+    n = s.n_x
     for i in range(n):
         s.F_after[i] = 0.0
-    for k in range(2):
-        step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-        for side in (1.0, -1.0):
-            for i in range(n):
-                s.x[i] = x[i]
-                s.up[i] = 0.0
-            if j >= 0:
-                s.x[j] = x[j] + side * step
-            call_first_order(s.m.resets[guard], t + (side * step if j < 0 else 0.0), s.x, s.m.p, s.up)
-            for i in range(n):
-                s.F_after[i] += side * weight * s.up[i] / d
-    assign(s.up, s.F_after)
+    for k in range(4):
+        step, weight = (d, INNER) if k < 2 else (2.0 * d, OUTER)
+        side = 1.0 if k % 2 == 0 else -1.0
+        copy(s.x, x, n)
+        if j >= 0:
+            s.x[j] = x[j] + side * step
+        s.m.resets.fill(guard, t + (side * step if j < 0 else 0.0), s.x, s.x, s.up)
+        for i in range(n):
+            s.F_after[i] += side * weight * s.up[i] / d
+    copy(s.up, s.F_after, n)
 
 
-def put_on_surface(s: Any, mode: int, t: float) -> None:
+def put_on_surface(s: Tangent, t: float) -> None:
     """R of putting a state on the surface of its sliding mode: the nearest one there."""
-    n, square = len(s.x), 0.0
-    surface_gradient(s.m, mode, t, s.start)
+    n, square = s.n_x, 0.0
+    surface_gradient(s.m, s.mode, t, s.start)
     for i in range(n):
-        square += s.m.work.H_x[i] ** 2
+        square += s.m.H_x[i] * s.m.H_x[i]
     for i in range(n):
         for j in range(n):
-            s.R[i, j] = (1.0 if i == j else 0.0) - s.m.work.H_x[i] * s.m.work.H_x[j] / square
+            s.R[i * n + j] = (1.0 if i == j else 0.0) - s.m.H_x[i] * s.m.H_x[j] / square

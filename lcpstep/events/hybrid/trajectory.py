@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.events.hybrid.state import SWITCH_LEAD
+from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]

@@ -1,0 +1,46 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.function cimport Functions
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, after, max
+
+cdef Py_ssize_t ARRIVE, EXIT_BELOW, EXIT_ABOVE, NOT_SLIDING, VECTORS
+cdef double DIFFERENCE, INNER, OUTER, TINY
+
+
+@cython.final
+cdef class Machine:
+    cdef object numbers, out_array, signs, kept
+    cdef readonly Py_ssize_t n, n_modes, n_guards
+    cdef readonly double dt
+    cdef Functions fields, surfaces, values, resets
+    cdef Py_ssize_t* has_reset
+    cdef Py_ssize_t* first
+    cdef Py_ssize_t* at_once
+    cdef Py_ssize_t* kind
+    cdef Py_ssize_t* target
+    cdef Py_ssize_t* below
+    cdef Py_ssize_t* above
+    cdef double* sign
+    cdef double* out
+    cdef double* F
+    cdef double* F1
+    cdef double* F2
+    cdef double* H_x
+    cdef double* g_x
+    cdef double* x
+    cdef double* x_guard
+    cdef double* moved
+
+
+cdef double scalar(Machine m, Functions f, Py_ssize_t k, double t, double* x) noexcept nogil
+cdef void field(Machine m, Py_ssize_t mode, double t, double* x, double* out) noexcept nogil
+cdef (double, double) approaches(Machine m, Py_ssize_t mode, double t, double* x) noexcept nogil
+cdef double surface_gradient(Machine m, Py_ssize_t mode, double t, double* x) noexcept nogil
+cdef double guard(Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x) noexcept nogil
+cdef double guard_gradient(Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x) noexcept nogil
+cdef (double, double, double) band_and_rate(
+    Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x, double rtol, double atol
+) noexcept nogil
+cdef void project(Machine m, Py_ssize_t mode, double t, double* x) noexcept nogil

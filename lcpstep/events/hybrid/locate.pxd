@@ -1,0 +1,18 @@
+cimport cython
+from lcpstep.events.hybrid.field cimport guard
+from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
+from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport finite, largest
+from lcpstep.pointers cimport abs, after, max, min, nan
+
+cdef Py_ssize_t SAMPLES, UNKNOWN, PARTS, REFINEMENTS
+cdef double RESOLVED, JUMP
+
+@cython.locals(fine=bint, known=bint, fits=bint, armed=bint)
+cdef (Py_ssize_t, double, double, double) find(Motion s, double h) noexcept nogil
+cdef void arm(Motion s, double h, double a, double b) noexcept nogil
+cdef void sample(Motion s, Py_ssize_t k, double h, double a, double b) noexcept nogil
+cdef (double, bint) first_action(Motion s, Py_ssize_t k) noexcept nogil
+cdef double locate(Motion s, Py_ssize_t k, double h, double at, double slope) noexcept nogil
+cdef double bisect(Motion s, Py_ssize_t k, double h, double at) noexcept nogil

@@ -1,0 +1,60 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.events.hybrid.field cimport Machine, approaches, field, guard_gradient, scalar
+from lcpstep.events.hybrid.loop cimport go_on
+from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.events.hybrid.tangent cimport Tangent, walk
+from lcpstep.kernels.function cimport Functions
+from lcpstep.kernels.vectors cimport copy, largest, product
+from lcpstep.pointers cimport abs, after, indices_after, max, whole
+
+cdef Py_ssize_t ARRIVE, NOT_SLIDING, SWITCH_LEAD, BUFFER_FULL, DONE, NOT_FINITE, UNREACHED, UNKNOWN, NO_LIMIT
+cdef double ON_SURFACE
+
+
+@cython.final
+cdef class Placing:
+    cdef Machine m
+    cdef Functions mode_of
+    cdef object out_array, called
+    cdef bint asked
+    cdef Py_ssize_t sliding
+    cdef double* out
+    cdef Py_ssize_t place(self, double t, double* x) noexcept nogil
+
+
+@cython.final
+cdef class Follow:
+    cdef object kept_arrays, numbers
+    cdef readonly Motion s
+    cdef readonly Tangent tangent
+    cdef Placing placing
+    cdef bint under_way, tangents_wanted
+    cdef readonly Py_ssize_t runs, run, taken, period
+    cdef Py_ssize_t n, mode, drop, periods, n_targets, kept, most
+    cdef readonly double t_start, t_end
+    cdef double* x
+    cdef double* rate
+    cdef double* g_x
+    cdef double* starts
+    cdef double* targets
+    cdef double* radius
+    cdef double* scale
+    cdef double* states
+    cdef double* tangents
+    cdef double* impacts
+    cdef double* landings
+    cdef double* final
+    cdef Py_ssize_t* counts
+    cdef Py_ssize_t* reached
+    cdef Py_ssize_t* run_taken
+    cdef Py_ssize_t* codes
+
+
+cpdef Py_ssize_t follow(Follow f, Py_ssize_t until)
+cdef Py_ssize_t go_through(Follow f, Py_ssize_t until) noexcept nogil
+cdef void end_run(Follow f, Py_ssize_t code) noexcept nogil
+cdef Py_ssize_t one_period(Follow f) noexcept nogil
+cdef Py_ssize_t near(Follow f, double* x) noexcept nogil
+cdef Py_ssize_t note(Follow f, Py_ssize_t k) noexcept nogil
+cdef void note_switch(Follow f, double* line, double* out) noexcept nogil

@@ -1,0 +1,31 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.events.hybrid.field cimport Machine, field
+from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
+from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.vectors cimport copy, finite
+from lcpstep.pointers cimport after, inf
+
+cdef Py_ssize_t TIME, LENGTH, ROW_MODE, LEAD, SWITCH_LEAD
+cdef double FIRST_STEP
+
+
+cdef class Motion(RungeKutta):
+    cdef object kept_rows, kept_dense, kept_log, lists, of_guards, samples
+    cdef readonly Machine m
+    cdef Scan scan
+    cdef public double t_end, longest, now, last_switch
+    cdef public Py_ssize_t max_events, mode, culprit, steps, events, stalled, row, switches
+    cdef bint begun, was_armed
+    cdef double event_at
+    cdef Py_ssize_t row_capacity, log_capacity
+    cdef Py_ssize_t* armed
+    cdef double* band
+    cdef double* states
+    cdef double* rows
+    cdef double* dense_rows
+    cdef double* log
+    cdef void start_from(self, double t, Py_ssize_t mode) noexcept nogil
+    cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
+    cdef void keep(self, double h) noexcept nogil
+    cdef void note(self, Py_ssize_t target, Py_ssize_t guard, double* moved) noexcept nogil

@@ -1,0 +1,46 @@
+cimport cython
+from lcpstep.arrays cimport doubles
+from lcpstep.events.hybrid.field cimport (
+    ARRIVE, INNER, NOT_SLIDING, OUTER, Machine, field, guard_gradient, surface_gradient
+)
+from lcpstep.events.hybrid.state cimport SWITCH_LEAD
+from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, after, max, whole
+
+cdef Py_ssize_t DONE, NOT_TRANSVERSAL, VECTORS
+cdef double TOLERANCE, RELATIVE_STEP
+
+
+cdef class Tangent(RungeKutta):
+    cdef object squares, vectors
+    cdef readonly object derivative
+    cdef readonly Machine m
+    cdef Py_ssize_t n_x, mode
+    cdef double* J
+    cdef double* F_x
+    cdef double* S
+    cdef double* R
+    cdef double* R_t
+    cdef double* H_x
+    cdef double* x
+    cdef double* start
+    cdef double* F_before
+    cdef double* F_after
+    cdef double* up
+    cdef double* down
+    cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
+
+
+cdef Py_ssize_t walk(
+    Tangent s, double* log, Py_ssize_t count, Py_ssize_t mode, double t, double* x, double t_end
+) noexcept nogil
+cdef void unit(double* J, Py_ssize_t n) noexcept nogil
+cdef void times(Tangent s, double* D) noexcept nogil
+cdef Py_ssize_t flow(Tangent s, double a, double b) noexcept nogil
+cdef void variation(Tangent s, double t, double* z, double* out) noexcept nogil
+cdef bint switch(Tangent s, double* lines, Py_ssize_t further, bint moves) noexcept nogil
+cdef void compose(Tangent s, double* line, double t) noexcept nogil
+cdef void product(Tangent s) noexcept nogil
+cdef void differenced(Tangent s, Py_ssize_t guard, double t, double* x, Py_ssize_t j, double d) noexcept nogil
+cdef void put_on_surface(Tangent s, double t) noexcept nogil
