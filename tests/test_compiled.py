@@ -9,8 +9,6 @@ import pytest
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Moreau, simulate
 from lcpstep.compiled import by_address, compiled, jit_disabled
-from lcpstep.events.flight.loop import run as run_flights
-from lcpstep.events.single.loop import run as run_single
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
 

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import ClosedForm
+from lcpstep.events.general.run import General
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.events.several.run import Several
-from lcpstep.events.single.run import RungeKutta
-from lcpstep.model import kernel_model, model, require
+from lcpstep.model import kernel_model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
 
@@ -75,11 +74,9 @@ class EventDriven:
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
         require(scene, "EventDriven", joints=True, friction=False)
-        if scene.n_c > 1 or scene.n_j > 0:
-            return Several(self, scene, kept).finish(progress)
-        closed = kernel_model(scene)
-        o = oscillator_of(closed)
-        if o is not None:
-            return ClosedForm(self, scene, kept, closed, o).finish(progress)
-        m, fast = model(scene)
-        return RungeKutta(self, scene, kept, m, fast).finish(progress)
+        if scene.n_c <= 1 and scene.n_j == 0:
+            closed = kernel_model(scene)
+            o = oscillator_of(closed)
+            if o is not None:
+                return ClosedForm(self, scene, kept, closed, o).finish(progress)
+        return General(self, scene, kept).finish(progress)

@@ -52,6 +52,7 @@ class Function:
         for k in range(len(times)):
             self.fill(t[k], x, x_t, after(filled, k * self.length))
 
+
 class Functions:
     """Several functions with the same arguments, by their number.
 

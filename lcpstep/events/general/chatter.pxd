@@ -1,0 +1,26 @@
+cimport cython
+from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows, measure_again
+from lcpstep.events.general.held cimport hold_contacts, right_hand_side, solve_held
+from lcpstep.events.general.impact cimport apply, speed_noise
+from lcpstep.events.general.keep cimport log
+from lcpstep.events.general.motion cimport gap_tolerance, speed_tolerance
+from lcpstep.events.general.parabolas cimport accumulation, first_root, hop
+from lcpstep.events.general.state cimport Mechanism, NOISE
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport product
+from lcpstep.pointers cimport abs, after, max, min, nan
+
+cdef Py_ssize_t ACCUMULATION
+
+@cython.locals(moved=bint, some=bint, touches=bint)
+cdef bint close_chatter(Mechanism s, Record record, Tally tally) noexcept nogil
+cdef void find_stop(Mechanism s) noexcept nogil
+cdef void stop(Mechanism s) noexcept nogil
+cdef bint drives_others(Mechanism s) noexcept nogil
+cdef void owe(Mechanism s, double until) noexcept nogil
+@cython.locals(low=bint, slow=bint)
+cdef double chatter_left(Mechanism s, Py_ssize_t c) noexcept nogil
+@cython.locals(held=bint, passed_on=bint)
+cdef bint interrupted(Mechanism s, Py_ssize_t c, double T) noexcept nogil
+cdef double later(Mechanism s, Py_ssize_t c, double T) noexcept nogil

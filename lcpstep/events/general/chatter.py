@@ -1,0 +1,163 @@
+"""Chattering that is over, as kernels: contacts whose further impacts stay below the tolerance are closed.
+
+Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
+higher than the tolerance, and when nothing else happens before T to what the contact is connected with: closed, it
+answers another impact in another way than in flight. Closing takes the speed u, by an impulse that the contact force
+up to T pays for. Hops as slow as the tolerance are left out too, elastic ones as well, and impacts of contacts that
+nothing presses (inelastic collapse) when they have both a speed and a way below it. Source: A. Nordmark, P.
+Piiroinen, Simulation and stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58
+(2009).
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.general.ends import ACCUMULATION
+
+if not cython.compiled:
+    from lcpstep.events.general.equations import bias_of, biases, constraint_rows, measure_again
+    from lcpstep.events.general.held import hold_contacts, right_hand_side, solve_held
+    from lcpstep.events.general.impact import apply, speed_noise
+    from lcpstep.events.general.keep import log
+    from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
+    from lcpstep.events.general.parabolas import accumulation, first_root, hop
+    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs, after, max, min, nan
+
+
+def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
+    """Close the contacts whose further impacts stay below the tolerance; whether there was one."""
+    n_c, t, some = s.n_c, s.t0, False
+    for c in range(n_c):
+        moved = s.contact.struck[c] == t or s.contact.was_closed[c] == 1  # struck, or driven off by another
+        s.contact.rest[c] = -1.0
+        if s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0 and moved:
+            s.contact.rest[c] = chatter_left(s, c)
+            some = some or s.contact.rest[c] >= 0.0
+    if not some:
+        return False
+    for c in range(n_c):
+        touches = s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0
+        if touches and s.contact.speed[c] == 0.0:  # those just opened by the forces meet other forces now
+            s.contact.rest[c] = 0.0
+        if s.contact.rest[c] >= 0.0:
+            s.contact.closed[c] = 1
+    find_stop(s)
+    if drives_others(s):
+        for c in range(n_c):
+            if s.contact.rest[c] >= 0.0:
+                s.contact.closed[c] = 0
+        return False
+    longest = 0.0
+    for c in range(n_c):
+        T, u, alpha = s.contact.rest[c], s.contact.speed[c], s.contact.curve[c]
+        if T >= 0.0 and u != 0.0:
+            p = max(-alpha * T - u, 0.0) / s.D[(s.n_j + c) * s.n_r + s.n_j + c]
+            log(s, record, tally, t + T, c, ACCUMULATION, -abs(u), 0.0, p)
+            s.contact.chatter_end[c] = t + T
+            longest = max(longest, T if T > 0.0 or alpha >= 0.0 else hop(abs(u), alpha))
+    stop(s)
+    owe(s, t + longest)
+    return True
+
+
+def find_stop(s: Mechanism) -> None:
+    """The impulses that take their speeds from the closed contacts, into `change`."""
+    n_j = s.n_j
+    hold_contacts(s)
+    for m in range(s.n_held):
+        i = s.row[m]
+        s.change[m] = 0.0 if i < n_j else -s.contact.speed[i - n_j]
+    solve_held(s, s.n_held, s.change)
+
+
+def stop(s: Mechanism) -> None:
+    """Take their speeds from the closed contacts."""
+    find_stop(s)
+    apply(s)
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 1:
+            s.contact.speed[c] = 0.0
+
+
+def drives_others(s: Mechanism) -> bool:
+    """Whether the impulses of `find_stop` would drive an open contact that touches onto its surface."""
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0:
+            u = s.contact.speed[c]
+            for m in range(s.n_held):
+                u += s.D[(s.n_j + c) * s.n_r + s.row[m]] * s.change[m]
+            if u < -speed_tolerance(s, c):
+                return True
+    return False
+
+
+def owe(s: Mechanism, until: float) -> None:
+    """What a stop has left of negative impulses is to be paid by the contact forces up to the time `until`."""
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 1 and s.contact.impulse[c] < 0.0:
+            s.contact.owed[c] = s.contact.owed[c] + s.contact.impulse[c]
+            s.contact.impulse[c], s.contact.owed_until[c] = 0.0, until
+
+
+def chatter_left(s: Mechanism, c: int) -> float:
+    """How long the impacts of contact c that are left out would last, or -1 if they may not be.
+
+    Pressed by alpha < 0 they accumulate after 2 u / (|alpha| (1 - r)), no hop being higher than u^2 / (2 |alpha|).
+    """
+    u, alpha, r = s.contact.speed[c], s.contact.curve[c], s.model.restitution[c]
+    if u == 0.0:  # opened by the forces
+        return -1.0
+    tolerance, slow = gap_tolerance(s, c), abs(u) <= speed_tolerance(s, c)
+    low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
+    if slow and low:
+        return 0.0
+    if r == 1.0 or u < 0.0:
+        return -1.0
+    noise = speed_noise(s, c)
+    if abs(alpha) * s.contact.since[c] <= noise:  # an inelastic collapse
+        return 0.0 if slow and u * s.contact.since[c] <= tolerance else -1.0
+    if not low:
+        return -1.0
+    T = accumulation(u, alpha, r)
+    if s.t0 + T > min(s.high, s.t_end) or interrupted(s, c, T):
+        return -1.0
+    if s.constant:
+        return T
+    change = abs(later(s, c, T) - alpha)
+    # the end is then off by T change / |alpha|, in which the gap's terms move by no more than the tolerance
+    speed = max(noise / NOISE, -alpha * s.scan)
+    return T if change * T * speed <= -alpha * tolerance else -1.0
+
+
+def interrupted(s: Mechanism, c: int, T: float) -> bool:
+    """Whether a contact that impacts connect with contact c closes within the time T."""
+    n_j, passed_on = s.n_j, False
+    for i in range(n_j + s.n_c):  # joints and closed contacts pass impulses on
+        held = i < n_j or s.contact.closed[i - n_j] == 1
+        passed_on = passed_on or (held and s.D[(n_j + c) * s.n_r + i] != 0.0)
+    for d in range(s.n_c):
+        if d != c and s.contact.closed[d] == 0 and (passed_on or s.D[(n_j + c) * s.n_r + n_j + d] != 0.0):
+            g, u, alpha = s.contact.gap[d], s.contact.speed[d], s.contact.curve[d]
+            if (g > 0.0 or u > 0.0) and first_root(g, u, alpha) < T:
+                return True
+    return False
+
+
+def later(s: Mechanism, c: int, T: float) -> float:
+    """Gap acceleration of contact c at the time T from now, along the tangent of the motion."""
+    n, q, v, dy = s.n_q, s.trial, after(s.trial, s.n_q), after(s.trial, 2 * s.n_q)
+    for j in range(n):
+        q[j] = s.q[j] + T * s.v[j]
+        v[j] = s.v[j] + T * s.a[j]
+    curve = nan
+    if right_hand_side(s, s.t0 + T, q, dy):
+        biases(s, s.model, s.contact, s.t0 + T, q, v)
+        constraint_rows(s, s.t0 + T, q, v)
+        curve = product(s.R, after(dy, n), s.n_j + c, n) + bias_of(s, s.n_j + c)
+    measure_again(s, s.t0)
+    return curve

@@ -1,0 +1,27 @@
+cimport cython
+from lcpstep.events.general.equations cimport biases, constraint_rows
+from lcpstep.events.general.held cimport note, right_hand_side
+from lcpstep.events.general.impact cimport speed_noise
+from lcpstep.events.general.state cimport Mechanism, NOISE
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.dynamics cimport gaps
+from lcpstep.kernels.vectors cimport copy, largest, product
+from lcpstep.pointers cimport abs
+
+cdef Py_ssize_t MEETS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
+cdef double NONE
+
+cdef double first_event(Mechanism s, double a, double b) noexcept nogil
+cdef double first_contact(
+    Mechanism s, Py_ssize_t c, double a, double b, (double, double, double) left, (double, double, double) right
+) noexcept nogil
+cdef double first_in_half(
+    Mechanism s, Py_ssize_t c, double a, double b, (double, double, double) left, (double, double, double) right
+) noexcept nogil
+cdef double root(
+    Mechanism s, Py_ssize_t level, Py_ssize_t c, double a, double f_a, double b, double f_b
+) noexcept nogil
+@cython.locals(known=bint)
+cdef bint observe(Mechanism s, double tau) noexcept nogil
+cdef void remember(Mechanism s) noexcept nogil
+cdef double multiplier_noise(Mechanism s) noexcept nogil

@@ -1,0 +1,161 @@
+"""Which of several contacts closes, or opens, first, as kernels.
+
+Gaps are looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to
+change its sign at most once, that change splits the gap velocity into monotone parts, whose changes of sign split the
+gap into monotone parts; so a gap that dips below zero and returns is found. A closed contact opens where its
+multiplier turns negative. Source of the polishing: Newton's method safeguarded by bisection, W. Press et al.,
+Numerical Recipes, section 9.4.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.equations import biases, constraint_rows
+    from lcpstep.events.general.held import note, right_hand_side
+    from lcpstep.events.general.impact import speed_noise
+    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.pointers import abs
+
+MEETS, OPENS, NEVER_LEFT = range(3)  # what a contact does
+GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
+NONE = -1.0  # in place of a root's time
+MAX_ITERATIONS = 100
+
+
+def first_event(s: Mechanism, a: float, b: float) -> float:
+    """First contact that closes or opens in (a, b], or NONE.
+
+    The left end is in `left`; the right end has just been observed and goes into `right`. Which contact, and what it
+    does (MEETS, OPENS, NEVER_LEFT), into `event_contact` and `event_kind`.
+    """
+    found, noise = NONE, multiplier_noise(s)
+    copy(s.right.gap, s.contact.gap, 4 * s.n_c)  # what is observed now will be overwritten
+    for c in range(s.n_c):
+        tau, kind = NONE, MEETS
+        if s.contact.closed[c] == 1:
+            left, right = s.left.multiplier[c], s.right.multiplier[c]
+            if right < -noise and s.contact.held_until[c] < s.t0 + b:
+                kind = OPENS
+                tau = a if left <= 0.0 else root(s, MULTIPLIER, c, a, left, b, right)
+        else:
+            left_end = (s.left.gap[c], s.left.speed[c], s.left.curve[c])
+            right_end = (s.right.gap[c], s.right.speed[c], s.right.curve[c])
+            if left_end[0] <= 0.0 and left_end[1] < -speed_noise(s, c):  # met just where the last event was
+                tau = a
+            else:
+                tau = first_contact(s, c, a, b, left_end, right_end)
+            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
+                tau, kind = a, NEVER_LEFT
+        if tau != NONE and (found == NONE or tau < found):
+            found, s.event_contact, s.event_kind = tau, c, kind
+    return found
+
+
+def first_contact(
+    s: Mechanism,
+    c: int,
+    a: float,
+    b: float,
+    left: tuple[float, float, float],
+    right: tuple[float, float, float],
+) -> float:
+    """First time in (a, b] at which the gap of contact c falls to zero, or NONE.
+
+    left, right : gap, velocity and acceleration at a and b.
+    """
+    middle, at_middle = b, right
+    if left[2] * right[2] < 0.0 and (left[1] < 0.0 or right[1] > 0.0 or right[0] <= 0.0):
+        middle = root(s, CURVE, c, a, left[2], b, right[2])
+        observe(s, middle)
+        at_middle = (s.contact.gap[c], s.contact.speed[c], s.contact.curve[c])
+    found = first_in_half(s, c, a, middle, left, at_middle)
+    if found == NONE and middle < b:
+        found = first_in_half(s, c, middle, b, at_middle, right)
+    return found
+
+
+def first_in_half(
+    s: Mechanism,
+    c: int,
+    a: float,
+    b: float,
+    left: tuple[float, float, float],
+    right: tuple[float, float, float],
+) -> float:
+    """The same where the gap velocity is monotone."""
+    if left[1] * right[1] < 0.0:
+        if left[1] > 0.0 and right[0] > 0.0:
+            return NONE
+        middle = root(s, SPEED, c, a, left[1], b, right[1])
+        observe(s, middle)
+        g = s.contact.gap[c]
+        if left[1] < 0.0 and left[0] > 0.0 and g <= 0.0:
+            return root(s, GAP, c, a, left[0], middle, g)
+        if left[1] > 0.0:
+            return middle if g <= 0.0 else root(s, GAP, c, middle, g, b, right[0])
+        return NONE
+    if left[0] > 0.0 and right[0] <= 0.0:
+        return root(s, GAP, c, a, left[0], b, right[0])
+    return NONE
+
+
+def root(s: Mechanism, level: int, c: int, a: float, f_a: float, b: float, f_b: float) -> float:
+    """Root between a and b of the gap of contact c, or of what `level` says; f_a f_b <= 0."""
+    if f_a == 0.0:
+        return a
+    x, f_x = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
+    slope = (f_b - f_a) / (b - a)
+    before = b - a
+    for _ in range(MAX_ITERATIONS):
+        if f_x == 0.0:
+            return x
+        x_new = x - f_x / slope if slope != 0.0 else a
+        if not (a < x_new < b) or abs(x_new - x) > 0.5 * abs(before):
+            x_new = 0.5 * (a + b)
+        before = x_new - x
+        x_old, f_old, x = x, f_x, x_new
+        observe(s, x)
+        f_x = s.contact.gap[level * s.n_c + c]  # all in one piece
+        if (f_x > 0.0) == (f_a > 0.0):
+            a, f_a = x, f_x
+        else:
+            b = x
+        slope = s.contact.gap[(level + 1) * s.n_c + c] if level < CURVE else (f_x - f_old) / (x - x_old)
+        if abs(before) <= 2.0 * RESOLUTION * abs(x) or b - a <= 2.0 * RESOLUTION * abs(x):
+            return x
+    return x
+
+
+def observe(s: Mechanism, tau: float) -> bool:
+    """Gaps, speeds, gap accelerations and multipliers at tau after the base, from the dense output."""
+    t = s.t0 + tau
+    s.smooth.at(tau / s.length, s.q)
+    if not right_hand_side(s, t, s.q, s.dy):
+        return False
+    if s.n_c > 0:
+        gaps(s.model, t, s.q, s.v, s.contact.gap)
+        biases(s, s.model, s.contact, s.inside(t), s.q, s.v)
+        constraint_rows(s, t, s.q, s.v)
+    note(s, s.a)
+    known = True
+    for c in range(s.n_c):
+        u = product(s.contact.G, s.v, c, s.n_q) + s.contact.rate[c]
+        s.contact.speed[c] = u
+        size = s.contact.gap[c] + u + s.contact.curve[c]
+        known = known and size - size == 0.0
+    return known
+
+
+def remember(s: Mechanism) -> None:
+    """What was observed last is the left end of the next interval."""
+    copy(s.left.gap, s.contact.gap, 4 * s.n_c)
+
+
+def multiplier_noise(s: Mechanism) -> float:
+    """Rounding of a multiplier."""
+    return NOISE * largest(s.force, largest(s.held, 0.0, s.n_held), s.n_q)

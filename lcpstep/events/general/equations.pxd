@@ -1,0 +1,14 @@
+from lcpstep.events.general.state cimport Mechanism, Rows
+from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport after
+
+cdef bint measure(Mechanism s, double t) noexcept nogil
+cdef bint measure_on(Mechanism s, double t) noexcept nogil
+cdef bint measure_again(Mechanism s, double t) noexcept nogil
+cdef void constraint_rows(Mechanism s, double t, double* q, double* v) noexcept nogil
+cdef void biases(Mechanism s, Model model, Rows now, double t, double* q, double* v) noexcept nogil
+cdef double bias_of(Mechanism s, Py_ssize_t i) noexcept nogil
+cdef void delassus(Mechanism s, Py_ssize_t i) noexcept nogil

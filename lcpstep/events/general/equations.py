@@ -1,0 +1,96 @@
+"""Several contacts and joints at one state, as kernels: gaps, Jacobians, biases and the Delassus matrix.
+
+With the rows R of joints (first) and contacts (after them), the rate of row i is R_i v + rate_i and its acceleration
+R_i a + bias_i; D = R M^-1 R^T is the Delassus matrix. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
+Dynamical Systems (Springer 2008), chapter 3.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.state import Mechanism, Rows
+    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, after
+
+
+def measure(s: Mechanism, t: float) -> bool:
+    """Everything at the state Q, V and time t: gaps, speeds, R, D, free acceleration; False where M is singular."""
+    q, v, a = s.q, s.v, s.a_free
+    n_j, n_c = s.n_j, s.n_c
+    side = s.inside(t)
+    total_force(s.model, side, q, v, s.force)
+    copy(a, s.force, s.n_q)
+    if not divide_by_mass(s.model, side, q, v, s.M, s.work, a):
+        return False
+    if n_c > 0:
+        gaps(s.model, t, q, v, s.contact.gap)
+    if n_j > 0:
+        gaps(s.joints, t, q, v, s.joint.gap)
+    biases(s, s.model, s.contact, side, q, v)
+    biases(s, s.joints, s.joint, side, q, v)
+    constraint_rows(s, t, q, v)
+    for i in range(n_j + n_c):
+        delassus(s, i)
+        for j in range(i + 1):
+            s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+    for i in range(n_j):
+        s.joint.speed[i] = product(s.R, v, i, s.n_q) + s.joint.rate[i]
+    for i in range(n_c):
+        s.contact.speed[i] = product(s.R, v, n_j + i, s.n_q) + s.contact.rate[i]
+        size = s.contact.speed[i] + s.contact.gap[i] + s.contact.bias[i]
+        if size - size != 0.0:
+            return False
+    return True
+
+
+def measure_on(s: Mechanism, t: float) -> bool:
+    """`measure`, with the gaps and speeds of closed contacts exactly zero."""
+    if not measure(s, t):
+        return False
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 1:
+            s.contact.gap[c] = s.contact.speed[c] = 0.0
+    return True
+
+
+def measure_again(s: Mechanism, t: float) -> bool:
+    """`measure`, keeping the gaps and speeds that are known better."""
+    for c in range(s.n_c):
+        s.left.gap[c], s.left.speed[c] = s.contact.gap[c], s.contact.speed[c]
+    if not measure(s, t):
+        return False
+    for c in range(s.n_c):
+        s.contact.gap[c], s.contact.speed[c] = s.left.gap[c], s.left.speed[c]
+    return True
+
+
+def constraint_rows(s: Mechanism, t: float, q: Doubles, v: Doubles) -> None:
+    """Jacobians of joints and contacts into R, and their rates at rest."""
+    if s.n_j > 0:
+        gap_rates(s.joints, t, q, v, s.joint.G, s.joint.rate)
+    if s.n_c > 0:
+        gap_rates(s.model, t, q, v, s.contact.G, s.contact.rate)
+
+
+def biases(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """(dG/dt) v + d(rate)/dt along the motion, for all rows of a model; G is overwritten."""
+    if now.n > 0:
+        bias(model, t, q, v, s.work, now.G, now.shifted, now.bias)
+
+
+def bias_of(s: Mechanism, i: int) -> float:
+    """Bias of a row."""
+    n_j = s.n_j
+    return s.joint.bias[i] if i < n_j else s.contact.bias[i - n_j]
+
+
+def delassus(s: Mechanism, i: int) -> None:
+    """Row i of M^-1 R^T."""
+    MR = after(s.MR, i * s.n_q)
+    copy(MR, after(s.R, i * s.n_q), s.n_q)
+    inverse_mass(s.model, s.M, s.work, MR)

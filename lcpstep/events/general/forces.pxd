@@ -1,0 +1,16 @@
+cimport cython
+from lcpstep.events.general.held cimport constrain, contradiction, hold, hold_contacts, hold_joints, note, solve_held
+from lcpstep.events.general.problem cimport CHECKED, solve_contacts
+from lcpstep.events.general.state cimport Mechanism, NOISE
+from lcpstep.kernels.vectors cimport copy, largest, product
+from lcpstep.pointers cimport abs
+
+cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED
+
+@cython.locals(solved=bint)
+cdef Py_ssize_t contact_forces(Mechanism s, double t) noexcept nogil
+cdef bint presses(Mechanism s) noexcept nogil
+cdef void open_contacts(Mechanism s, double t) noexcept nogil
+cdef double terms(Mechanism s, Py_ssize_t c) noexcept nogil
+@cython.locals(shifting=bint)
+cdef void unload(Mechanism s) noexcept nogil

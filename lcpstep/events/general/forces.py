@@ -1,0 +1,129 @@
+"""The forces of contacts that are closed, as kernels: which of them carry one, and which open.
+
+    0 <= alpha  complementary to  lambda >= 0,      alpha = alpha_0 + W lambda
+
+Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 5.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.general.ends import NO_FORCES
+from lcpstep.kernels.status import DONE, JOINTS_FAILED
+
+if not cython.compiled:
+    from lcpstep.events.general.held import (
+        constrain,
+        contradiction,
+        hold,
+        hold_contacts,
+        hold_joints,
+        note,
+        solve_held,
+    )
+    from lcpstep.events.general.problem import CHECKED, solve_contacts
+    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.pointers import abs
+
+
+def contact_forces(s: Mechanism, t: float) -> int:
+    """Forces and accelerations of the closed contacts at time t; those that open are no longer closed.
+
+    The acceleration is left in `a`, gap accelerations in `curve`, forces in `multiplier`.
+    """
+    n_c, n_j, a = s.n_c, s.n_j, s.a
+    hold_joints(s)
+    copy(a, s.a_free, s.n_q)
+    constrain(s, a)
+    if n_j > 0:
+        s.culprit = contradiction(s, a)
+        if s.culprit >= 0:
+            return JOINTS_FAILED
+    s.n_members = 0
+    for c in range(n_c):
+        s.contact.loaded[c] = 0
+        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
+        s.contact.multiplier[c] = 0.0
+        if s.contact.closed[c] == 1:
+            s.contact.member[s.n_members], s.contact.b[s.n_members] = c, s.contact.curve[c]
+            s.contact.noise[s.n_members] = 0.5 * NOISE * terms(s, c)
+            s.n_members += 1
+    solved = True
+    if s.n_members > 0:
+        solved = solve_contacts(s)
+        if solved:
+            open_contacts(s, t)
+            unload(s)
+        copy(a, s.a_free, s.n_q)
+        hold_contacts(s)
+        constrain(s, a)
+    note(s, a)
+    return DONE if solved or presses(s) else NO_FORCES
+
+
+def presses(s: Mechanism) -> bool:
+    """Whether the forces of the rows held are those of the closed contacts: none pulls, none is passed."""
+    a, most = s.a, largest(s.held, 0.0, s.n_held)
+    size = largest(s.a_free, largest(a, 0.0, s.n_q), s.n_q)
+    for c in range(s.n_c):
+        if s.contact.multiplier[c] < -CHECKED * most:
+            return False
+        i = s.n_j + c
+        if s.contact.closed[c] == 1 and product(s.R, a, i, s.n_q) + s.contact.bias[c] < -CHECKED * size:
+            return False
+    return True
+
+
+def open_contacts(s: Mechanism, t: float) -> None:
+    """Of the members, mark those that carry a force, and open those that accelerate away from the surface."""
+    k = s.n_members
+    for m in range(k):
+        c, alpha = s.contact.member[m], s.contact.b[m]
+        size = terms(s, c)
+        for b in range(k):
+            alpha += s.W[m * k + b] * s.contact.z[b]
+            size += abs(s.W[m * k + b] * s.contact.z[b])
+        if s.contact.z[m] > 0.0:
+            s.contact.loaded[c], s.contact.multiplier[c] = 1, s.contact.z[m]
+        elif alpha > NOISE * size and not s.contact.held_until[c] > t:
+            s.contact.closed[c] = 0
+
+
+def terms(s: Mechanism, c: int) -> float:
+    """Size of the terms of a gap acceleration without contact forces."""
+    size = abs(s.contact.bias[c])
+    for j in range(s.n_q):
+        size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.a_free[j])
+    return size
+
+
+def unload(s: Mechanism) -> None:
+    """Shift forces between loaded contacts that depend on each other until the rest of the loaded are independent.
+
+    No force becomes negative on the way (Caratheodory): so the rows that will be held carry forces that push.
+    """
+    n_j, force = s.n_j, s.contact.multiplier
+    shifting = True
+    while shifting:  # each round takes the load from one contact
+        shifting = False
+        hold_joints(s)
+        for c in range(s.n_c):
+            k = s.n_held
+            if s.contact.loaded[c] == 1 and not shifting:
+                hold(s, n_j + c)
+                if s.n_held == k:
+                    shifting = True
+                    for m in range(k):
+                        s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
+                    solve_held(s, k, s.change)
+                    share, leaves = force[c], c
+                    for m in range(s.n_held_joints, k):
+                        d = s.row[m] - n_j
+                        if force[d] + share * s.change[m] < 0.0:
+                            share, leaves = force[d] / -s.change[m], d
+                    for m in range(s.n_held_joints, k):
+                        force[s.row[m] - n_j] += share * s.change[m]
+                    force[c] -= share
+                    force[leaves], s.contact.loaded[leaves] = 0.0, 0

@@ -1,0 +1,26 @@
+cimport cython
+from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows, delassus
+from lcpstep.events.general.state cimport Mechanism
+from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.dynamics cimport gaps, total_force
+from lcpstep.kernels.linear cimport grow_factor, solve_factored
+from lcpstep.kernels.vectors cimport clear, copy, largest, product
+from lcpstep.pointers cimport abs, after
+
+cdef Py_ssize_t REFINEMENTS
+cdef double PARTED, DISAGREEMENT
+
+cdef void hold(Mechanism s, Py_ssize_t i) noexcept nogil
+cdef void hold_joints(Mechanism s) noexcept nogil
+cdef void hold_contacts(Mechanism s) noexcept nogil
+cdef bint hold_again(Mechanism s, double t, double* q, double* v) noexcept nogil
+cdef void solve_held(Mechanism s, Py_ssize_t k, double* x) noexcept nogil
+cdef void constrain(Mechanism s, double* a) noexcept nogil
+cdef void note(Mechanism s, double* a) noexcept nogil
+cdef bint right_hand_side(Mechanism s, double t, double* y, double* dy) noexcept nogil
+cdef void project(Mechanism s, double t) noexcept nogil
+@cython.locals(found=bint)
+cdef bint is_held(Mechanism s, Py_ssize_t i) noexcept nogil
+cdef Py_ssize_t contradiction(Mechanism s, double* a) noexcept nogil
+cdef Py_ssize_t parted(Mechanism s) noexcept nogil

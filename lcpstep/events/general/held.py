@@ -1,0 +1,205 @@
+"""Rows of contacts and joints that are held at zero, as kernels: their multipliers x.
+
+    M a = f + R^T x,      R a + bias = 0,      D = R M^-1 R^T  (Delassus matrix)
+
+Rows that depend on others before them are left out; an answer is refined with the residual of M a = f + R^T x itself,
+for D has lost the digits of large mass ratios. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
+Dynamical Systems (Springer 2008), chapter 3.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.equations import bias_of, biases, constraint_rows, delassus
+    from lcpstep.events.general.state import Mechanism
+    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.dynamics import gaps, total_force
+    from lcpstep.kernels.linear import grow_factor, solve_factored
+    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.pointers import Doubles, abs, after
+
+REFINEMENTS = 6
+PARTED = 1e3  # tolerances by which joints that say the same may differ
+DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
+
+
+def hold(s: Mechanism, i: int) -> None:
+    """Add row i to the rows held, unless it depends on them as far as rounding lets tell. Factor by Cholesky."""
+    k = s.n_held
+    s.row[k] = i
+    if grow_factor(s.D, s.n_r, s.L, s.n_r, s.row, s.doubt, k):
+        s.n_held = k + 1
+
+
+def hold_joints(s: Mechanism) -> None:
+    """Hold the independent joints, and nothing else."""
+    s.n_held = 0
+    for i in range(s.n_j):
+        hold(s, i)
+    s.n_held_joints = s.n_held
+
+
+def hold_contacts(s: Mechanism) -> None:
+    """Hold the joints and the closed contacts, those that carry a force first."""
+    n_j = s.n_j
+    hold_joints(s)
+    for unloaded in range(2):
+        for c in range(s.n_c):
+            if s.contact.closed[c] == 1 and s.contact.loaded[c] == 1 - unloaded:
+                hold(s, n_j + c)
+
+
+def hold_again(s: Mechanism, t: float, q: Doubles, v: Doubles) -> bool:
+    """Jacobians and factor of the same rows at another state; False where they have become dependent."""
+    biases(s, s.model, s.contact, t, q, v)
+    biases(s, s.joints, s.joint, t, q, v)
+    constraint_rows(s, t, q, v)
+    count = s.n_held
+    s.n_held = 0
+    for m in range(count):
+        i = s.row[m]
+        delassus(s, i)
+        for k in range(m + 1):
+            j = s.row[k]
+            s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+        hold(s, i)
+        if s.n_held != m + 1:
+            s.n_held = count
+            return False
+    return True
+
+
+def solve_held(s: Mechanism, k: int, x: Doubles) -> None:
+    """X <- (L L^T)^-1 x for the k rows held."""
+    solve_factored(s.L, s.n_r, k, x)
+
+
+def constrain(s: Mechanism, a: Doubles) -> None:
+    """The acceleration a = M^-1 (f + R^T x) that keeps the rows held; multipliers into `held`.
+
+    `a` comes as M^-1 f, f lies in `force`.
+    """
+    k, n = s.n_held, s.n_q
+    clear(s.held, k)
+    for _ in range(REFINEMENTS):
+        for m in range(k):
+            i = s.row[m]
+            s.change[m] = -bias_of(s, i) - product(s.R, a, i, s.n_q)
+        solve_held(s, k, s.change)
+        if largest(s.change, 0.0, k) <= 4.0 * RESOLUTION * largest(s.held, 0.0, k):
+            break
+        for m in range(k):
+            s.held[m] += s.change[m]
+        for j in range(n):
+            a[j] = 0.0
+            for m in range(k):
+                a[j] += s.R[s.row[m] * s.n_q + j] * s.held[m]
+            a[j] += s.force[j]
+        inverse_mass(s.model, s.M, s.work, a)
+    # what rounding of large multipliers leaves is taken out of the acceleration, which must stay on the surface
+    for m in range(k):
+        i = s.row[m]
+        s.change[m] = -bias_of(s, i) - product(s.R, a, i, s.n_q)
+    solve_held(s, k, s.change)
+    for m in range(k):
+        for j in range(n):
+            a[j] += s.MR[s.row[m] * s.n_q + j] * s.change[m]
+
+
+def note(s: Mechanism, a: Doubles) -> None:
+    """Multipliers of the rows held, and the gap accelerations of all contacts."""
+    n_j, n_c = s.n_j, s.n_c
+    for i in range(n_j):
+        s.joint.multiplier[i] = 0.0
+    for c in range(n_c):
+        s.contact.multiplier[c] = 0.0
+        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + bias_of(s, n_j + c)
+    for m in range(s.n_held):
+        i = s.row[m]
+        if i < n_j:
+            s.joint.multiplier[i] = s.held[m]
+        else:
+            s.contact.multiplier[i - n_j] = s.held[m]
+            s.contact.curve[i - n_j] = 0.0
+    for c in range(n_c):
+        if s.contact.closed[c] == 1:
+            s.contact.curve[c] = 0.0
+
+
+def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:
+    """dy = (v, v') with the rows held; False where it is not finite or the rows have become dependent."""
+    n = s.n_q
+    q, v, a = y, after(y, n), after(dy, n)
+    t = s.inside(t)
+    total_force(s.model, t, q, v, a)
+    if s.n_held > 0:
+        copy(s.force, a, n)
+    if not divide_by_mass(s.model, t, q, v, s.M, s.work, a):
+        return False
+    if s.n_held > 0:
+        if not hold_again(s, t, q, v):
+            return False
+        constrain(s, a)
+    copy(dy, v, n)
+    return True
+
+
+def project(s: Mechanism, t: float) -> None:
+    """Put Q, V onto the rows held, against the drift of the integration: gaps and rates zero."""
+    k, n_j, n = s.n_held, s.n_j, s.n_q
+    q, v = s.q, s.v
+    for level in range(3):  # positions twice, velocities once
+        x = q if level < 2 else v
+        if s.n_c > 0:
+            gaps(s.model, t, q, v, s.contact.gap)
+        if n_j > 0:
+            gaps(s.joints, t, q, v, s.joint.gap)
+        if not hold_again(s, t, q, v):
+            return
+        for m in range(k):
+            i = s.row[m]
+            if level < 2:
+                s.change[m] = -(s.joint.gap[i] if i < n_j else s.contact.gap[i - n_j])
+            else:
+                rate = s.joint.rate[i] if i < n_j else s.contact.rate[i - n_j]
+                s.change[m] = -product(s.R, v, i, s.n_q) - rate
+        solve_held(s, k, s.change)
+        for m in range(k):
+            for j in range(n):
+                x[j] += s.MR[s.row[m] * s.n_q + j] * s.change[m]
+
+
+def is_held(s: Mechanism, i: int) -> bool:
+    """Whether joint i is among the rows held."""
+    found = False
+    for m in range(s.n_held_joints):
+        found = found or s.row[m] == i
+    return found
+
+
+def contradiction(s: Mechanism, a: Doubles) -> int:
+    """The first joint left out whose acceleration is not zero under the others, or -1."""
+    for i in range(s.n_j):
+        if not is_held(s, i):
+            size = abs(s.joint.bias[i])
+            for j in range(s.n_q):
+                size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
+            if abs(product(s.R, a, i, s.n_q) + s.joint.bias[i]) > DISAGREEMENT * size:
+                return i
+    return -1
+
+
+def parted(s: Mechanism) -> int:
+    """The first joint left out that the others have not kept closed, or -1; its gap and row those of the state."""
+    if s.n_held_joints == s.n_j:
+        return -1
+    for i in range(s.n_j):
+        size = 0.0
+        for j in range(s.n_q):
+            size += abs(s.R[i * s.n_q + j] * s.q[j])
+        if not is_held(s, i) and abs(s.joint.gap[i]) > PARTED * (s.atol + s.rtol * size):
+            return i
+    return -1

@@ -1,0 +1,16 @@
+cimport cython
+from lcpstep.events.general.held cimport REFINEMENTS, hold, hold_joints, solve_held
+from lcpstep.events.general.problem cimport CHECKED, solve_contacts
+from lcpstep.events.general.state cimport Mechanism, NOISE
+from lcpstep.kernels.acceleration cimport inverse_mass
+from lcpstep.kernels.vectors cimport clear, largest, product
+from lcpstep.pointers cimport abs, inf, max, min
+
+@cython.locals(solved=bint)
+cdef bint strike(Mechanism s) noexcept nogil
+cdef double impulses(Mechanism s) noexcept nogil
+cdef double missing_speeds(Mechanism s) noexcept nogil
+cdef void list_impulses(Mechanism s) noexcept nogil
+cdef bint separates(Mechanism s) noexcept nogil
+cdef void apply(Mechanism s) noexcept nogil
+cdef double speed_noise(Mechanism s, Py_ssize_t c) noexcept nogil

@@ -1,0 +1,158 @@
+"""The impact of all contacts that are closed at one time, as kernels.
+
+    0 <= u+ + r u-  complementary to  p >= 0,        u+ = u- + W p        (Newton's law in Moreau's form)
+
+It takes all contacts that are closed, to rounding, and do not separate: so the energy falls by sum (1 - r) |u-| p / 2
+whatever the restitution of each. A contact that has separated at the same instant and is pushed back strikes anew, in
+a problem of its own. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer
+2008), chapter 3.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.held import REFINEMENTS, hold, hold_joints, solve_held
+    from lcpstep.events.general.problem import CHECKED, solve_contacts
+    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.acceleration import inverse_mass
+    from lcpstep.kernels.vectors import clear, largest, product
+    from lcpstep.pointers import abs, inf, max, min
+
+
+def strike(s: Mechanism) -> bool:
+    """The impact of the contacts whose gap is zero and that do not separate; p into `z`, by member.
+
+    Velocities and contact speeds are those after it. False where none exists.
+    """
+    s.n_members = 0
+    for c in range(s.n_c):
+        s.contact.loaded[c] = 0
+        u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
+        if s.contact.closed[c] == 1 or (s.contact.gap[c] == 0.0 and u <= speed_noise(s, c)):
+            s.contact.member[s.n_members] = c
+            s.contact.b[s.n_members] = (1.0 + s.model.restitution[c]) * min(u, 0.0)
+            s.contact.noise[s.n_members] = speed_noise(s, c)
+            s.n_members += 1
+    hold_joints(s)
+    solved = solve_contacts(s)
+    most = impulses(s)
+    for a in range(s.n_members):
+        if s.contact.z[a] < 0.0:
+            if not solved and s.contact.z[a] < -CHECKED * most:
+                return False
+            s.contact.z[a] = s.change[s.n_held_joints + a] = 0.0
+    if not solved and not separates(s):
+        return False
+    apply(s)
+    return True
+
+
+def impulses(s: Mechanism) -> float:
+    """Impulses of the members, of which `z` is a guess, and of the joints into `change`; returns the largest.
+
+    They give the loaded members the speeds of the law; corrected with the residual of M (v+ - v-) = R^T p itself.
+    """
+    n_j, k = s.n_j, s.n_members
+    hold_joints(s)
+    k_j = s.n_held_joints
+    clear(s.change, s.n_r)
+    clear(s.held, s.n_r)
+    for a in range(k):
+        s.held[n_j + s.contact.member[a]] = s.contact.z[a]  # by row, not by place in the list of rows held
+    for a in range(k):
+        if s.contact.loaded[s.contact.member[a]] == 1:
+            hold(s, n_j + s.contact.member[a])
+    h, before = s.n_held, inf
+    for _ in range(REFINEMENTS if k + k_j > 1 else 0):  # one impulse alone loses no digits
+        error = missing_speeds(s)
+        if error == 0.0 or not error < 0.5 * before:
+            break
+        before = error
+        solve_held(s, h, s.change)
+        for m in range(h):
+            s.held[s.row[m]] += s.change[m]
+    for a in range(k):
+        s.contact.z[a] = s.held[n_j + s.contact.member[a]]
+    list_impulses(s)
+    return largest(s.contact.z, 0.0, k)
+
+
+def missing_speeds(s: Mechanism) -> float:
+    """What the impulses `held` leave missing of the law's speeds, on the rows held, into `change`; the largest."""
+    dv, h, k_j = s.work, s.n_held, s.n_held_joints
+    for j in range(s.n_q):
+        dv[j] = 0.0
+        for i in range(s.n_r):
+            if s.held[i] != 0.0:
+                dv[j] += s.R[i * s.n_q + j] * s.held[i]
+    inverse_mass(s.model, s.M, s.trial, dv)
+    for m in range(h):
+        s.change[m] = -product(s.R, dv, s.row[m], s.n_q)
+    for a in range(s.n_members):
+        for m in range(k_j, h):
+            if s.row[m] == s.n_j + s.contact.member[a]:
+                s.change[m] -= s.contact.b[a]
+    return largest(s.change, 0.0, h)
+
+
+def list_impulses(s: Mechanism) -> None:
+    """The impulses of joints and members, in this order, into `change`, for `apply`."""
+    n_j, k_j, k = s.n_j, s.n_held_joints, s.n_members
+    for m in range(k_j):
+        s.change[m] = s.held[s.row[m]]
+    for a in range(k):
+        s.row[k_j + a], s.change[k_j + a] = n_j + s.contact.member[a], s.contact.z[a]
+    s.n_held = k_j + k
+
+
+def separates(s: Mechanism) -> bool:
+    """Whether every member has at least the speed of the law after the impulses in `z`."""
+    for a in range(s.n_members):
+        u, size, i = s.contact.b[a], abs(s.contact.b[a]), s.n_j + s.contact.member[a]
+        for m in range(s.n_held):
+            u += s.D[i * s.n_r + s.row[m]] * s.change[m]
+            size += abs(s.D[i * s.n_r + s.row[m]] * s.change[m])
+        if u < -CHECKED * size:
+            return False
+    return True
+
+
+def apply(s: Mechanism) -> None:
+    """Apply the impulses `change` on the rows held.
+
+    Under constant acceleration the contacts' speeds are carried along, not computed from V, so that small ones keep
+    their digits.
+    """
+    n_j, n_c, v = s.n_j, s.n_c, s.v
+    for m in range(s.n_held):
+        i, p = s.row[m], s.change[m]
+        if p != 0.0:
+            for j in range(s.n_q):
+                v[j] += s.MR[i * s.n_q + j] * p
+            if i < n_j:
+                s.joint.impulse[i] = s.joint.impulse[i] + p
+                s.joint.turn_impulse[i] = s.joint.turn_impulse[i] + p
+            else:
+                s.contact.impulse[i - n_j] = s.contact.impulse[i - n_j] + p
+                s.contact.turn_impulse[i - n_j] = s.contact.turn_impulse[i - n_j] + p
+            for c in range(n_c):
+                if s.D[(n_j + c) * s.n_r + i] != 0.0:
+                    du = s.D[(n_j + c) * s.n_r + i] * p
+                    s.contact.terms[c] = max(s.contact.terms[c], abs(du))
+                    if s.constant:
+                        s.contact.speed[c] = s.contact.speed[c] + du
+                        s.contact.synchronous[c] = 0.0
+    if not s.constant:
+        for c in range(n_c):
+            s.contact.speed[c] = product(s.R, v, n_j + c, s.n_q) + s.contact.rate[c]
+
+
+def speed_noise(s: Mechanism, c: int) -> float:
+    """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included."""
+    i, size = s.n_j + c, abs(s.contact.rate[c])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * s.v[j])
+    s.contact.terms[c] = max(size, s.contact.terms[c])
+    return NOISE * s.contact.terms[c]

@@ -1,0 +1,30 @@
+cimport cython
+from lcpstep.events.general.chatter cimport close_chatter
+from lcpstep.events.general.cycle cimport FOR_EVER, look_back, recurrence, sum_up
+from lcpstep.events.general.equations cimport measure_again
+from lcpstep.events.general.forces cimport contact_forces
+from lcpstep.events.general.held cimport constrain, hold_contacts, note
+from lcpstep.events.general.impact cimport speed_noise, strike
+from lcpstep.events.general.keep cimport keep_event, log
+from lcpstep.events.general.motion cimport lift, rebase, touching
+from lcpstep.events.general.parabolas cimport polish, synchronise
+from lcpstep.events.general.state cimport JUMP, Mechanism
+from lcpstep.kernels.dynamics cimport order_matters
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport max
+
+cdef Py_ssize_t IMPACT, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
+
+cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
+@cython.locals(hit=bint)
+cdef bint approaches(Mechanism s) noexcept nogil
+@cython.locals(strikes=bint)
+cdef bint has_come(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef void tell_impacts(Mechanism s, Record record, Tally tally, double t) noexcept nogil
+cdef Py_ssize_t settle(Mechanism s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t forces(Mechanism s, double t) noexcept nogil
+cdef void obey(Mechanism s, Record record, Tally tally) noexcept nogil
+@cython.locals(some=bint)
+cdef bint tell_modes(Mechanism s, Record record, Tally tally, double t) noexcept nogil

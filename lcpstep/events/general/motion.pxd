@@ -1,0 +1,15 @@
+from lcpstep.events.general.earliest cimport observe
+from lcpstep.events.general.state cimport Mechanism
+from lcpstep.kernels.dynamics cimport gap_rounding
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, inf, max, min
+
+cdef void rebase(Mechanism s, double t) noexcept nogil
+cdef void state_at(Mechanism s, double tau) noexcept nogil
+cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef double speed_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef double least_effect(Mechanism s, Py_ssize_t c, double* x) noexcept nogil
+cdef void press(Mechanism s, double tau) noexcept nogil
+cdef void press_between(Mechanism s, double a, double b) noexcept nogil

@@ -1,0 +1,90 @@
+"""A piece of smooth motion that can be asked for any time within it, as kernels: state, impulses."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.earliest import observe
+    from lcpstep.events.general.state import Mechanism
+    from lcpstep.kernels.dynamics import gap_rounding
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, abs, inf, max, min
+
+
+def rebase(s: Mechanism, t: float) -> None:
+    """Begin a new piece at time t with the state Q, V."""
+    copy(s.q0, s.q, 2 * s.n_q)
+    s.start_at(t)
+
+
+def state_at(s: Mechanism, tau: float) -> None:
+    """Q, V at the time tau after the base."""
+    if s.constant:
+        a = s.a
+        for j in range(s.n_q):
+            s.q[j] = s.q0[j] + tau * (s.v0[j] + 0.5 * tau * a[j])
+            s.v[j] = s.v0[j] + tau * a[j]
+    elif tau == 0.0:
+        copy(s.q, s.q0, 2 * s.n_q)
+    else:
+        s.smooth.at(tau / s.length, s.q)
+
+
+def lift(s: Mechanism, c: int) -> None:
+    """Put Q onto the surface of contact c, which it misses by no more than the tolerance: hops start from there."""
+    i = s.n_j + c
+    for j in range(s.n_q):
+        s.q[j] -= s.MR[i * s.n_q + j] * s.contact.gap[c] / s.D[i * s.n_r + i]
+    s.contact.gap[c] = 0.0
+
+
+def gap_tolerance(s: Mechanism, c: int) -> float:
+    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance.
+
+    Zero where it depends on no coordinate, as in the middle of a bowl.
+    """
+    return least_effect(s, c, s.q)
+
+
+def touching(s: Mechanism, c: int) -> float:
+    """The gap below which contact c is closed: rounding, and the tolerance where gaps are not followed exactly."""
+    way = 0.0
+    if s.length > 0.0:
+        for j in range(s.n_q):
+            way += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
+        way *= s.length
+    rounding = gap_rounding(s.model, s.contact.G, s.q, c, way)
+    return rounding if s.constant else max(rounding, gap_tolerance(s, c))
+
+
+def speed_tolerance(s: Mechanism, c: int) -> float:
+    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, c, s.v)
+
+
+def least_effect(s: Mechanism, c: int, x: Doubles) -> float:
+    """The gap, or gap velocity, that contact c can change without changing an x by more than its tolerance."""
+    i, least = s.n_j + c, inf
+    for j in range(s.n_q):
+        moved = abs(s.MR[i * s.n_q + j])
+        if moved > 0.0:
+            least = min(least, (s.atol + s.rtol * abs(x[j])) * s.D[i * s.n_r + i] / moved)
+    return least if least < inf else 0.0
+
+
+def press(s: Mechanism, tau: float) -> None:
+    """Add the impulses of the forces over the time tau."""
+    for c in range(s.n_c):
+        s.contact.impulse[c] = s.contact.impulse[c] + s.contact.multiplier[c] * tau
+    for i in range(s.n_j):
+        s.joint.impulse[i] = s.joint.impulse[i] + s.joint.multiplier[i] * tau
+
+
+def press_between(s: Mechanism, a: float, b: float) -> None:
+    """The same for forces that change between a and b after the base: Gauss' quadrature."""
+    if s.n_held == 0 or b <= a:
+        return
+    for k in range(s.n_nodes):
+        observe(s, a + s.nodes[k] * (b - a))
+        press(s, s.weights[k] * (b - a))

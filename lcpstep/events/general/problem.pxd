@@ -1,0 +1,11 @@
+cimport cython
+from lcpstep.events.general.state cimport Mechanism
+from lcpstep.kernels.vectors cimport clear
+from lcpstep.lcp.kernel cimport solve_small
+
+cdef Py_ssize_t SOLVED
+cdef double CHECKED
+
+@cython.locals(solved=bint)
+cdef bint solve_contacts(Mechanism s) noexcept nogil
+cdef void contact_matrix(Mechanism s) noexcept nogil

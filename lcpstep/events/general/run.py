@@ -1,0 +1,163 @@
+"""Runs of systems with contacts and joints."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.events import running
+from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
+from lcpstep.events.general.loop import keep_state, run
+from lcpstep.events.general.smooth import Smooth
+from lcpstep.events.general.state import Mechanism
+from lcpstep.events.scan import scan_interval
+from lcpstep.gaps import no_way_out
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import DONE
+from lcpstep.model import kernel_joint_model, kernel_model
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.trajectory import Status
+
+Array = NDArray[np.float64]
+MOST_ROWS = 2**22  # numbers in a buffer of kept states
+QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
+FIRST_STEP = 0.1  # of the scan interval
+
+
+def is_constant(m: Model, joints: Model) -> bool:
+    """Whether the acceleration is constant between events, and gaps are linear in q."""
+    still = not any(f.given for f in (m.force, m.frame, m.motion, joints.motion))
+    turns = m.omega != 0.0 and (np.any(m.arrays["cosine"]) or np.any(m.arrays["sine"]))
+    forced = np.any(m.arrays["C"]) or np.any(m.arrays["K"]) or turns
+    return bool(m.linear and m.flat and joints.flat and still and not forced)
+
+
+@functools.cache
+def quadrature() -> tuple[Array, Array]:
+    """Gauss' nodes and weights on [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
+    return 0.5 * (1.0 + nodes), 0.5 * weights
+
+
+def start(scene: Scene, method: Any) -> Mechanism:
+    """The state at the start of the span; `method` has rtol and atol."""
+    m = kernel_model(scene)
+    joints = kernel_joint_model(scene) if scene.n_j > 0 else m
+    constant, scan = is_constant(m, joints), scan_interval(scene, m, 0.0)
+    smooth = Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol)
+    smooth.state[: scene.n_q], smooth.state[scene.n_q :] = scene.q0, scene.v0
+    smooth.next_step = FIRST_STEP * scan
+    corners = () if constant else scene.corners
+    smooth.mechanism = Mechanism(
+        m, joints, scene.n_j, constant, smooth, scan, scene.t_span, corners, scene.period, *quadrature()
+    )
+    return smooth.mechanism
+
+
+class General(running.Run):
+    """A run with any number of contacts and joints."""
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
+        self.system = start(scene, method)
+        width = (1, scene.n_q) if self.system.constant else (7, 2 * scene.n_q)
+        rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
+        columns = scene.n_c + scene.n_j
+        recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+        super().__init__(method, scene, kept, recorder)
+
+    @property
+    def now(self) -> float:
+        """Time reached [s]."""
+        return float(self.system.t0)
+
+    @property
+    def interval_end(self) -> float:
+        """End of the interval at hand [s]."""
+        return min(self.system.t_end, self.now + self.system.scan)
+
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        q, v = np.split(self.system.smooth.state, 2)
+        return q, v
+
+    @property
+    def evaluations(self) -> int:
+        """How often forces were evaluated."""
+        return int(self.system.smooth.evaluations)
+
+    def advance(self, goal: int) -> int:
+        """Call the kernel, up to step number `goal`; why it returned."""
+        return int(run(self.system, self.recorder.record, self.tally, goal))
+
+    def keep_now(self) -> None:
+        """Write the current state into the recorder's buffers."""
+        keep_state(self.system, self.recorder.record)
+
+    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones and the motion from each to the next."""
+        F = self.recorder.dense()
+        return Moved(running.without_impulses(s), self.kept.all, self.system.constant, F)
+
+    def status(self, code: int) -> Status:
+        """How the run ended, by what the kernel returned."""
+        return STATUS.get(code) or Status(code)
+
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        s, where = self.system, self.where
+        closed, members = s.contact.closed_ones(), s.contact.members(s.n_members)
+        if code == NO_IMPULSES:
+            words = f"no impulses of the contacts {members} end their approach"
+            return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
+        if code == NO_FORCES:
+            return f"no forces of the closed contacts {members} keep them from passing {where}"
+        if code == Status.JOINTS_FAILED:
+            return f"joint {s.culprit} contradicts the joints before it {where}"
+        if code == Status.TOO_MANY_EVENTS:
+            bound = f"more than max_events = {self.method.max_events} events"
+            if self.tally.events <= self.method.max_events:
+                bound = "events without end at one time"
+            return f"{bound}; the last at contacts {s.contact.latest()}, closed are {closed}, {where}"
+        words = super().message(code)
+        return words if code == DONE else f"{words}; closed contacts {closed}"
+
+
+@dataclass(eq=False)
+class Moved(running.Between):
+    """States between kept ones, under constant accelerations or by the dense output of the steps."""
+
+    constant: bool
+    F: Array  # after each kept state
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        if np.all(times == self.s.t[row]):
+            return self.s.q[row], self.s.v[row]
+        moved = moved_constant if self.constant else moved_by_step
+        return moved(self.s, self.F, times, row)
+
+
+def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
+    """States at times after the kept rows, under the acceleration kept with each."""
+    tau, a = (times - s.t[row])[:, None], F[row, 0]
+    a[times >= s.t[-1]] = 0.0  # no motion has been kept beyond the last state
+    return s.q[row] + tau * (s.v[row] + 0.5 * tau * a), s.v[row] + tau * a
+
+
+def moved_by_step(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
+    """The same by the dense output of the step after each row; see `rungekutta.RungeKutta.at`."""
+    tau = (times - s.t[row])[:, None]
+    share = tau / np.where(s.length[row] > 0.0, s.length[row], 1.0)[:, None]
+    moved = np.zeros((len(times), F.shape[2]))
+    for k in range(F.shape[1]):
+        moved = (moved + F[row, F.shape[1] - 1 - k]) * (share if k % 2 == 0 else 1.0 - share)
+    moved[tau[:, 0] == 0.0] = 0.0
+    n = s.q.shape[1]
+    return s.q[row] + moved[:, :n], s.v[row] + moved[:, n:]

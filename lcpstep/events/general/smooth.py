@@ -1,0 +1,22 @@
+"""The motion of a mechanism between events, as a field that the Runge-Kutta method follows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.general.held import right_hand_side
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.pointers import Doubles
+
+
+class Smooth(RungeKutta):
+    """Y = (q, v) with the rows held of a mechanism, which is given to it after both have been made."""
+
+    mechanism: Any
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Dy = (v, v'); False where it is not finite or the rows have become dependent."""
+        return right_hand_side(self.mechanism, t, y, dy)

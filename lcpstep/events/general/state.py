@@ -1,0 +1,201 @@
+"""The state of a system with contacts and joints, under the names of mechanics, and its work space."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import after, indices_after, inf
+
+ROWS, CONTACTS, MARKS = 5, 13, 4  # numbers per row, per contact besides, and marks of a contact
+MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
+NOISE = 64 * RESOLUTION
+
+
+class Seen:
+    """What is looked at of n contacts: gap, velocity and acceleration of the gap, force; all in one piece.
+
+    gap, speed, curve, multiplier : (n,)
+    """
+
+    def __init__(self, n: int) -> None:
+        self.n, self.seen = n, np.zeros(4 * n)
+        self.gap = doubles(self.seen)
+        self.speed = after(self.gap, n)
+        self.curve = after(self.speed, n)
+        self.multiplier = after(self.curve, n)
+
+
+class Rows(Seen):
+    """Contacts or joints at the state of the system; each is a row of the equations.
+
+    rate, bias        gap velocity at rest, and gap acceleration at v' = 0
+    shifted           work space of the bias
+    impulse           since the last kept state
+    turn_impulse      since a number of impacts ago, at one instant
+    G : (n, n_q)      Jacobian; also work space of the bias
+
+    Parameters
+    ----------
+    n : int;  G, impulse : where these lie
+    """
+
+    def __init__(self, n: int) -> None:
+        Seen.__init__(self, n)
+        self.own = np.zeros(ROWS * n)
+        self.rate = doubles(self.own)
+        self.bias = after(self.rate, n)
+        self.shifted = after(self.bias, n)
+        self.turn_impulse = after(self.shifted, n)
+        self.impulse = after(self.turn_impulse, n)
+        self.G = self.rate
+
+
+class Contacts(Rows):
+    """Contacts, what has happened at each, and the problem of those that are closed, its members.
+
+    struck, since     time of the last impact, since the one before
+    held_until        no release before it
+    chatter_end       when its chattering ends
+    rest              how long the sequence that is summed up lasts; negative: none
+    owed, owed_until  impulse taken on account, and the time up to which forces pay for it
+    terms             size of the terms of a gap velocity, at the impacts of one instant
+    turn_speed        speed a number of impacts ago
+    synchronous       whether gap and speed are those of q, v
+    b, z, noise       by member: right-hand side and solution of the problem, rounding of b
+    member            contacts of the problem
+    closed, was_closed, loaded   lasting contact; so when last told; carries a force
+    """
+
+    def __init__(self, n: int) -> None:
+        Rows.__init__(self, n)
+        self.history, self.marks = np.zeros(CONTACTS * n), np.zeros(MARKS * n, dtype=np.intp)
+        self.struck = doubles(self.history)
+        self.since = after(self.struck, n)
+        self.held_until = after(self.since, n)
+        self.chatter_end = after(self.held_until, n)
+        self.rest = after(self.chatter_end, n)
+        self.owed = after(self.rest, n)
+        self.owed_until = after(self.owed, n)
+        self.terms = after(self.owed_until, n)
+        self.turn_speed = after(self.terms, n)
+        self.synchronous = after(self.turn_speed, n)
+        self.b = after(self.synchronous, n)
+        self.z = after(self.b, n)
+        self.noise = after(self.z, n)
+        self.member = indices(self.marks)
+        self.closed = indices_after(self.member, n)
+        self.was_closed = indices_after(self.closed, n)
+        self.loaded = indices_after(self.was_closed, n)
+        for c in range(n):
+            self.struck[c] = self.held_until[c] = self.chatter_end[c] = -inf
+
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return [c for c in range(self.n) if self.closed[c] == 1]
+
+    def members(self, n: int) -> list[int]:
+        """The first n members of the problem."""
+        return sorted([self.member[a] for a in range(n)])
+
+    def latest(self) -> list[int]:
+        """The contacts that have struck last."""
+        times = [self.struck[c] for c in range(self.n)]
+        return [c for c in range(self.n) if times[c] == sorted(times)[-1]]
+
+
+class Mechanism(Clock):
+    """A system with contacts and joints: its equations, its state, and work space.
+
+    model, joints     the same system with its contacts, and with its joints in their place
+    constant          the acceleration is constant between events, and gaps are linear in q
+    scan              longest interval of the scan for events
+    rtol, atol        tolerances;  t_end: end of the span
+    nodes, weights    quadrature of the forces of contacts and joints, on [0, 1]
+    length            duration of the step at hand
+    found, seen_to    event within it, looked for up to here; which contact and what it does
+    bare              whether the acceleration is that without contacts
+    next              what comes next: MOVE, JUMP, SETTLE or OBEY
+    q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
+    a_free, force     acceleration M^-1 f without contacts and joints, f
+    contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
+    R, MR : (n_r, n_q)  rows of joints (first) and contacts, rows M^-1 R^T
+    D, L : (n_r, n_r)   Delassus matrix R M^-1 R^T, Cholesky factor of the rows held
+    row, held         rows held, their multipliers;  n_held, n_held_joints  how many
+    kept              rows held, while others are tried
+    doubt             relative error of the diagonal of L, in units of rounding
+    change            work space by row
+    W                 matrix of the problem of the n_members members of it
+    culprit           joint that contradicts others, or -1
+
+    Parameters
+    ----------
+    model, joints : Model;  n_j : how many joints;  constant : bool
+    smooth : RungeKutta    the motion between events, from q0, v0
+    scan, t_span, corners, period, nodes, weights   as above and in `Clock`
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        joints: Model,
+        n_j: int,
+        constant: bool,
+        smooth: RungeKutta,
+        scan: float,
+        t_span: tuple[float, float],
+        corners: Any,
+        period: float,
+        nodes: Any,
+        weights: Any,
+    ) -> None:
+        Clock.__init__(self, t_span, corners, period)
+        n, n_c = model.n_q, model.n_c
+        r = n_c + n_j
+        self.model, self.joints, self.smooth, self.constant = model, joints, smooth, constant
+        self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
+        self.scan, self.t_end, self.rtol, self.atol = scan, t_span[1], smooth.rtol, smooth.atol
+        self.rule = np.array([nodes, weights])
+        self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
+        self.weights = after(self.nodes, self.n_nodes)
+        self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, MOVE
+        self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0
+        self.culprit = -1
+        self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c)
+        self.q0 = self.smooth.y
+        self.v0 = after(self.smooth.y, n)
+        self.q = doubles(self.numbers)
+        self.v = after(self.q, n)
+        self.dy = after(self.v, n)
+        self.a = after(self.dy, n)
+        self.trial = after(self.a, n)
+        self.a_free = after(self.trial, 4 * n)
+        self.force = after(self.a_free, n)
+        self.work = after(self.force, n)
+        self.M = after(self.work, n)
+        self.R = after(self.M, n * n)
+        self.MR = after(self.R, r * n)
+        self.D = after(self.MR, r * n)
+        self.L = after(self.D, r * r)
+        self.held = after(self.L, r * r)
+        self.change = after(self.held, r)
+        self.doubt = after(self.change, r)
+        self.impulse = after(self.doubt, r)
+        self.W = after(self.impulse, r)
+        self.lists = np.zeros(2 * r, dtype=np.intp)
+        self.row = indices(self.lists)
+        self.kept = indices_after(self.row, r)
+        self.contact, self.joint = Contacts(n_c), Rows(n_j)
+        self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Workspace(n_c)
+        self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
+        self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
+        for i in range(n):
+            self.q[i], self.v[i] = self.q0[i], self.v0[i]

@@ -1,0 +1,27 @@
+cimport cython
+from lcpstep.events.general.earliest cimport MEETS, NONE, OPENS, first_event, observe, remember
+from lcpstep.events.general.equations cimport measure, measure_on
+from lcpstep.events.general.forces cimport contact_forces
+from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project
+from lcpstep.events.general.keep cimport keep, keep_wanted, store_dense
+from lcpstep.events.general.motion cimport lift, press_between, rebase
+from lcpstep.events.general.parabolas cimport hop
+from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, inf, min
+
+cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, REFINEMENTS
+cdef double LOOK_AHEAD
+
+cdef Py_ssize_t step(Mechanism s) noexcept nogil
+cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
+cdef double shortest_hop(Mechanism s) noexcept nogil
+cdef void make_dense(Mechanism s, double tau) noexcept nogil
+cdef double shorten(Mechanism s, Py_ssize_t c, double tau, Py_ssize_t kind) noexcept nogil
+@cython.locals(solved=bint)
+cdef bint look_ahead(Mechanism s, Py_ssize_t c, double tau, double end) noexcept nogil
+cdef void take_over(Mechanism s, Record record, Tally tally, double t, double tau) noexcept nogil
+cdef Py_ssize_t pass_end(Mechanism s, Record record, Tally tally) noexcept nogil

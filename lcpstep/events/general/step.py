@@ -1,0 +1,166 @@
+"""A Runge-Kutta step of several contacts and joints, up to the first event within it, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.general.ends import NO_FORCES
+from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE
+
+if not cython.compiled:
+    from lcpstep.events.general.earliest import MEETS, NONE, OPENS, first_event, observe, remember
+    from lcpstep.events.general.equations import measure, measure_on
+    from lcpstep.events.general.forces import contact_forces
+    from lcpstep.events.general.held import constrain, hold_again, note, parted, project
+    from lcpstep.events.general.keep import keep, keep_wanted, store_dense
+    from lcpstep.events.general.motion import lift, press_between, rebase
+    from lcpstep.events.general.parabolas import hop
+    from lcpstep.events.general.state import JUMP, OBEY, SETTLE, Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, inf, min
+
+PARTS = 4  # scan intervals of a step
+REFINEMENTS = 3  # of an event's time by repeated steps
+LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
+
+
+def step(s: Mechanism) -> int:
+    """One DOP853 step, and the first event within it; `complete` takes it over."""
+    remember(s)
+    longest = min(s.t_end, s.high) - s.t0
+    code = s.smooth.take_step(s.t0, min(min(longest, s.scan), 4.0 * shortest_hop(s)), s.scan)
+    if code != DONE:
+        return code
+    h = s.length = s.smooth.length
+    tau, a = NONE, 0.0
+    for part in range(1, PARTS + 1):
+        if tau == NONE and s.n_c > 0:
+            b = h * part / PARTS
+            if not observe(s, b):
+                return NOT_FINITE
+            tau = first_event(s, a, b)
+            copy(s.left.gap, s.right.gap, 4 * s.n_c)
+            a = b
+    s.found, s.seen_to = tau, a
+    return DONE
+
+
+def complete(s: Mechanism, record: Record, tally: Tally) -> int:
+    """Take over the step that has just been made, which ends early if an event was found in it."""
+    border, h, tau, end = min(s.t_end, s.high), s.length, s.found, s.seen_to
+    if tau == NONE:
+        t_next = border if h >= border - s.t0 else s.after(h)
+        take_over(s, record, tally, t_next, h)
+        return pass_end(s, record, tally)
+    c, kind = s.event_contact, s.event_kind
+    if kind == OPENS and not look_ahead(s, c, tau, end):
+        return NO_FORCES
+    if tau > 0.0:
+        tau = shorten(s, c, tau, kind)
+    take_over(s, record, tally, min(s.after(tau), border), tau)
+    if not measure_on(s, s.t0):
+        return NOT_FINITE
+    if kind == OPENS:
+        s.next = OBEY
+        return DONE
+    s.next = JUMP
+    lift(s, c)
+    if kind != MEETS:
+        s.contact.speed[c], s.contact.closed[c], s.contact.held_until[c] = 0.0, 1, s.t0 + end
+    return DONE
+
+
+def shortest_hop(s: Mechanism) -> float:
+    """Duration of the shortest hop that has just begun, were its acceleration constant."""
+    shortest = inf
+    for c in range(s.n_c):
+        u, alpha = s.contact.speed[c], s.contact.curve[c]
+        if s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0 and u > 0.0 and alpha < 0.0:
+            shortest = min(shortest, hop(u, alpha))
+    return shortest
+
+
+def make_dense(s: Mechanism, tau: float) -> None:
+    """Dense output of the step of size tau that has just been made."""
+    if s.smooth.complete(s.t0, tau):
+        s.length = tau
+
+
+def shorten(s: Mechanism, c: int, tau: float, kind: int) -> float:
+    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface.
+
+    The last repetition is not corrected any more: what is returned is the length of the step whose end is the state.
+    """
+    s.smooth.step(s.t0, tau)
+    for _ in range(REFINEMENTS if kind == MEETS else 0):
+        make_dense(s, tau)
+        observe(s, tau)
+        g, u = s.contact.gap[c], s.contact.speed[c]
+        correction = -g / u if u < 0.0 else 0.0
+        if abs(correction) <= 2.0 * RESOLUTION * (abs(s.t0) + tau) or abs(correction) > 1e-3 * tau:
+            break
+        tau += correction
+        s.smooth.step(s.t0, tau)
+    make_dense(s, tau)
+    return tau
+
+
+def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
+    """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative."""
+    ahead = tau + LOOK_AHEAD * s.length
+    observe(s, ahead)
+    t, before = s.t0 + ahead, s.n_held
+    for m in range(before):  # the rows held are needed for the rest of the interval
+        s.kept[m] = s.row[m]
+    if not measure(s, t):
+        return False
+    solved = contact_forces(s, t) == DONE
+    if s.contact.closed[c] == 1:
+        s.contact.held_until[c] = s.t0 + end
+    for m in range(before):
+        s.row[m] = s.kept[m]
+    s.n_held = before
+    return solved
+
+
+def take_over(s: Mechanism, record: Record, tally: Tally, t: float, tau: float) -> None:
+    """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    tally.steps += 1
+    pressed = 0.0
+    while record.wants(t, t >= s.t_end):
+        wanted = record.times[record.next_time] - s.t0
+        press_between(s, pressed, wanted)
+        pressed = wanted
+        keep_wanted(s, record)
+    if tau > 0.0:
+        press_between(s, pressed, tau)
+        store_dense(s, record)
+        copy(s.q, s.smooth.y_new, 2 * s.n_q)
+        if s.n_held > 0:
+            project(s, t)
+    else:
+        copy(s.q, s.q0, 2 * s.n_q)
+    rebase(s, t)
+
+
+def pass_end(s: Mechanism, record: Record, tally: Tally) -> int:
+    """Go on beyond the end of a step without an event, with the same rows held."""
+    if not measure_on(s, s.t0):
+        return NOT_FINITE
+    s.culprit = parted(s)
+    if s.culprit >= 0:
+        return JOINTS_FAILED
+    a = s.a
+    copy(a, s.a_free, s.n_q)
+    if s.n_held > 0:
+        if not hold_again(s, s.t0, s.q, s.v):
+            s.next = SETTLE
+            return DONE
+        constrain(s, a)
+    note(s, a)
+    if record.is_due(tally.steps):
+        keep(s, record, s.t0)
+    return DONE
