@@ -14,17 +14,19 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.joints import Joints
 
 DEGREE = 22  # of the Taylor polynomials
-VECTORS = (
-    "q v free a force next_force q_base q_try v_try a_try jolt q_from v_from a_from q_time swing v_struck"
-).split()  # noqa: SIM905
-NUMBERS = (
-    "gap rate half alpha bend bias gap_try gap_t gap_t_try end_s last force_now older older_time p b z residual "
-    "change doubt before impulse_from since next_zero turned turns hops fall"
-).split()  # noqa: SIM905
-MARKS = (
-    "status grounded hits close_hits plastic chosen held place first_coordinate last_coordinate first_contact "
-    "last_contact"
-).split()  # noqa: SIM905
+VECTORS = [
+    "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
+    "v_from", "a_from", "q_time", "swing", "v_struck",
+]  # fmt: skip
+NUMBERS = [
+    "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
+    "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
+    "since", "next_zero", "turned", "turns", "hops", "fall",
+]  # fmt: skip
+MARKS = [
+    "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
+    "last_coordinate", "first_contact", "last_contact",
+]  # fmt: skip
 
 
 class Plan:
