@@ -1,5 +1,6 @@
 cimport cython
 from libc.math cimport ldexp
+from lcpstep.kernels.record cimport COLUMNS, TIME, Record
 from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
@@ -25,8 +26,11 @@ cdef class Control:
     cdef double base(self) noexcept nogil
     cdef double now(self) noexcept nogil
     cdef double goal(self) noexcept nogil
-    cdef double place(self, long long position) noexcept nogil
+    cdef double time_of(self, long long position) noexcept nogil
     cdef bint over(self) noexcept nogil
     cdef double resolved(self, double size) noexcept nogil
     cdef Py_ssize_t judge(self) noexcept nogil
     cdef bint go_on(self, double time) noexcept nogil
+
+
+cdef void stamp(Record r, Py_ssize_t row, Py_ssize_t event, double late, double t) noexcept nogil

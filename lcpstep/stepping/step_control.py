@@ -22,6 +22,7 @@ from lcpstep.stepping.adaptive import NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL,
 if not cython.compiled:
     from math import ldexp
 
+    from lcpstep.kernels.record import COLUMNS, TIME, Record
     from lcpstep.pointers import abs, inf, max, min
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
@@ -129,7 +130,7 @@ class Control:
 
     def base(self) -> float:
         """The multiple of the step from which times are counted until the next one is reached [s]."""
-        return self.place(self.position)
+        return self.time_of(self.position)
 
     def now(self) -> float:
         """Time at which the step begins [s]."""
@@ -137,9 +138,9 @@ class Control:
 
     def goal(self) -> float:
         """Time at which it ends unless an event cuts it [s]."""
-        return self.place(self.position + self.length(self.level))
+        return self.time_of(self.position + self.length(self.level))
 
-    def place(self, position: int) -> float:
+    def time_of(self, position: int) -> float:
         """Time of a number of finest steps; the end of the span to the bit [s]."""
         if position >= self.end:
             return self.stop
@@ -208,3 +209,13 @@ class Control:
     def step(self) -> float:
         """Its size [s]."""
         return self.step_size(self.level)
+
+
+def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
+    """What a step has kept and noted at `late` or after, from a row and an event on, belongs to its end t."""
+    for k in range(row, r.row):
+        if r.rows[k * r.row_size + TIME] >= late:
+            r.rows[k * r.row_size + TIME] = t
+    for k in range(event, r.event):
+        if r.events[k * COLUMNS] >= late:
+            r.events[k * COLUMNS] = t
