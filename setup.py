@@ -23,6 +23,8 @@ HEADERS = {
     "lcpstep.pointers",
     "lcpstep.arrays",
     "lcpstep.kernels.vectors",
+    "lcpstep.stepping.pieces.codes",
+    "lcpstep.stepping.pieces.quadratic",
 }  # merged into the modules that use them
 DIRECTIVES = {
     "language_level": 3,

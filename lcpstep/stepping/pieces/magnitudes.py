@@ -1,4 +1,4 @@
-"""What velocities and accelerations of contacts are made of: sums of terms, their signs left aside.
+"""What velocities and accelerations of contacts are made of, as kernels: sums of terms, their signs left aside.
 
 A speed or an acceleration is but rounding if it is small beside these. Beside itself, or beside a sum that has
 cancelled, it never is: speeds that fall from impact to impact by a factor would be followed down to 1e-308.
