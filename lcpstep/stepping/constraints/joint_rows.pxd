@@ -1,0 +1,42 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.linear cimport factorise, solve
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, after, inf, max
+from libc.math cimport sqrt
+
+cdef double NEGLIGIBLE, EPSILON
+cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
+
+
+cdef class Elimination:
+    cdef object numbers, integers
+    cdef Py_ssize_t n_j
+    cdef bint redundant
+    cdef double* S
+    cdef double* B
+    cdef double* F
+    cdef double* Z
+    cdef double* values
+    cdef double* scale
+    cdef double* x
+    cdef double* y
+    cdef double* r
+    cdef double* d
+    cdef Py_ssize_t* pivots
+
+
+@cython.locals(regular=bint)
+cdef void factorise_joints(Elimination e, double* W, Py_ssize_t stride, Py_ssize_t first) noexcept nogil
+cdef void diagonalise(Elimination e) noexcept nogil
+cdef void rotate(double* B, double* V, Py_ssize_t p, Py_ssize_t q, Py_ssize_t n) noexcept nogil
+cdef void solve_joints(Elimination e, double* out) noexcept nogil
+cdef void apply_inverse(Elimination e) noexcept nogil
+cdef void eliminate(
+    Elimination e, double* W, Py_ssize_t stride, double* b, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* R,
+    double* reduced,
+) noexcept nogil
+cdef void joint_impulses(Elimination e, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p) noexcept nogil
+cdef void distribute(
+    Elimination e, double* solution, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p, Py_ssize_t n
+) noexcept nogil

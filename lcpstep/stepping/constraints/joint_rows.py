@@ -1,0 +1,206 @@
+"""Joints eliminated from a step: the rates that they take away, and the impulses that do it.
+
+With the impulses p_J of the joints and p of the contacts, v+ = v_free + A^-1 (G_J^T p_J + G^T p), and
+
+    S p_J = -(G_J v_free + g_t) - G_J A^-1 G^T p,        S = G_J A^-1 G_J^T, the joints' own Delassus matrix.
+
+Joints that say the same thing twice make S singular. Then the impulses of least norm (each in the unit in which its
+joint has unit mobility) are taken, by the eigenvectors of S; directions in which S is smaller than `NEGLIGIBLE` count
+as said twice. What such joints contradict each other in stays as a rate, which the caller looks at.
+
+Source: G. Golub, C. Van Loan, Matrix Computations, algorithms 3.4.1 and 8.5.3; F. Pfeiffer, C. Glocker, Multibody
+Dynamics with Unilateral Contacts (Wiley 1996), chapter 4.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy as np
+
+if not cython.compiled:
+    from math import sqrt
+
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.linear import factorise, solve
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
+
+NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
+EPSILON = 2.220446049250313e-16
+REFINEMENTS = 20
+SWEEPS = 30
+VECTORS = 6
+
+
+class Elimination:
+    """Work space for the joints of a step.
+
+    n_j
+    S : (n_j, n_j)   scaled to unit diagonal
+    B : (n_j, n_j)   its symmetric part, while it is made diagonal
+    F : (n_j, n_j)   its factors, or its eigenvectors in columns
+    values, scale, x, y, r, d : (n_j,)   eigenvalues; units; the solution, its right-hand side, residual and change
+    pivots : (n_j,)
+    redundant        S is singular
+    Z : (2 n_c + 1, n_j)   S^-1 times the columns of G_J A^-1 G^T and, last, the rates of v_free
+
+    Parameters
+    ----------
+    n_j, n_c : int   joints and contacts
+    """
+
+    def __init__(self, n_j: int, n_c: int) -> None:
+        self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j)
+        self.integers, self.n_j = np.zeros(n_j, dtype=np.intp), n_j
+        self.S, self.pivots, self.redundant = doubles(self.numbers), indices(self.integers), False
+        self.B = after(self.S, n_j * n_j)
+        self.F = after(self.B, n_j * n_j)
+        self.Z = after(self.F, n_j * n_j)
+        self.values = after(self.Z, (2 * n_c + 1) * n_j)
+        self.scale = after(self.values, n_j)
+        self.x = after(self.scale, n_j)
+        self.y = after(self.x, n_j)
+        self.r = after(self.y, n_j)
+        self.d = after(self.r, n_j)
+
+
+def factorise_joints(e: Elimination, W: Doubles, stride: int, first: int) -> None:
+    """Take S from rows and columns of W (`stride` numbers a row) from `first` on, and factorise it."""
+    n = e.n_j
+    for i in range(n):
+        s = W[(first + i) * stride + first + i]
+        e.scale[i] = 1.0 / sqrt(s) if s > 0.0 else 0.0
+    for i in range(n):
+        for j in range(n):
+            e.S[i * n + j] = e.scale[i] * W[(first + i) * stride + first + j] * e.scale[j]
+    copy(e.F, e.S, n * n)
+    e.redundant = False
+    regular = factorise(e.F, e.pivots, n)
+    for i in range(n):
+        regular = regular and abs(e.F[i * n + i]) > NEGLIGIBLE
+    if not regular:
+        e.redundant = True
+        diagonalise(e)
+
+
+def diagonalise(e: Elimination) -> None:
+    """Eigenvalues and eigenvectors of the symmetric part of S, by cyclic Jacobi rotations."""
+    n = e.n_j
+    B, V = e.B, e.F
+    for i in range(n):
+        for j in range(n):
+            B[i * n + j] = 0.5 * (e.S[i * n + j] + e.S[j * n + i])
+            V[i * n + j] = 1.0 if i == j else 0.0
+    for _ in range(SWEEPS):
+        off = 0.0
+        for i in range(n):
+            for j in range(i):
+                off = max(off, abs(B[i * n + j]))
+                rotate(B, V, j, i, n)
+        if off <= EPSILON:
+            break
+    for i in range(n):
+        e.values[i] = B[i * n + i]
+
+
+def rotate(B: Doubles, V: Doubles, p: int, q: int, n: int) -> None:
+    """Make B_pq zero by a rotation, which V collects."""
+    if abs(B[p * n + q]) <= EPSILON * EPSILON:  # of the diagonal: its square would overflow below
+        return
+    tau = (B[q * n + q] - B[p * n + p]) / (2.0 * B[p * n + q])
+    t = (1.0 if tau >= 0.0 else -1.0) / (abs(tau) + sqrt(1.0 + tau * tau))
+    c = 1.0 / sqrt(1.0 + t * t)
+    s = t * c
+    for k in range(n):
+        B[k * n + p], B[k * n + q] = c * B[k * n + p] - s * B[k * n + q], s * B[k * n + p] + c * B[k * n + q]
+    for k in range(n):
+        B[p * n + k], B[q * n + k] = c * B[p * n + k] - s * B[q * n + k], s * B[p * n + k] + c * B[q * n + k]
+        V[k * n + p], V[k * n + q] = c * V[k * n + p] - s * V[k * n + q], s * V[k * n + p] + c * V[k * n + q]
+
+
+def solve_joints(e: Elimination, out: Doubles) -> None:
+    """Out <- S^-1 y for the right-hand side in e.y, refined; of least norm where S is singular."""
+    n = e.n_j
+    before = inf
+    for i in range(n):
+        e.y[i] *= e.scale[i]
+        e.x[i], e.r[i] = 0.0, e.y[i]
+    for _ in range(REFINEMENTS):
+        apply_inverse(e)
+        worst = largest = 0.0
+        for i in range(n):
+            e.x[i] += e.d[i]
+        for i in range(n):
+            e.r[i], size = e.y[i], abs(e.y[i])
+            for j in range(n):
+                e.r[i] -= e.S[i * n + j] * e.x[j]
+                size += abs(e.S[i * n + j] * e.x[j])
+            worst, largest = max(worst, abs(e.r[i])), max(largest, size)
+        if worst <= EPSILON * largest or worst > 0.5 * before:
+            break
+        before = worst
+    for i in range(n):
+        out[i] = e.scale[i] * e.x[i]
+
+
+def apply_inverse(e: Elimination) -> None:
+    """d <- S^-1 r by the factors, or by those eigenvectors that belong to independent joints."""
+    n = e.n_j
+    copy(e.d, e.r, n)
+    if not e.redundant:
+        solve(e.F, e.pivots, e.d, n)
+        return
+    for i in range(n):
+        e.d[i] = 0.0
+    for k in range(n):
+        if e.values[k] > NEGLIGIBLE:
+            share = 0.0
+            for i in range(n):
+                share += e.F[i * n + k] * e.r[i]
+            for i in range(n):
+                e.d[i] += e.F[i * n + k] * share / e.values[k]
+
+
+def eliminate(e: Elimination, W: Doubles, stride: int, b: Doubles, ids: Indices, n_a: int, n_k: int, R: Doubles, reduced: Doubles) -> None:
+    """Problem of the contacts alone, R and `reduced`: rows ids[:n_a] of W and b without the joints ids[n_a:n_k].
+
+    R = W - W_J S^-1 W_J^T row by row in one dimension; Z keeps what `joint_impulses` needs.
+    """
+    n_j = n_k - n_a
+    if n_j > 0:
+        factorise_joints(e, W, stride, ids[n_a])
+        for k in range(n_a + 1):
+            for j in range(n_j):
+                e.y[j] = W[ids[n_a + j] * stride + ids[k]] if k < n_a else b[ids[n_a + j]]
+            solve_joints(e, after(e.Z, k * n_j))
+    for i in range(n_a):
+        reduced[i] = b[ids[i]]
+        for j in range(n_j):
+            reduced[i] -= W[ids[i] * stride + ids[n_a + j]] * e.Z[n_a * n_j + j]
+        for k in range(n_a):
+            total = W[ids[i] * stride + ids[k]]
+            for j in range(n_j):
+                total -= W[ids[i] * stride + ids[n_a + j]] * e.Z[k * n_j + j]
+            R[i * n_a + k] = total
+
+
+def joint_impulses(e: Elimination, ids: Indices, n_a: int, n_k: int, p: Doubles) -> None:
+    """Impulses of the joints ids[n_a:n_k] that belong to those of the contacts ids[:n_a], both in p."""
+    n_j = n_k - n_a
+    for j in range(n_j):
+        total = -e.Z[n_a * n_j + j]
+        for k in range(n_a):
+            total -= e.Z[k * n_j + j] * p[ids[k]]
+        p[ids[n_a + j]] = total
+
+
+def distribute(
+    e: Elimination, solution: Doubles, ids: Indices, n_a: int, n_k: int, p: Doubles, n: int
+) -> None:
+    """Impulses of all n rows; zero on those that take no part."""
+    for i in range(n):
+        p[i] = 0.0
+    for k in range(n_a):
+        p[ids[k]] = solution[k]
+    joint_impulses(e, ids, n_a, n_k, p)
