@@ -25,6 +25,7 @@ HEADERS = {
     "lcpstep.kernels.vectors",
     "lcpstep.stepping.pieces.codes",
     "lcpstep.stepping.pieces.quadratic",
+    "lcpstep.stepping.pieces.times",
 }  # merged into the modules that use them
 DIRECTIVES = {
     "language_level": 3,

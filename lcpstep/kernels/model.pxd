@@ -6,6 +6,7 @@ from lcpstep.kernels.function cimport Function
 @cython.final
 cdef class Model:
     cdef object kept
+    cdef readonly dict arrays
     cdef readonly Py_ssize_t n_q, n_c
     cdef readonly bint linear, flat
     cdef public bint carried

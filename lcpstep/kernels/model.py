@@ -27,6 +27,7 @@ class Model:
     carried     kernels see q + c, in which the frame rests and obstacles move with it instead
     frame_now : (n_q, 3)    work space: c, c', c''
     motion_now : (n_c, 3)   work space: s, s', s''
+    arrays      the arrays by name, for Python
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ class Model:
     def __init__(self, fields: dict[str, Any]) -> None:
         own = {name: np.ascontiguousarray(x) for name, x in fields.items() if isinstance(x, np.ndarray)}
         n_c, n_q = own["G"].shape
-        self.kept, self.n_q, self.n_c = (own, fields["called_back"]), n_q, n_c
+        self.arrays, self.kept, self.n_q, self.n_c = own, fields["called_back"], n_q, n_c
         self.linear, self.flat, self.carried = fields["linear"], fields["flat"], fields["carried"]
         self.omega = fields["omega"]
         self.M, self.M_inverse = doubles(own["M"]), doubles(own["M_inverse"])
