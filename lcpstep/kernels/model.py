@@ -57,10 +57,6 @@ class Model:
         self.motion, self.gap, self.jacobian = made["motion"], made["gap"], made["jacobian"]
         self.gap_t, self.bias = made["gap_t"], made["bias"]
 
-    def array(self, name: str) -> Any:
-        """The numbers of a field in the shape given above."""
-        return self.kept[0][name]
-
 
 def shapes(n_q: int, n_c: int) -> dict[str, tuple[int, ...]]:
     """Shapes of what the functions of a scene fill in."""

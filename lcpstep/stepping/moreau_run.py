@@ -50,7 +50,7 @@ class Run:
         self.state = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
         # A portion keeps at most its steps, the given times, and the first and last state.
         self.recorder = Recorder(scene.n_q, self.rows.n, kept, PORTION + len(kept.times) + 2)
-        sizes = scene.q0, self.model.array("offset"), method.h * np.asarray(scene.v0)
+        sizes = scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0)
         size = max(float(np.max(np.abs(x), initial=0.0)) for x in sizes)
         self.slack = RESTING * (size or 1.0)
         self.events = 0
@@ -210,7 +210,7 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
 
     X and W are those of the contacts; with tangents or joints, or where they change, there is but room for them.
     """
-    M, C, K, G = (m.array(name) for name in ("M", "C", "K", "G"))
+    M, C, K, G = (m.arrays[name] for name in ("M", "C", "K", "G"))
     A = M + h * theta * C + (h * theta) ** 2 * K
     inverse: Any = np.linalg.inv(A) if m.linear else np.zeros(A.shape)
     X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
