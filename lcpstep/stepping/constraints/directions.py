@@ -91,9 +91,7 @@ def restitute(u: Doubles, r: Doubles, ids: Indices, n_a: int, b: Doubles) -> Non
         b[ids[k]] += r[ids[k]] * u[ids[k]]
 
 
-def strikes(
-    u: Doubles, v: Doubles, H: Doubles, ids: Indices, n_a: int, b: Doubles, n_q: int
-) -> bool:
+def strikes(u: Doubles, v: Doubles, H: Doubles, ids: Indices, n_a: int, b: Doubles, n_q: int) -> bool:
     """Whether a contact closes faster than the forces of one step could move it; b: rates without restitution."""
     size_v = largest(v, 0.0, n_q)
     for k in range(n_a):
@@ -105,7 +103,15 @@ def strikes(
 
 
 def apply(
-    v: Doubles, v_free: Doubles, X: Doubles, p: Doubles, ids: Indices, n_f: int, n_k: int, v_next: Doubles, n_q: int
+    v: Doubles,
+    v_free: Doubles,
+    X: Doubles,
+    p: Doubles,
+    ids: Indices,
+    n_f: int,
+    n_k: int,
+    v_next: Doubles,
+    n_q: int,
 ) -> bool:
     """v_next = v_free + X^T p; whether that has hardly changed it.
 
@@ -152,7 +158,9 @@ def joints_hold(
     return hold
 
 
-def divide_by_mass(constant: bool, inverse: Doubles, L: Doubles, row: Doubles, out: Doubles, n_q: int) -> None:
+def divide_by_mass(
+    constant: bool, inverse: Doubles, L: Doubles, row: Doubles, out: Doubles, n_q: int
+) -> None:
     """Out <- M^-1 row, by the inverse of a constant mass or else by Cholesky's factor L."""
     copy(out, row, n_q)
     if constant:

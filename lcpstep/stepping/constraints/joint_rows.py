@@ -162,7 +162,17 @@ def apply_inverse(e: Elimination) -> None:
                 e.d[i] += e.F[i * n + k] * share / e.values[k]
 
 
-def eliminate(e: Elimination, W: Doubles, stride: int, b: Doubles, ids: Indices, n_a: int, n_k: int, R: Doubles, reduced: Doubles) -> None:
+def eliminate(
+    e: Elimination,
+    W: Doubles,
+    stride: int,
+    b: Doubles,
+    ids: Indices,
+    n_a: int,
+    n_k: int,
+    R: Doubles,
+    reduced: Doubles,
+) -> None:
     """Problem of the contacts alone, R and `reduced`: rows ids[:n_a] of W and b without the joints ids[n_a:n_k].
 
     R = W - W_J S^-1 W_J^T row by row in one dimension; Z keeps what `joint_impulses` needs.
