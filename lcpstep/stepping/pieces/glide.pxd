@@ -3,7 +3,6 @@ from lcpstep.kernels.dynamics cimport external_force, moves, obstacle
 from lcpstep.kernels.model cimport Model
 from lcpstep.pointers cimport abs, inf
 from lcpstep.stepping.pieces.codes cimport SAME_TIME
-from lcpstep.stepping.pieces.prepare cimport start
 from lcpstep.stepping.pieces.quadratic cimport first_zero, may_reach_zero
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.times cimport within

@@ -12,7 +12,6 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.codes import SAME_TIME
-    from lcpstep.stepping.pieces.prepare import start
     from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within

@@ -15,7 +15,6 @@ from lcpstep.stepping.pieces.jointed cimport joints_failed, turn_with_joints
 from lcpstep.stepping.pieces.keep cimport keep, keep_times
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms
 from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish
-from lcpstep.stepping.pieces.prepare cimport start
 from lcpstep.stepping.pieces.race cimport race
 from lcpstep.stepping.pieces.settle cimport endless, settle
 from lcpstep.stepping.pieces.smooth cimport free_acceleration, measure, respond

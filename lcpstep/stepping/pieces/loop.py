@@ -38,7 +38,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.keep import keep, keep_times
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
-    from lcpstep.stepping.pieces.prepare import start
     from lcpstep.stepping.pieces.race import race
     from lcpstep.stepping.pieces.settle import endless, settle
     from lcpstep.stepping.pieces.smooth import free_acceleration, measure, respond

@@ -41,7 +41,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.times import within
 
 LANDINGS = 6  # Newton iterations onto the surface
-ON_THE_SURFACE = 1 / 16  # of what counts as closed: where these end
+ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
 
 
 def invert_rest(m: Model, plan: Plan, w: Work, rest: float) -> None:
