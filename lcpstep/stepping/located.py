@@ -10,6 +10,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.model import require
 from lcpstep.recording import Kept
 from lcpstep.stepping import located_numba
+from lcpstep.stepping.pieces.adapted import AdaptedRun
 from lcpstep.stepping.pieces.run import Run
 from lcpstep.stepping.steps import check_steps
 from lcpstep.trajectory import Trajectory
@@ -79,8 +80,9 @@ class Located:
         require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
-        if self.order == 2 and self.tolerance is None:
-            return Run(self, scene, kept).finish(progress)
+        if self.order == 2:
+            kind = Run if self.tolerance is None else AdaptedRun
+            return kind(self, scene, kept).finish(progress)
         return located_numba.Run(self, scene, kept).finish(progress)
 
 
