@@ -39,8 +39,8 @@ from lcpstep.stepping.located_event import straighten
 from lcpstep.stepping.located_glide import glide
 from lcpstep.stepping.located_joints import HOOKS, Joined, joined
 from lcpstep.stepping.located_piece import pressed
-from lcpstep.stepping.race import race
 from lcpstep.stepping.pieces.run import Again
+from lcpstep.stepping.race import race
 from lcpstep.stepping.steps import divided, unresolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 

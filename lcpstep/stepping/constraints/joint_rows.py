@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-import numpy as np
 
 if not cython.compiled:
     from math import sqrt

@@ -6,7 +6,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, Record, TIME
+    from lcpstep.kernels.record import LEAD, TIME, Record
     from lcpstep.pointers import after
 
 

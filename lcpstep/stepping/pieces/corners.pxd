@@ -5,7 +5,6 @@ from lcpstep.kernels.vectors cimport product
 from lcpstep.pointers cimport abs, inf, max, min
 from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport turn
 from lcpstep.stepping.pieces.times cimport within
 
 cdef double JUMP

@@ -23,7 +23,6 @@ if not cython.compiled:
     from lcpstep.pointers import abs, inf, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import turn
     from lcpstep.stepping.pieces.times import within
 
 JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does so by rounding

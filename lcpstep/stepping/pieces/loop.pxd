@@ -12,7 +12,6 @@ from lcpstep.stepping.pieces.corners cimport find_corners, obstacles_move
 from lcpstep.stepping.pieces.event cimport event
 from lcpstep.stepping.pieces.glide cimport glide
 from lcpstep.stepping.pieces.jointed cimport joints_failed, turn_with_joints
-from lcpstep.stepping.pieces.joints cimport take
 from lcpstep.stepping.pieces.keep cimport keep, keep_times
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms
 from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish

@@ -35,7 +35,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.event import event
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.jointed import joints_failed, turn_with_joints
-    from lcpstep.stepping.pieces.joints import take
     from lcpstep.stepping.pieces.keep import keep, keep_times
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish

@@ -11,7 +11,6 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, Indices, after, indices_after
-    from lcpstep.stepping.pieces.joints import Joints
 
 VECTORS = [
     "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
@@ -164,7 +163,7 @@ class Work:
     joints : Joints or None
     """
 
-    def __init__(self, n_q: int, n_c: int, joints: Joints | None) -> None:
+    def __init__(self, n_q: int, n_c: int, joints: Any) -> None:
         n_j = 0 if joints is None else joints.n_j
         self.n_q, self.n_c, self.n_j, self.joints, self.joined = n_q, n_c, n_j, joints, joints is not None
         self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 1) * n_c + n_j)
