@@ -29,3 +29,4 @@ cdef class Record:
     cdef Py_ssize_t quiet_until(
         self, Py_ssize_t step, double h, double t0, Py_ssize_t first, Py_ssize_t last
     ) noexcept nogil
+    cdef Py_ssize_t untimed_until(self, double h, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil

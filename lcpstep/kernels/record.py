@@ -101,11 +101,14 @@ class Record:
 
     def quiet_until(self, step: int, h: float, t0: float, first: int, last: int) -> int:
         """The step, at most `last`, up to which none keeps a state; step `first` begins at t0."""
-        end = last
+        end = self.untimed_until(h, t0, first, last)
         if self.every > 0 and step + self.every - 1 - step % self.every < end:
             end = step + self.every - 1 - step % self.every
+        return end
+
+    def untimed_until(self, h: float, t0: float, first: int, last: int) -> int:
+        """The step, at most `last`, up to which none keeps a state at a given time."""
         if self.next_time < self.n_times:
             before = first + whole((self.times[self.next_time] - t0) / h) - 1
-            if before < end:
-                end = before
-        return end
+            return before if before < last else last
+        return last

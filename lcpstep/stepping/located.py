@@ -79,7 +79,7 @@ class Located:
         require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
-        if self.order == 2 and self.tolerance is None:
+        if self.tolerance is None:
             return Run(self, scene, kept).finish(progress)
         return located_numba.Run(self, scene, kept).finish(progress)
 

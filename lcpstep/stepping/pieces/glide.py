@@ -10,14 +10,16 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.codes import SAME_TIME
+    from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
 
 
-def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> None:
+def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, last: int) -> None:
     """Steps of one linear degree of freedom without events, up to the first that may have one.
 
     The arithmetic is that of `step` to the last bit; only the state stays in registers, which halves the time.
@@ -35,7 +37,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
     k = start = w.steps
     while k < last:
         t = t0 + h * (k - first) + h
-        if t > w.high:
+        if t > w.high or record.row + 4 > record.row_capacity:
             break
         inner = within(plan, w, t)
         external_force(m, inner, w.q, w.v, w.next_force)
@@ -66,10 +68,13 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
                 g, u = g + h * (u + h * half), u + 2.0 * h * half
         q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
         k += 1
+        if record.is_due(k):
+            w.q[0], w.v[0] = q, v
+            keep(w, record, t0 + h * (k - first), 0.0)
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:
         w.gap[0], w.rate[0] = g, u
         if k > start:
-            w.turned[0] = -h
+            w.turned[0], w.sigma = -h, 0.0
     w.steps = k
     w.force_evaluations += k - start

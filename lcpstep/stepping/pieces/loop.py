@@ -114,8 +114,11 @@ class Steps:
             while self.w.steps < last:
                 if not self.w.under_way:
                     if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
-                        end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
-                        glide(self.m, self.plan, self.w, t0, first, end)
+                        if self.w.pausing:
+                            end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
+                        else:
+                            end = self.record.untimed_until(self.plan.h, t0, first, last)
+                        glide(self.m, self.plan, self.w, self.record, t0, first, end)
                         if self.w.steps >= last:
                             return FINISHED
                     begin_step(self.w)

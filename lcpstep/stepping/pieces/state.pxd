@@ -102,22 +102,3 @@ cdef class Work:
     cdef void place_numbers(self, double* x)
     cdef void place_marks(self, Py_ssize_t* x)
     cdef void place_matrices(self, double* x)
-
-
-@cython.final
-cdef class Polynomial:
-    cdef object kept
-    cdef double scale
-    cdef double* T
-    cdef double* a
-    cdef double* q
-    cdef double* v
-    cdef double* q_stage
-    cdef double* v_stage
-    cdef double* q_end
-    cdef double* v_end
-    cdef double* gap_from
-    cdef double* rate_from
-    cdef double* gap_to
-    cdef double* rate_to
-    cdef double* rate_now

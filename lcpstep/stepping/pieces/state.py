@@ -12,7 +12,6 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, Indices, after, indices_after
 
-DEGREE = 22  # of the Taylor polynomials
 VECTORS = [
     "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
     "v_from", "a_from", "q_time", "swing", "v_struck",
@@ -244,32 +243,3 @@ class Work:
         self.G, self.G_try, self.MG = x, after(x, n_c * n), after(x, 2 * n_c * n)
         self.M, self.W = after(x, 3 * n_c * n), after(x, (3 * n_c + n) * n)
         self.problem = after(x, (3 * n_c + n) * n + n_c * n_c)
-
-
-class Polynomial:
-    """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events.
-
-    T : (DEGREE + 1, n_q)
-    scale
-    a : (5, n_q)            accelerations of the stages
-    q, v                    state last asked for
-    q_stage, v_stage, q_end, v_end
-    gap_from, rate_from, gap_to, rate_to    gaps and their velocities at both ends of an interval of the scan
-    rate_now
-
-    Parameters
-    ----------
-    n_q, n_c : int   coordinates, contacts
-    """
-
-    def __init__(self, n_q: int, n_c: int) -> None:
-        self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + 5 * n_c)
-        x = doubles(self.kept)
-        self.scale = 1.0
-        self.T, self.a = x, after(x, (DEGREE + 1) * n_q)
-        x = after(x, (DEGREE + 6) * n_q)
-        self.q, self.v, self.q_stage = x, after(x, n_q), after(x, 2 * n_q)
-        self.v_stage, self.q_end, self.v_end = after(x, 3 * n_q), after(x, 4 * n_q), after(x, 5 * n_q)
-        x = after(x, 6 * n_q)
-        self.gap_from, self.rate_from, self.gap_to = x, after(x, n_c), after(x, 2 * n_c)
-        self.rate_to, self.rate_now = after(x, 3 * n_c), after(x, 4 * n_c)
