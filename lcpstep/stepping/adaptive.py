@@ -23,13 +23,14 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.compiled import by_address, inline
+from lcpstep.faults import cause
 from lcpstep.model import failing
 from lcpstep.pace import Pace
 from lcpstep.recording import TIME
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 
 # Why a loop returned, besides its method's own reasons: to have its buffers emptied, and for good
-PAUSED, TOO_SMALL = -1, -2
+REACHED, PAUSED, TOO_SMALL, WANTED = 0, -1, -2, -3
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 LEVELS = 52  # halvings of the longest step, at most
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
@@ -79,6 +80,40 @@ def control(span: tuple[float, float], h: float, tolerance: float, order: int) -
     enough = PLENTY * 0.5**order
     real = np.array([start, end, end - start, h_max, tolerance, enough, 0.0, 0.0, np.inf, 0.0])
     return Control(whole, real)
+
+
+def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
+    """The longest step, at most h; the end of the span in finest steps; the finest level, and the first."""
+    start, end = span
+    coarse = max(1, math.ceil((end - start) / h - WHOLE))
+    h_max = (end - start) / coarse
+    least = 8.0 * RESOLUTION * max(abs(start), abs(end))
+    finest = min(LEVELS, 62 - coarse.bit_length())
+    if least > 0.0:
+        finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
+    first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
+    return h_max, coarse << finest, finest, first
+
+
+def run(control: Any, numbers: int, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
+    """The whole span; 0, or why it could not be reached. `arrive` is called where the loop has returned to Python.
+
+    control : a `step_control.Control`;  numbers : that a step computes with
+    """
+    pace = Pace(LOOK, numbers)
+    while True:
+        try:
+            control.until = pace.goal(control.tried)
+            code = control.advance()
+            cause()
+        finally:
+            arrive()
+        if code == WANTED:
+            control.prepare()
+            continue
+        progress(control.time)
+        if code != PAUSED:
+            return int(code)
 
 
 def advance(steps: Steps, c: Control, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:

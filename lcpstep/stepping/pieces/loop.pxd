@@ -46,5 +46,6 @@ cdef class Steps:
     cdef bint gliding
     cdef Py_ssize_t start(self, double t) noexcept
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)
-    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept
+    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
+    cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last)
     cdef Py_ssize_t step(self, double t) noexcept nogil

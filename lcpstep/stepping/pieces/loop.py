@@ -105,32 +105,32 @@ class Steps:
             return begin_motion(self.m, self.plan, self.w, self.record, t)
 
     def run(self, t0: float, first: int, last: int) -> int:
-        """Steps w.steps .. last - 1, step `first` beginning at t0; says why it returned."""
-        return self.take(t0, first, last)
+        """`take`, called from Python."""
+        with cython.nogil:
+            return self.take(t0, first, last)
 
     def take(self, t0: float, first: int, last: int) -> int:
-        """Kernel of `run`."""
-        with cython.nogil:
-            while self.w.steps < last:
-                if not self.w.under_way:
-                    if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
-                        if self.w.pausing:
-                            end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
-                        else:
-                            end = self.record.untimed_until(self.plan.h, t0, first, last)
-                        glide(self.m, self.plan, self.w, self.record, t0, first, end)
-                        if self.w.steps >= last:
-                            return FINISHED
-                    begin_step(self.w)
-                t = t0 + self.plan.h * (self.w.steps - first)
-                code = self.step(t)
-                if code != FINISHED:
-                    return code
-                t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
-                code = end_step(self.plan, self.w, self.record, t_next)
-                if code != FINISHED:
-                    return code
-            return FINISHED
+        """Steps w.steps .. last - 1, step `first` beginning at t0; says why it returned."""
+        while self.w.steps < last:
+            if not self.w.under_way:
+                if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
+                    if self.w.pausing:
+                        end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
+                    else:
+                        end = self.record.untimed_until(self.plan.h, t0, first, last)
+                    glide(self.m, self.plan, self.w, self.record, t0, first, end)
+                    if self.w.steps >= last:
+                        return FINISHED
+                begin_step(self.w)
+            t = t0 + self.plan.h * (self.w.steps - first)
+            code = self.step(t)
+            if code != FINISHED:
+                return code
+            t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
+            code = end_step(self.plan, self.w, self.record, t_next)
+            if code != FINISHED:
+                return code
+        return FINISHED
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""

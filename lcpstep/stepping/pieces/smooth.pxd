@@ -16,7 +16,7 @@ from lcpstep.stepping.pieces.times cimport within
 cdef Py_ssize_t LANDINGS
 cdef double ON_THE_SURFACE
 
-cdef void invert_rest(Model m, Plan plan, Work w, double rest) noexcept nogil
+cdef void invert(Model m, Plan plan, Work w, double rest, Py_ssize_t place) noexcept nogil
 @cython.locals(place=Py_ssize_t)
 cdef Py_ssize_t accelerate(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef bint free_acceleration(Model m, Work w, double t, double* q, double* v, double* out) noexcept nogil

@@ -44,13 +44,13 @@ LANDINGS = 6  # Newton iterations onto the surface
 ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
 
 
-def invert_rest(m: Model, plan: Plan, w: Work, rest: float) -> None:
-    """A^-1 for the rest of a step, and what contacts need of it."""
+def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
+    """A^-1 for a piece as long as `rest`, and what contacts need of it, into a place."""
     n, n_c = w.n_q, w.n_c
     inverse, AG, WA = (
-        after(plan.A_inverse, REST * n * n),
-        after(plan.AG, REST * n_c * n),
-        after(plan.WA, REST * n_c * n_c),
+        after(plan.A_inverse, place * n * n),
+        after(plan.AG, place * n_c * n),
+        after(plan.WA, place * n_c * n_c),
     )
     if n == 1:
         A = m.M[0] + 0.5 * rest * m.C[0] + 0.25 * rest * rest * m.K[0]
@@ -81,7 +81,7 @@ def accelerate(m: Model, plan: Plan, w: Work, t: float) -> int:
         return place
     if place == REST:
         if plan.small:
-            invert_rest(m, plan, w, rest)
+            invert(m, plan, w, rest, REST)
         else:
             place = WHOLE
     n = w.n_q

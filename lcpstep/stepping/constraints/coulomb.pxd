@@ -1,0 +1,32 @@
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.vectors cimport clear
+from lcpstep.lcp.kernel cimport solve_small
+from lcpstep.lcp.workspace cimport Workspace
+from lcpstep.pointers cimport abs, max, min
+
+cdef double DEGENERATE, ROUNDING
+cdef Py_ssize_t SOLVED
+
+
+cdef class ContactProblem:
+    cdef readonly object arrays
+    cdef object lists
+    cdef double* mobility
+    cdef double* rate
+    cdef double* impulse
+    cdef double* mu
+    cdef double* W
+    cdef double* b
+    cdef double* z
+    cdef Py_ssize_t* ids
+    cdef Py_ssize_t* carrier
+    cdef bint warm
+    cdef Workspace work
+
+
+cdef bint solve_contacts(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint solve_normals(ContactProblem c, Py_ssize_t n_a) noexcept nogil
+cdef bint solve_frictional(double* R, double* b, double mu, double* p) noexcept nogil
+cdef bint solve_three_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint solve_four_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef void begin(ContactProblem c, Py_ssize_t m, Py_ssize_t n) noexcept nogil

@@ -1,0 +1,13 @@
+"""Why the loop of the theta-method returned: a status of the run, or what Python is to do before it goes on."""
+
+from __future__ import annotations
+
+from lcpstep.trajectory import Kind, Status
+
+FINISHED, NOT_FINITE, LCP_FAILED = int(Status.DONE), int(Status.NOT_FINITE), int(Status.LCP_FAILED)
+NEWTON_FAILED, JOINTS_FAILED = int(Status.NEWTON_FAILED), int(Status.JOINTS_FAILED)
+PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
+LOG_FULL, NEED_LCP = -1, -2  # empty the record; solve the problem at hand
+# Kinds of events
+IMPACT, STICK, RELEASE = int(Kind.IMPACT), int(Kind.STICK), int(Kind.RELEASE)
+MAX_ITERATIONS = 25  # of Newton, per step

@@ -1,0 +1,15 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport mass, total_force
+from lcpstep.kernels.linear cimport factorise, positive_definite, solve
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport add, copy, largest
+from lcpstep.stepping.theta_method.moving cimport State
+from lcpstep.stepping.theta_method.plan cimport Plan
+
+cdef double DIFFERENCE
+cdef Py_ssize_t REFRESH
+
+@cython.locals(fresh=bint, given=bint)
+cdef bint linearise(Model m, Plan plan, State s, double t, double t_next) noexcept nogil
+cdef void residual(Model m, Plan plan, State s, double t_next, double* v) noexcept nogil
+cdef void given_jacobian(Model m, Plan plan, State s, double t_next) noexcept nogil

@@ -1,0 +1,85 @@
+"""One Newton iteration of the theta-method for a general system M(t, q) v' = f(t, q, v).
+
+The step's velocity v solves, with q(v) = q_i + h [theta v + (1-theta) v_i],
+
+    R(v) = M_theta (v - v_i) - h [theta f(t+h, q(v), v) + (1-theta) f(t, q_i, v_i)] = G^T p,
+    M_theta = theta M(t+h, q(v)) + (1-theta) M(t, q_i)
+
+and is linearised as R(v_k) + A (v - v_k): v_free = v_k - A^-1 R(v_k), A ~ dR/dv. For constant M, C, K this is
+the linear theta-method and one iteration is exact. A is made at the start of a step, and again where that is slow.
+Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), section 10.1.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import mass, total_force
+    from lcpstep.kernels.linear import factorise, positive_definite, solve
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import add, copy, largest
+    from lcpstep.pointers import Doubles
+    from lcpstep.stepping.theta_method.moving import State
+    from lcpstep.stepping.theta_method.plan import Plan
+
+DIFFERENCE = 1e-7  # relative; A only steers the iteration, its error does not enter the motion
+REFRESH = 5  # iterations with one A
+
+
+def linearise(m: Model, plan: Plan, s: State, t: float, t_next: float) -> bool:
+    """v_free about next_v, and the factors of A; False if A is singular or not finite."""
+    n, fresh = s.n_q, s.iteration % REFRESH == 0
+    given = m.force_q.given and m.force_v.given
+    if s.iteration == 0:
+        mass(m, t, s.q, s.v, s.M_start)
+        copy(s.J, s.M_start, n * n)
+        if not positive_definite(s.J, n):
+            return False
+    shift = DIFFERENCE * largest(s.next_v, 1e-3, n)
+    for j in range(n if fresh and not given else 0, -1, -1):  # the last one at next_v itself
+        copy(s.try_v, s.next_v, n)
+        if j > 0:
+            s.try_v[j - 1] += shift
+        residual(m, plan, s, t_next, s.try_v)
+        for i in range(n if j > 0 else 0):
+            s.A[i * n + j - 1] = s.R[i] / shift
+    copy(s.next_force, s.try_f, n)
+    if fresh:
+        if given:
+            given_jacobian(m, plan, s, t_next)
+        else:
+            for i in range(n):
+                for j in range(n):
+                    s.A[i * n + j] -= s.R[i] / shift
+        if not factorise(s.A, s.pivots, n):
+            return False
+    solve(s.A, s.pivots, s.R, n)
+    for i in range(n):
+        s.v_free[i] = s.next_v[i] - s.R[i]
+    return True
+
+
+def residual(m: Model, plan: Plan, s: State, t_next: float, v: Doubles) -> None:
+    """R(v) into s.R; leaves q(v), M_theta and f(t+h, q(v), v) in the work space."""
+    n, theta, h = s.n_q, plan.theta, plan.h
+    for i in range(n):
+        s.try_q[i] = s.q[i] + h * (theta * v[i] + (1.0 - theta) * s.v[i])
+    mass(m, t_next, s.try_q, v, s.M)
+    total_force(m, t_next, s.try_q, v, s.try_f)
+    s.forces += 1
+    for i in range(n):
+        s.R[i] = -h * (theta * s.try_f[i] + (1.0 - theta) * s.force[i])
+        for j in range(n):
+            s.M[i * n + j] = theta * s.M[i * n + j] + (1.0 - theta) * s.M_start[i * n + j]
+            s.R[i] += s.M[i * n + j] * (v[j] - s.v[j])
+
+
+def given_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
+    """A = M_theta - h theta (df/dv + h theta df/dq), the change of M left out."""
+    n, ht = s.n_q, plan.h * plan.theta
+    copy(s.A, s.M, n * n)
+    m.force_v.fill(t_next, s.try_q, s.next_v, s.J)
+    add(s.A, -ht, s.J, n * n)
+    m.force_q.fill(t_next, s.try_q, s.next_v, s.J)
+    add(s.A, -ht * ht, s.J, n * n)

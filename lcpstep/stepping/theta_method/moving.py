@@ -1,0 +1,125 @@
+"""Where the motion of a scene is, and what a step works in: its state, and the rows of its constraints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import after
+    from lcpstep.stepping.constraints.coulomb import ContactProblem
+    from lcpstep.stepping.constraints.joint_rows import Elimination
+
+VECTORS, SQUARES = 11, 4  # of n_q numbers, and of n_q^2
+
+
+class State:
+    """Position, velocity, gaps and forces; and the work space of a step.
+
+    n_q, n_c
+    q, v, force      (n_q,) force: F(t), of a general system f(t, q, v)
+    g, u, closed     (n_c,) gaps and their velocities; 0 open, 1 struck in the last step, 2 closed for several steps
+    impulse          (n,) of all rows since the last kept state
+    next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
+    q_between, v_between                  a state within it
+    R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
+    steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
+
+    Parameters
+    ----------
+    q, v : (n_q,);  n_c, n : int   contacts and rows
+    """
+
+    def __init__(self, q: Any, v: Any, n_c: int, n: int) -> None:
+        self.n_q, self.n_c, n_q = len(q), n_c, len(q)
+        self.arrays = {"q": np.array(q), "v": np.array(v), "impulse": np.zeros(n)}
+        self.arrays |= {"g": np.zeros(n_c), "u": np.zeros(n_c), "closed": np.zeros(n_c, dtype=np.intp)}
+        self.work, self.order = np.zeros((VECTORS + SQUARES * n_q) * n_q), np.zeros(n_q, dtype=np.intp)
+        self.q, self.v = doubles(self.arrays["q"]), doubles(self.arrays["v"])
+        self.g, self.u = doubles(self.arrays["g"]), doubles(self.arrays["u"])
+        self.closed, self.impulse = indices(self.arrays["closed"]), doubles(self.arrays["impulse"])
+        self.steps = self.problems = self.forces = self.iteration = 0
+        self.force = doubles(self.work)
+        self.next_force = after(self.force, n_q)
+        self.next_q = after(self.next_force, n_q)
+        self.next_v = after(self.next_q, n_q)
+        self.v_free = after(self.next_v, n_q)
+        self.q_between = after(self.v_free, n_q)
+        self.v_between = after(self.q_between, n_q)
+        self.R = after(self.v_between, n_q)
+        self.try_v = after(self.R, n_q)
+        self.try_q = after(self.try_v, n_q)
+        self.try_f = after(self.try_q, n_q)
+        self.M = after(self.try_f, n_q)
+        self.M_start = after(self.M, n_q * n_q)
+        self.A = after(self.M_start, n_q * n_q)
+        self.J = after(self.A, n_q * n_q)
+        self.pivots = indices(self.order)
+
+
+class Rows:
+    """Joints and tangents of a scene, and the rows of a step: all normals first, then tangents, then joints.
+
+    joints, tangents       models, their rows in the place of the contacts': see `lcpstep.model`
+    n_c, n_t, n_j, n       contacts, tangents (none or n_c), joints, and all of them
+    projected, turning     positions are repaired; joints' rows change
+    H : (n, n_q)           rows of the velocities: H v + H_t is the rate; T and J: those of tangents and of joints
+    H_t : (n,)             likewise T_t, J_t
+    J_start : (n_j, n_q)   at the start of the step
+    D : (n_j, n_q)         directions of the joints' forces
+    b, p : (n,)            rates without impulses, with restitution; impulses
+    sliding : (n_t,)       sliding velocities at the start of the step
+    tangent_restitution : (n_c,)
+    failed : (n_j,)        1 for joints that contradict others
+    problem                of the contacts, with `ids`, the rows that take part
+    elimination            of the joints
+    near, gaps, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, (n_c,) and
+                           (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q); H M^-1 H^T, (n, n); multipliers, (n,)
+
+    Parameters
+    ----------
+    joints, tangents : Model;  n_c, n_t : int;  tangent_restitution : (n_c,);  projected : bool
+    problem : ContactProblem for n rows
+    """
+
+    def __init__(
+        self,
+        joints: Model,
+        tangents: Model,
+        n_c: int,
+        n_t: int,
+        tangent_restitution: Any,
+        projected: bool,
+        problem: ContactProblem,
+    ) -> None:
+        n_q, n_j = joints.n_q, joints.n_c
+        n = n_c + n_t + n_j
+        self.joints, self.tangents, self.problem = joints, tangents, problem
+        self.n_c, self.n_t, self.n_j, self.n = n_c, n_t, n_j, n
+        self.projected, self.turning = projected, not joints.flat
+        self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
+        self.tangent_restitution = doubles(tangent_restitution)
+        self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
+        self.numbers = np.zeros((n + 2 * n_j) * n_q + 2 * n + n_t)
+        self.H = doubles(self.numbers)
+        self.T, self.J = after(self.H, n_c * n_q), after(self.H, (n_c + n_t) * n_q)
+        self.J_start = after(self.H, n * n_q)
+        self.D = after(self.J_start, n_j * n_q)
+        self.H_t = after(self.D, n_j * n_q)
+        self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
+        self.b = after(self.H_t, n)
+        self.sliding = after(self.b, n)
+        self.elimination = Elimination(n_j, n_c)
+        self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
+        self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
+        self.near = indices(self.looked_at)
+        self.gaps = doubles(self.repair)
+        self.joint_gaps = after(self.gaps, n_c)
+        self.push = after(self.joint_gaps, n_j)
+        self.M = after(self.push, n)
+        self.Y = after(self.M, n_q * n_q)
+        self.S = after(self.Y, n * n_q)

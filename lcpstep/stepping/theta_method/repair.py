@@ -1,0 +1,95 @@
+"""Positions put back onto joints and out of obstacles, after a step whose velocities are kept.
+
+The velocity of a step obeys g' >= 0 and g' = 0 at one position; the gaps themselves drift. The smallest change of the
+position, in the metric of the mass, that repairs them,
+
+    minimise (q - q+)^T M (q - q+) / 2    with  g_J(t, q) = 0  on joints  and  g(t, q) >= 0  on contacts,
+
+is found by Newton's method: q <- q + M^-1 (G_J^T mu + G^T lambda), where 0 <= lambda is complementary to
+g + G M^-1 G^T lambda >= 0. Kinetic energy is that of the velocities, so with a constant mass it does not change.
+
+Source: T. Schindler, S. Rezaei, J. Kursawe, V. Acary, Comput. Methods Appl. Mech. Engrg. 290 (2015) 250, combined
+projection; V. Acary, Appl. Numer. Math. 73 (2013) 43.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates, gaps, mass
+    from lcpstep.kernels.linear import positive_definite
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import abs, after, inf, max
+    from lcpstep.stepping.constraints.coulomb import solve_contacts
+    from lcpstep.stepping.constraints.directions import divide_by_mass, mobilities
+    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+
+PROJECTIONS = 20  # of Newton
+STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
+
+
+def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
+    """Correct next_q at time t; says whether a position was found that satisfies all."""
+    for i in range(c.n_c):
+        c.near[i] = 0
+    before = inf
+    for _ in range(PROJECTIONS):
+        if c.n_c > 0:
+            gaps(m, t, s.next_q, s.next_v, c.gaps)
+        if c.n_j > 0:
+            gaps(c.joints, t, s.next_q, s.next_v, c.joint_gaps)
+        worst = 0.0
+        for i in range(c.n_c):
+            worst = max(worst, -c.gaps[i])
+        for i in range(c.n_j):
+            worst = max(worst, abs(c.joint_gaps[i]))
+        if worst <= plan.slack or 0.5 * before < worst <= STALLED * plan.slack:
+            return FINISHED
+        if not worst < inf:
+            return PROJECTION_FAILED
+        before = worst
+        if not correct(m, s, c, t):
+            return LCP_FAILED
+    return PROJECTION_FAILED
+
+
+def correct(m: Model, s: State, c: Rows, t: float) -> bool:
+    """One step of Newton's method; False where the linearised gaps allow no position."""
+    n_a = 0
+    # A contact once in danger stays in the problem, so that none is pushed through another.
+    for i in range(c.n_c):
+        if c.gaps[i] < 0.0 or c.p[i] > 0.0:
+            c.near[i] = 1
+        if c.near[i] == 1:
+            c.problem.ids[n_a] = i
+            n_a += 1
+    for j in range(c.n_j):
+        c.problem.ids[n_a + j] = c.n_c + c.n_t + j
+    if n_a > 0:
+        gap_rates(m, t, s.next_q, s.next_v, c.H, c.H_t)
+    if c.n_j > 0:
+        gap_rates(c.joints, t, s.next_q, s.next_v, c.J, c.J_t)
+    if not m.linear:
+        mass(m, t, s.next_q, s.next_v, c.M)
+        if not positive_definite(c.M, s.n_q):
+            return False
+    n_k = n_a + c.n_j
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        c.b[i] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
+        divide_by_mass(m.linear, m.M_inverse, c.M, after(c.H, i * s.n_q), after(c.Y, i * s.n_q), s.n_q)
+    mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
+    eliminate(c.elimination, c.S, c.n, c.b, c.problem.ids, n_a, n_k, c.problem.mobility, c.problem.rate)
+    if n_a > 0 and not solve_contacts(c.problem, n_a, 0):
+        return False
+    distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a, n_k, c.push, c.n)
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        for j in range(s.n_q):
+            s.next_q[j] += c.Y[i * s.n_q + j] * c.push[i]
+    return True

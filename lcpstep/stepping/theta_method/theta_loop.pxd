@@ -1,0 +1,32 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle, total_force
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.vectors cimport copy, finite, product
+from lcpstep.pointers cimport min, whole
+from lcpstep.stepping.theta_method.moving cimport Rows, State
+from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.theta_step cimport constant_rows, take_step
+
+cdef Py_ssize_t FINISHED, LOG_FULL, NOT_FINITE
+cdef double LATE
+
+cdef void begin(Model m, State s, Rows c, Record record, double t, double side) noexcept nogil
+@cython.locals(single=bint)
+cdef Py_ssize_t run(
+    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external,
+    bint solved,
+) noexcept nogil
+cdef Py_ssize_t quiet_until(Record record, double h, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
+cdef void coast(
+    Model m, Plan plan, State s, Record record, double t0, Py_ssize_t first, Py_ssize_t last
+) noexcept nogil
+cdef void advance(Model m, State s, Rows c, double t) noexcept nogil
+cdef void measure(Model m, State s, Rows c, double t) noexcept nogil
+cdef void keep_times(double h, State s, Record record, double t, double t_next) noexcept nogil
+cpdef Py_ssize_t go(
+    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external,
+    bint solved,
+)
+cpdef begin_at(Model m, State s, Rows c, Record record, double t, double side)
+cpdef prepare(Model m, Plan plan, State s, Rows c, double t)

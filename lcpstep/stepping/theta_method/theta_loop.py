@@ -1,0 +1,182 @@
+"""The loop of the Moreau theta-method over steps of one size; one step: `theta_step`.
+
+What all ends have in common: a state is looked at, and kept, when its step is complete.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL, NOT_FINITE
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, finite, product
+    from lcpstep.pointers import min, whole
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.theta_step import constant_rows, take_step
+
+LATE = 1e-9  # of a step: what rounding may take from the last one's end
+
+
+def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
+    """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
+    if m.linear:
+        external_force(m, side, s.q, s.v, s.force)
+    else:
+        total_force(m, side, s.q, s.v, s.force)
+    s.forces += 1
+    measure(m, s, c, side)
+    if record.n_times == 0:
+        record.keep(t, 0.0, s.q, s.v, s.impulse)
+    elif record.times[0] == t:
+        record.keep(t, 0.0, s.q, s.v, s.impulse)
+        record.next_time = 1
+
+
+def run(
+    m: Model,
+    plan: Plan,
+    s: State,
+    c: Rows,
+    record: Record,
+    t0: float,
+    first: int,
+    last: int,
+    external: bool,
+    solved: bool,
+) -> int:
+    """Steps s.steps .. last - 1, step `first` beginning at t0; says why it returned.
+
+    `external`, `solved`: see `take_step`.
+    """
+    single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1 and c.n == 1 and not c.projected
+    while s.steps < last:
+        if record.full(2 * s.n_c):
+            return LOG_FULL
+        if single and s.closed[0] == 0 and not solved:
+            coast(m, plan, s, record, t0, first, quiet_until(record, plan.h, t0, first, last))
+            if not (finite(s.g, 1) and finite(s.u, 1)):
+                return NOT_FINITE
+            if s.steps >= last:
+                return FINISHED
+        t, t_next = t0 + plan.h * (s.steps - first), t0 + plan.h * (s.steps + 1 - first)
+        events = record.event
+        code = take_step(m, plan, s, c, record, t, t_next, external, solved)
+        if code != FINISHED:
+            return code
+        solved = False
+        keep_times(plan.h, s, record, t, t_next)
+        advance(m, s, c, t_next)
+        if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
+            return NOT_FINITE
+        if record.is_due(s.steps) or (record.on_events and record.event > events):
+            record.keep(t_next, 0.0, s.q, s.v, s.impulse)
+    return FINISHED
+
+
+def quiet_until(record: Record, h: float, t0: float, first: int, last: int) -> int:
+    """The step, at most `last`, up to which none holds a time at which a state is asked for."""
+    if record.next_time < record.n_times:
+        before = first + whole((record.times[record.next_time] - t0) / h) - 1
+        return before if before < last else last
+    return last
+
+
+def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int, last: int) -> None:
+    """Free steps of one linear degree of freedom, up to the first in which its contact is active.
+
+    The arithmetic is that of a step to the last bit; only the state stays in registers, which halves the time.
+    """
+    h, theta = plan.h, plan.theta
+    A_f, A_q, A_v = plan.A_f[0], plan.A_q[0], plan.A_v[0]
+    G, offset, slack = m.G[0], m.offset[0], plan.slack
+    q, v, g, u, f = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0]
+    k = s.steps
+    left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
+    while k < last and g + 0.5 * h * u > slack:
+        t = t0 + h * (k + 1 - first)
+        external_force(m, t, s.q, s.v, s.next_force)
+        f_next = s.next_force[0]
+        v_next = v + (A_f * (theta * f_next + (1.0 - theta) * f) - A_q * q - A_v * v)
+        if v_next - v_next != 0.0:
+            break
+        q += h * (theta * v_next + (1.0 - theta) * v)
+        v, f = v_next, f_next
+        obstacle(m, t, s.q, s.v)
+        g = offset - m.motion_now[0] + G * q
+        u = G * v - m.motion_now[1]
+        k += 1
+        left -= 1
+        if left == 0 and g - g == 0.0 and u - u == 0.0:
+            s.q[0], s.v[0], left = q, v, record.every
+            record.keep(t, 0.0, s.q, s.v, s.impulse)
+    s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
+    s.forces += k - s.steps
+    s.steps = k
+
+
+def advance(m: Model, s: State, c: Rows, t: float) -> None:
+    """Take over next_q, next_v; gaps and gap velocities at the new state; one step more."""
+    copy(s.q, s.next_q, s.n_q)
+    copy(s.v, s.next_v, s.n_q)
+    copy(s.force, s.next_force, s.n_q)
+    measure(m, s, c, t)
+    s.steps += 1
+
+
+def measure(m: Model, s: State, c: Rows, t: float) -> None:
+    """Gaps and gap velocities of the current state."""
+    n_c = s.n_c
+    if n_c == 0:
+        return
+    gaps(m, t, s.q, s.v, s.g)
+    if m.flat:  # the obstacle's velocity came with the gap
+        for i in range(n_c):
+            s.u[i] = product(m.G, s.v, i, s.n_q) - m.motion_now[3 * i + 1]
+        return
+    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
+    for i in range(n_c):
+        s.u[i] = product(c.H, s.v, i, s.n_q) + c.H_t[i]
+
+
+def keep_times(h: float, s: State, record: Record, t: float, t_next: float) -> None:
+    """Keep the states asked for within the step, q and v interpolated linearly."""
+    while record.next_time < record.n_times and record.times[record.next_time] <= t_next + LATE * h:
+        at = record.times[record.next_time]
+        share = min(1.0, (at - t) / (t_next - t))
+        for i in range(s.n_q):
+            s.q_between[i] = (1.0 - share) * s.q[i] + share * s.next_q[i]
+            s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
+        record.keep(at, 0.0, s.q_between, s.v_between, s.impulse)
+        record.next_time += 1
+
+
+def go(
+    m: Model,
+    plan: Plan,
+    s: State,
+    c: Rows,
+    record: Record,
+    t0: float,
+    first: int,
+    last: int,
+    external: bool,
+    solved: bool,
+) -> int:
+    """`run`, called from Python."""
+    with cython.nogil:
+        return run(m, plan, s, c, record, t0, first, last, external, solved)
+
+
+def begin_at(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
+    """`begin`, called from Python."""
+    begin(m, s, c, record, t, side)
+
+
+def prepare(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
+    """The matrices X and W of a plan in which they are constant, called from Python."""
+    constant_rows(m, plan, s, c, t)

@@ -1,0 +1,299 @@
+"""One step of the Moreau theta-method, from t to t + h, with contacts, tangents and joints as rows of one problem.
+
+    v_free  velocity without contact (a theta-method: linear systems by constant matrices, others by Newton)
+    active  contacts whose predicted gap g + (h/2) u is not positive
+    p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t
+            law of friction and impact on their tangents, see `constraints.coulomb`
+            G_J v+ + g_t = 0  on joints, see `constraints.joint_rows`
+    v+      v_free + A^-1 (G^T p_N + T^T p_T + D_J^T p_J),        D_J = theta G_J(q+) + (1 - theta) G_J(q)
+    q+      q + h [theta v+ + (1 - theta) v]
+
+For moving obstacles g_t is taken at the end of the step in u+ and at its start in u, so that relative and absolute
+coordinates obey the same law. The joints' rows are taken at the end of the step, which is iterated for; their force
+acts along the average of its two ends, which makes the step of second order for theta = 1/2 where nothing strikes.
+Restitution on the tangent belongs to impacts: it is left out in steps in which no contact closes faster than the
+forces of one step could move it, so that what slides comes to rest.
+
+Source: G. Osorio, Complex Behavior in Impacting Systems, eqs. 3.17-3.34; V. Acary, B. Brogliato, Numerical
+Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 10.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.stepping.theta_method.codes import (
+    FINISHED,
+    IMPACT,
+    JOINTS_FAILED,
+    LCP_FAILED,
+    MAX_ITERATIONS,
+    NEED_LCP,
+    NEWTON_FAILED,
+    NOT_FINITE,
+    RELEASE,
+    STICK,
+)
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
+    from lcpstep.kernels.linear import solve
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import clear, copy, finite, product
+    from lcpstep.pointers import Doubles, after
+    from lcpstep.stepping.constraints.coulomb import solve_contacts
+    from lcpstep.stepping.constraints.directions import (
+        apply,
+        average,
+        joints_hold,
+        mobilities,
+        position,
+        rates,
+        restitute,
+        strikes,
+        take_part,
+        usable,
+    )
+    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
+    from lcpstep.stepping.theta_method.implicit import linearise
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.repair import project
+
+REFRESH = 5  # iterations with one A, see `implicit`
+
+
+def take_step(
+    m: Model,
+    plan: Plan,
+    s: State,
+    c: Rows,
+    record: Record,
+    t: float,
+    t_next: float,
+    external: bool,
+    solved: bool,
+) -> int:
+    """One step into next_q, next_v and the impulses; its events are noted. Says how it went.
+
+    `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
+    """
+    n_a = predict_active(plan, s, c)
+    code = step(m, plan, s, c, n_a, t, t_next, external, solved)
+    while c.projected and code == FINISHED:
+        more = closes_again(m, plan, s, c, n_a, t_next)
+        if more == n_a:
+            break
+        n_a = more
+        code = step(m, plan, s, c, n_a, t, t_next, external, solved)
+    if code != FINISHED:
+        return code
+    log_events(m, s, c, record, t_next)
+    for i in range(c.n):
+        s.impulse[i] += c.p[i]
+    return project(m, plan, s, c, t_next) if c.projected else FINISHED
+
+
+def predict_active(plan: Plan, s: State, c: Rows) -> int:
+    """Contacts with g + (h/2) u <= 0, up to rounding, first of the rows that take part; their number."""
+    n_a = 0
+    for i in range(c.n_c):
+        if s.g[i] + 0.5 * plan.h * s.u[i] <= plan.slack:
+            c.problem.ids[n_a] = i
+            n_a += 1
+    return n_a
+
+
+def closes_again(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float) -> int:
+    """Make those contacts active that were left out, were closed before, and are entered; how many are active.
+
+    A projected gap is zero, not below, so that the prediction g + (h/2) u alone would open what rests.
+    """
+    if c.n_c > 0:
+        gaps(m, t_next, s.next_q, s.next_v, c.gaps)
+    more = n_a
+    for i in range(c.n_c):
+        entered = s.closed[i] > 0 and c.gaps[i] < -plan.slack
+        for k in range(n_a):
+            entered = entered and c.problem.ids[k] != i
+        if entered:
+            c.problem.ids[more] = i
+            more += 1
+    return more
+
+
+def step(
+    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t: float, t_next: float, external: bool, solved: bool
+) -> int:
+    """One step with n_a active contacts into next_q, next_v, and the impulses."""
+    n_f = take_part(c.problem.ids, c.problem.carrier, c.problem.mu, n_a, c.n_c, c.n_t, c.n_j)
+    n_k = n_a + n_f + c.n_j
+    if n_a > 0:
+        predicted_rates(m, plan, s, c, t_next)
+    if n_f > 0:
+        tangent_rates(s, c, t, t_next)
+    if c.n_j > 0:
+        gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
+    clear(c.p, c.n)
+    if not solved:
+        copy(s.next_v, s.v, s.n_q)
+        s.iteration = 0
+    if m.linear:
+        free_velocity(m, plan, s, t_next)
+    while True:
+        if c.n_j > 0:
+            position(plan.h, plan.theta, s.q, s.v, s.next_v, s.next_q, s.n_q)
+        if not m.linear and not linearise(m, plan, s, t, t_next):
+            return NOT_FINITE
+        if not finite(s.v_free, s.n_q):
+            return NOT_FINITE
+        if n_k > 0:
+            code = impulses(m, plan, s, c, n_a, n_f, t_next, external, solved)
+            if code != FINISHED:
+                return code
+            solved = False
+        converged = apply(s.v, s.v_free, plan.X, c.p, c.problem.ids, n_f, n_k, s.next_v, s.n_q)
+        if converged or (m.linear and not c.turning):
+            break
+        s.iteration += 1
+        if s.iteration >= MAX_ITERATIONS:
+            return NEWTON_FAILED
+    position(plan.h, plan.theta, s.q, s.v, s.next_v, s.next_q, s.n_q)
+    if c.n_j == 0:
+        return FINISHED
+    hold = joints_hold(
+        c.J, c.J_t, c.J_start, c.n_j, s.v, s.v_free, s.next_v, s.n_q, plan.X, c.p, c.n, c.turning, c.failed
+    )
+    return FINISHED if hold else JOINTS_FAILED
+
+
+def predicted_rates(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> None:
+    """G and g_t at the end of the step, at the position predicted by the velocity of its start."""
+    for i in range(s.n_q):
+        s.next_q[i] = s.q[i] + plan.h * s.v[i]
+    gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
+
+
+def tangent_rates(s: State, c: Rows, t: float, t_next: float) -> None:
+    """Sliding velocities at the start of the step; T and T_t at its end, where it is predicted."""
+    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
+    for i in range(c.n_t):
+        c.sliding[i] = product(c.T, s.v, i, s.n_q) + c.T_t[i]
+    gap_rates(c.tangents, t_next, s.next_q, s.v, c.T, c.T_t)
+
+
+def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
+    """v_free = v + A^-1 (-h C v - h K q - h^2 theta K v + h [theta F(t+h) + (1-theta) F(t)])."""
+    n, theta = s.n_q, plan.theta
+    external_force(m, t_next, s.q, s.v, s.next_force)
+    s.forces += 1
+    for i in range(n):
+        total = s.v[i]
+        for j in range(n):
+            k = i * n + j
+            total += (
+                plan.A_f[k] * (theta * s.next_force[j] + (1.0 - theta) * s.force[j])
+                - plan.A_q[k] * s.q[j]
+                - plan.A_v[k] * s.v[j]
+            )
+        s.v_free[i] = total
+
+
+def impulses(
+    m: Model,
+    plan: Plan,
+    s: State,
+    c: Rows,
+    n_a: int,
+    n_f: int,
+    t_next: float,
+    external: bool,
+    solved: bool,
+) -> int:
+    """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
+    n_k = n_a + n_f + c.n_j
+    if c.n_j > 0:
+        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
+    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
+        respond(m.linear, plan, s, c, n_k)
+    rates(c.H, c.H_t, s.v_free, c.problem.ids, n_k, n_a + n_f if n_f > 0 else 0, c.b, s.n_q)
+    if not usable(c.b, plan.W, c.problem.ids, n_k, c.n):
+        return NOT_FINITE
+    impact = n_f > 0 and strikes(s.u, s.v, c.H, c.problem.ids, n_a, c.b, s.n_q)
+    restitute(s.u, m.restitution, c.problem.ids, n_a, c.b)
+    for f in range(n_f if impact else 0):
+        i = c.problem.ids[c.problem.carrier[f]]
+        c.b[c.problem.ids[n_a + f]] += c.tangent_restitution[i] * c.sliding[i]
+    eliminate(
+        c.elimination,
+        plan.W,
+        c.n,
+        c.b,
+        c.problem.ids,
+        n_a + n_f,
+        n_k,
+        c.problem.mobility,
+        c.problem.rate,
+    )
+    if n_a > 0:
+        if external and not solved:
+            return NEED_LCP
+        s.problems += 1
+        if not solved and not solve_contacts(c.problem, n_a, n_f):
+            return LCP_FAILED
+    distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a + n_f, n_k, c.p, c.n)
+    return FINISHED
+
+
+def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
+    """A^-1 times the directions of the rows that take part, and their mobilities."""
+    n, first_joint = s.n_q, c.n_c + c.n_t
+    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
+        compliance(linear, plan, s, row, after(plan.X, i * n))
+    mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
+
+
+def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -> None:
+    """Out <- A^-1 row."""
+    if linear:
+        for i in range(s.n_q):
+            out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
+    else:
+        copy(out, row, s.n_q)
+        solve(s.A, s.pivots, out, s.n_q)
+
+
+def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
+    """X and W of a linear scene in which no row ever changes."""
+    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
+    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
+    gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)
+    for i in range(c.n):
+        compliance(True, plan, s, after(c.H, i * s.n_q), after(plan.X, i * s.n_q))
+        c.problem.ids[i] = i
+    mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
+
+
+def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> None:
+    """Note impacts, the beginning of lasting contact, and its end."""
+    for i in range(c.n_c):
+        kind = -1
+        if c.p[i] > 0.0:
+            if s.closed[i] == 0:
+                kind = IMPACT
+            elif s.closed[i] == 1:
+                kind = STICK
+            s.closed[i] = s.closed[i] + 1 if s.closed[i] < 2 else 2
+        else:
+            if s.closed[i] == 2:
+                kind = RELEASE
+            s.closed[i] = 0
+        if kind >= 0:
+            if kind == RELEASE:
+                gap_rates(m, t_next, s.next_q, s.next_v, c.H, c.H_t)
+            u = product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
+            record.note(t_next, i, s.u[i], u, c.p[i], kind)
