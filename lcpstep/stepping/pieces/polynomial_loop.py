@@ -1,6 +1,6 @@
 """The loop of `Located` of order four and of exact motion, as kernels: steps made of polynomial pieces.
 
-Like `located_loop`, but a piece is a polynomial (`polynomial`) on which events are searched for (`scan`): landings,
+Like `loop`, but a piece is a polynomial (`polynomial`) on which events are searched for (`scan`): landings,
 and releases where a contact force vanishes.
 """
 
