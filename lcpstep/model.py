@@ -290,6 +290,7 @@ def _tangents(scene: Scene) -> dict[str, Any]:
     if callable(friction.tangent):
         slip = friction.slip if callable(friction.slip) else ABSENT
         fields |= {"flat": False, "jacobian": friction.tangent, "gap_t": slip}
+        fields["G"] = np.zeros((scene.n_c, scene.n_q))
     else:
         motion[:, 1] = -np.asarray(friction.slip)
         fields |= {"G": np.array(friction.tangent)}

@@ -9,7 +9,7 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.model import require
 from lcpstep.recording import Kept
-from lcpstep.stepping import located_numba
+from lcpstep.stepping.pieces.adapted import AdaptedRun
 from lcpstep.stepping.pieces.run import Run
 from lcpstep.stepping.steps import check_steps
 from lcpstep.trajectory import Trajectory
@@ -79,9 +79,8 @@ class Located:
         require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
-        if self.tolerance is None:
-            return Run(self, scene, kept).finish(progress)
-        return located_numba.Run(self, scene, kept).finish(progress)
+        kind = Run if self.tolerance is None else AdaptedRun
+        return kind(self, scene, kept).finish(progress)
 
 
 def require_linear(scene: Scene) -> None:

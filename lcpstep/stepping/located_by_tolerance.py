@@ -32,7 +32,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.switches import COLLAPSE
     from lcpstep.stepping.step_control import stamp
 
-EARLY = 1 / 32  # of a step: an event before it leaves nothing to compare
+EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
 TRIALS = 4  # of a step whose event comes at another time
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h

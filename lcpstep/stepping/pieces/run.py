@@ -47,7 +47,7 @@ class Run:
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model = at_rest(kernel_model(scene), method.order)
+        self.model = at_rest(kernel_model(scene), method.order == 2 and scene.n_j == 0)
         joints = Joints(self.model, kernel_joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
