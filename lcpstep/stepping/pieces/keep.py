@@ -27,6 +27,13 @@ def keep_times(w: Work, record: Record, now: float, before: float) -> None:
         record.next_time += 1
 
 
+def keep_now(w: Work, record: Record, before: float) -> None:
+    """Keep the current state for the times asked for before the given one."""
+    while record.next_time < record.n_times and record.times[record.next_time] < before:
+        record.keep(record.times[record.next_time], 0.0, w.q, w.v, w.impulse)
+        record.next_time += 1
+
+
 def remember(w: Work) -> None:
     """Note the base of a piece, within which states will be asked for once its end is known."""
     copy(w.q_from, w.q, w.n_q)

@@ -11,11 +11,11 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, moves, obstacle
+    from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.pointers import abs, max
     from lcpstep.stepping.pieces.carried import put_kept_back
     from lcpstep.stepping.pieces.codes import (
         BUFFER_FULL,
@@ -24,7 +24,6 @@ if not cython.compiled:
         EPS,
         FINISHED,
         GROUND,
-        LCP_FAILED,
         NOBODY,
         NOT_FINITE,
         OPEN,
@@ -32,18 +31,14 @@ if not cython.compiled:
         TOO_MANY_EVENTS,
     )
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
-    from lcpstep.stepping.pieces.event import event
     from lcpstep.stepping.pieces.glide import glide
-    from lcpstep.stepping.pieces.jointed import joints_failed, turn_with_joints
-    from lcpstep.stepping.pieces.keep import keep, keep_times
+    from lcpstep.stepping.pieces.jointed import joints_failed
+    from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
-    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
-    from lcpstep.stepping.pieces.race import race
     from lcpstep.stepping.pieces.settle import endless, settle
     from lcpstep.stepping.pieces.smooth import free_acceleration, measure, respond
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import idle
-    from lcpstep.stepping.pieces.times import at_corner, just_after, within
+    from lcpstep.stepping.pieces.times import just_after, within
 
 
 def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
@@ -79,8 +74,16 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     return FINISHED
 
 
+AGAIN = 8  # another round of the loop, in which nothing is known yet of the piece that begins
+
+
 class Steps:
-    """Steps of `Located` of order two; those of the other orders differ in `step` (`polynomial_loop`).
+    """The loop over steps, and over the pieces of motion in a step; how a piece begins and goes on is an order's own.
+
+    tau      how long the piece at hand is,
+    found    whose event ends it, or NOBODY,
+    ends     and whether it ends with the smooth interval
+    gliding  whether one linear degree of freedom goes on in registers while nothing happens
 
     Parameters
     ----------
@@ -89,7 +92,8 @@ class Steps:
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         self.m, self.plan, self.w, self.record = m, plan, w, record
-        self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
+        self.gliding = self.ends = False
+        self.tau, self.found = 0.0, NOBODY
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
@@ -134,13 +138,91 @@ class Steps:
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""
-        return finish_step(self.m, self.plan, self.w, self.record, t)
+        while True:
+            if self.record.full(4 * self.w.n_c + 4) or self.record.row + 4 > self.record.row_capacity:
+                return BUFFER_FULL
+            if self.record.event + self.w.idle > self.w.events_left:
+                return TOO_MANY_EVENTS
+            c, code = NOBODY, FINISHED
+            if self.w.sigma >= self.w.end:
+                if self.w.end >= self.plan.h:
+                    return FINISHED
+                c = CORNER if self.begin_interval(t) else NOBODY
+            if c == NOBODY:
+                code = self.piece(t)
+                c = self.found if code == FINISHED else NOBODY
+            if c != NOBODY:
+                code = self.struck(t, c)
+            if code != FINISHED and code != AGAIN:
+                return code
+
+    def piece(self, t: float) -> int:
+        """One piece of motion, up to the event that ends it; AGAIN where the motion goes on otherwise."""
+        code = self.begin_piece(t)
+        if code != FINISHED:
+            return code
+        if endless(self.plan, self.w):
+            code = settle(self.m, self.plan, self.w, self.record, t)
+            return AGAIN if code == FINISHED else code
+        code = self.find(t)
+        if code != FINISHED:
+            return code
+        code = self.follow(t)
+        return STOPPED if code == FINISHED and self.w.blind > 0.0 else code
+
+    def struck(self, t: float, c: int) -> int:
+        """The event of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
+        pausing = self.w.pausing and c != CORNER
+        if pausing:
+            copy(self.w.v_struck, self.w.v, self.w.n_q)
+        code = self.strike(t, c)
+        return STOPPED if pausing and code == FINISHED else code
+
+    def begin_interval(self, t: float) -> bool:
+        """The smooth interval from w.sigma to the next corner or the end of the step.
+
+        Whether it begins at a corner at which velocities of gaps may jump.
+        """
+        now, turns = t + self.w.sigma, False
+        if now >= self.w.high - self.plan.margin:
+            self.w.low, self.w.high = find_corners(self.plan, now)
+            turns = obstacles_move(self.m) or self.plan.joined
+            self.pass_corner(now)
+        self.w.end = self.plan.h
+        if t + self.plan.h > self.w.high + self.plan.margin:
+            self.w.end = max(self.w.high - t, self.w.sigma)
+        self.look_ahead(t + self.w.end)
+        return turns
+
+    # --- what the orders differ in -----------------------------------------------------------------------------
+
+    def pass_corner(self, t: float) -> None:
+        """What is kept of the forces at time t, at which they may jump."""
+
+    def look_ahead(self, t: float) -> None:
+        """What is to be known of the end t of a smooth interval."""
+
+    def begin_piece(self, t: float) -> int:
+        """Accelerations and contact forces at w.sigma; AGAIN if there is nothing to be gone through."""
+        return NOT_FINITE
+
+    def find(self, t: float) -> int:
+        """How far the piece goes that begins at w.sigma: `tau`, `found` and `ends`."""
+        return NOT_FINITE
+
+    def follow(self, t: float) -> int:
+        """Go on by `tau`."""
+        return NOT_FINITE
+
+    def strike(self, t: float, c: int) -> int:
+        """The event of contact c at w.sigma, or that of a corner, and what it changes."""
+        return NOT_FINITE
 
 
 def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
     """What is kept where a step ends, at time t; whether the run goes on."""
     late = just_after(plan, t)
-    keep_times(w, record, late, late)
+    keep_now(w, record, late)
     w.steps += 1
     w.under_way = False
     if not finite(w):
@@ -164,111 +246,6 @@ def begin_step(w: Work) -> None:
         w.hits[c] = w.close_hits[c] = 0
         w.last[c] = 0.0 if end > 0.0 and w.last[c] == end else -1.0
         w.turned[c] -= end
-
-
-def finish_step(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
-    """The rest of the step that began at t: from w.sigma to its end."""
-    n_c = w.n_c
-    while True:
-        if record.full(4 * n_c + 4) or record.row + 4 > record.row_capacity:
-            return BUFFER_FULL
-        if record.event + w.idle > w.events_left:
-            return TOO_MANY_EVENTS
-        c = NOBODY
-        if w.sigma >= w.end:
-            if w.end >= plan.h:
-                return FINISHED
-            c = CORNER if begin_interval(m, plan, w, t) else NOBODY
-        if c == NOBODY:
-            if not begin_piece(m, plan, w, record, t + w.sigma):
-                return LCP_FAILED if finite(w) else NOT_FINITE
-            if endless(plan, w):
-                code = settle(m, plan, w, record, t)
-                if code != FINISHED:
-                    return code
-                continue
-            rest = w.end - w.sigma
-            tau = rest
-            if w.blind > 0.0:
-                tau = min(rest, w.blind)
-            else:
-                c, tau = first_contact(plan, w, rest, t + w.end)
-                if c != NOBODY and not plan.plain:
-                    c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
-                if c != NOBODY and plan.plain and plan.steady and racing(w, record, t):
-                    done = race(m, plan, w, record, t, w.sigma, w.end, room(plan, w, record))
-                    if done > 0:
-                        w.sigma = w.q_time[0]
-                        w.events += done
-                        continue
-                if c != NOBODY and at_corner(plan, w, t + w.sigma + tau):
-                    c, tau = NOBODY, rest
-                if c == NOBODY and tau < rest:
-                    idle(w)
-            code = move(m, plan, w, record, t, tau, c == NOBODY and tau == rest)
-            if code == FINISHED and w.blind > 0.0:
-                code = STOPPED
-            if code != FINISHED:
-                return code
-        if c != NOBODY:
-            code = struck(m, plan, w, record, t, c)
-            if code != FINISHED:
-                return code
-
-
-def struck(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
-    """The impact of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
-    pausing = w.pausing and c != CORNER
-    if pausing:
-        copy(w.v_struck, w.v, w.n_q)
-    code = event(m, plan, w, record, t, c)
-    return STOPPED if pausing and code == FINISHED else code
-
-
-def room(plan: Plan, w: Work, record: Record) -> int:
-    """How many impacts may be taken in turn."""
-    most, left = w.events_left - record.event, plan.per_step - w.events
-    most = (left if left < most else most) + 1
-    left = record.event_capacity - record.event - 4 * w.n_c
-    most = left if left < most else most
-    left = record.row_capacity - record.row - 4
-    return left if left < most else most
-
-
-def racing(w: Work, record: Record, t: float) -> bool:
-    """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
-    wanted = record.next_time < record.n_times and record.times[record.next_time] <= t + w.end
-    return w.n_c > 1 and w.closed_now == 0 and not wanted
-
-
-def begin_interval(m: Model, plan: Plan, w: Work, t: float) -> bool:
-    """The smooth interval from w.sigma to the next corner or the end of the step; forces at its ends.
-
-    Whether it begins at a corner at which velocities of gaps may jump.
-    """
-    now, turns = t + w.sigma, False
-    if now >= w.high - plan.margin:
-        w.low, w.high = find_corners(plan, now)
-        turns = obstacles_move(m) or plan.joined
-        if plan.trapezoidal and not plan.steady:
-            external_force(m, within(plan, w, now), w.q, w.v, w.force)
-        elif not plan.trapezoidal:
-            if w.joined:
-                turn_with_joints(w, within(plan, w, now))
-            free_acceleration(m, w, within(plan, w, now), w.q, w.v, w.free)
-        w.force_evaluations += 1
-    w.end = plan.h
-    if t + plan.h > w.high + plan.margin:
-        w.end = max(w.high - t, w.sigma)
-    end = within(plan, w, t + w.end)
-    if plan.trapezoidal and not plan.steady:
-        external_force(m, end, w.q, w.v, w.next_force)
-        w.force_evaluations += 1
-    if m.flat and moves(m):
-        obstacle(m, end, w.q, w.v)
-        for c in range(w.n_c):
-            w.end_s[c] = m.motion_now[c * 3 + 2]
-    return turns
 
 
 def finite(w: Work) -> bool:

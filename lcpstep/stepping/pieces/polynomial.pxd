@@ -15,6 +15,7 @@ cdef Py_ssize_t DEGREE, QUINTIC, CORRECTIONS
 cdef double DOUBTFUL
 cdef double[4] NODES, WEIGHTS
 
+
 @cython.final
 cdef class Polynomial:
     cdef readonly object kept

@@ -26,14 +26,14 @@ PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstac
 MARGIN = 2.0**-49  # relative; by which times are moved off a corner
 
 
-def at_rest(m: Model, order: int | str) -> Model:
+def at_rest(m: Model, trapezoidal: bool) -> Model:
     """The model, from now on in the coordinates in which a moving frame rests, where its steps allow that.
 
     There the frame puts no force on the system; the obstacles move with it instead, and where they are is known
     exactly at any time, while the force -(M c'' + C c' + K c) within a step is not. On the cam-follower that is worth
     a factor of twenty in the error.
     """
-    m.carried = bool(m.linear and order == 2 and m.flat and m.frame.given)
+    m.carried = bool(trapezoidal and m.linear and m.flat and m.frame.given)
     return m
 
 

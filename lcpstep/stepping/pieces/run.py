@@ -19,9 +19,9 @@ from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.pieces import codes
 from lcpstep.stepping.pieces.joints import Joints
-from lcpstep.stepping.pieces.loop import Steps
-from lcpstep.stepping.pieces.polynomial_loop import PolynomialSteps
+from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
 from lcpstep.stepping.pieces.prepare import at_rest, displaced, plan, start
+from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.steps import divided, unresolved
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -47,12 +47,12 @@ class Run:
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model = at_rest(kernel_model(scene), method.order)
+        self.model = at_rest(kernel_model(scene), method.order == 2 and scene.n_j == 0)
         joints = Joints(self.model, kernel_joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
-        steps = Steps if method.order == 2 else PolynomialSteps
+        steps = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.steps = steps(self.model, p, self.work, self.recorder.record)
         self.events = 0  # taken out of the buffers
         self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)

@@ -1,7 +1,6 @@
-"""The loop of `Located` of order four and of exact motion, as kernels: steps made of polynomial pieces.
+"""Steps of `Located` of order four and of exact motion, as kernels: pieces of motion that are polynomials.
 
-Like `located_loop`, but a piece is a polynomial (`polynomial`) on which events are searched for (`scan`): landings,
-and releases where a contact force vanishes.
+Events are searched for on the polynomial (`scan`): landings, and releases where a contact force vanishes.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import (
-        BUFFER_FULL,
         CLOSED,
         CORNER,
         EPS,
@@ -27,13 +25,10 @@ if not cython.compiled:
         NOT_FINITE,
         ROUNDING,
         SAME_TIME,
-        STOPPED,
-        TOO_MANY_EVENTS,
     )
-    from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.loop import Steps, finite
+    from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.piece import penetrates
     from lcpstep.stepping.pieces.polynomial import (
@@ -49,7 +44,6 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
     from lcpstep.stepping.pieces.scan import NOWHERE, first_landing, first_release
-    from lcpstep.stepping.pieces.settle import endless, settle
     from lcpstep.stepping.pieces.smooth import (
         measure,
         newton_step,
@@ -68,6 +62,9 @@ SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
 class PolynomialSteps(Steps):
     """Steps of order four, or of exact motion.
 
+    z      the polynomial of the piece at hand
+    opens  whether the contact that ends the piece loses its force there, and does not land
+
     Parameters
     ----------
     m : Model;  plan : Plan;  w : Work;  record : Record
@@ -75,76 +72,56 @@ class PolynomialSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
-        self.gliding, self.z = False, Polynomial(m.n_q, m.n_c)
+        self.z, self.opens = Polynomial(m.n_q, m.n_c), False
 
-    def step(self, t: float) -> int:
-        """The rest of the step that began at t: from w.sigma to its end."""
-        return step(self.m, self.plan, self.w, self.z, self.record, t)
+    def begin_piece(self, t: float) -> int:
+        """Accelerations, and which contacts are closed."""
+        now = t + self.w.sigma
+        if too_short(self.plan, self.w, now):
+            self.w.sigma = self.w.end
+            return AGAIN
+        length = min(self.w.end - self.w.sigma, self.plan.longest)
+        if load(self.m, self.plan, self.w, self.z, self.record, now, length):
+            return FINISHED
+        return LCP_FAILED if finite(self.w) else NOT_FINITE
 
-
-def step(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float) -> int:
-    """The rest of the step that began at t: from w.sigma to its end."""
-    n_c = w.n_c
-    while True:
-        if record.full(4 * n_c + 4) or record.row + 4 > record.row_capacity:
-            return BUFFER_FULL
-        if record.event + w.idle > w.events_left:
-            return TOO_MANY_EVENTS
-        now = t + w.sigma
-        if w.sigma >= w.end:
-            if w.end >= plan.h:
-                return FINISHED
-            if now >= w.high - plan.margin:
-                w.low, w.high = find_corners(plan, now)
-                if obstacles_move(m):
-                    code = touch(m, plan, w, z, record, now, CORNER)
-                    if code != FINISHED:
-                        return code
-            w.end = plan.h
-            if t + plan.h > w.high + plan.margin:
-                w.end = max(w.high - t, w.sigma)
-            continue
-        if w.end - w.sigma <= SAME_TIME * (
-            abs(now) + plan.h
-        ):  # too short for positions to tell its ends apart
-            w.sigma = w.end
-            continue
-        length = min(w.end - w.sigma, plan.longest)
-        if not load(m, plan, w, z, record, now, length):
-            return LCP_FAILED if finite(w) else NOT_FINITE
-        if endless(plan, w):
-            code = settle(m, plan, w, record, t)
-            if code != FINISHED:
-                return code
-            continue
-        if not expand(m, plan, w, z, now, length):
+    def find(self, t: float) -> int:
+        """The polynomial, and the first event on it."""
+        now, length = t + self.w.sigma, min(self.w.end - self.w.sigma, self.plan.longest)
+        self.found, self.opens, self.tau = NOBODY, False, length
+        if not expand(self.m, self.plan, self.w, self.z, now, length):
             return NOT_FINITE
-        if w.blind > 0.0:
-            opening, landing, tau = NOBODY, NOBODY, min(length, w.blind)
+        if self.w.blind > 0.0:
+            self.tau = min(length, self.w.blind)
         else:
-            opening, stop = first_release(m, plan, w, z, now, length)
-            landing, tau = first_landing(m, plan, w, z, now, stop)
+            self.found, stop = first_release(self.m, self.plan, self.w, self.z, now, length)
+            landing, self.tau = first_landing(self.m, self.plan, self.w, self.z, now, stop)
             if landing == NOWHERE:
                 return NOT_FINITE
-        if landing != NOBODY and at_corner(plan, w, now + tau):
-            landing, tau = NOBODY, stop
-        ends = landing == NOBODY and opening == NOBODY and tau == length
-        ends = ends and w.sigma + length >= w.end * (1.0 - EPS)
-        code = follow(m, plan, w, z, record, t, tau, ends)
-        if code == FINISHED and w.blind > 0.0:
-            code = STOPPED
-        if code != FINISHED:
-            return code
-        if w.pausing:
-            copy(w.v_struck, w.v, w.n_q)
-        if landing != NOBODY:
-            code = touch(m, plan, w, z, record, t + w.sigma, landing)
-            if code != FINISHED:
-                return code
-        elif opening != NOBODY:
-            lose_force(m, plan, w, record, t + w.sigma, opening)
-        if w.pausing and (landing != NOBODY or opening != NOBODY):
-            return STOPPED
+            if landing != NOBODY and at_corner(self.plan, self.w, now + self.tau):
+                landing, self.tau = NOBODY, stop
+            self.opens = landing == NOBODY and self.found != NOBODY
+            if not self.opens:
+                self.found = landing
+        self.ends = self.found == NOBODY and self.tau == length
+        self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - EPS)
+        return FINISHED
+
+    def follow(self, t: float) -> int:
+        """Go on along the polynomial."""
+        return follow(self.m, self.plan, self.w, self.z, self.record, t, self.tau, self.ends)
+
+    def strike(self, t: float, c: int) -> int:
+        """Contact c opens, or lands, or a corner turns velocities."""
+        if c != CORNER and self.opens:
+            lose_force(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+            return FINISHED
+        return touch(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+
+
+def too_short(plan: Plan, w: Work, now: float) -> bool:
+    """Whether the rest of a smooth interval is so short that positions cannot tell its ends apart."""
+    return w.end - w.sigma <= SAME_TIME * (abs(now) + plan.h)
 
 
 def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> None:
@@ -204,7 +181,7 @@ def slide(m: Model, w: Work, t: float) -> None:
     newton_step(w, w.v)
 
 
-def touch(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, c: int) -> int:
+def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
     """Contact c lands at w.sigma: an impact, or a touch without one."""
     still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
     if c != CORNER and w.rate[c] >= -still:
