@@ -23,6 +23,9 @@ HEADERS = {
     "lcpstep.pointers",
     "lcpstep.arrays",
     "lcpstep.kernels.vectors",
+    "lcpstep.stepping.pieces.codes",
+    "lcpstep.stepping.pieces.quadratic",
+    "lcpstep.stepping.pieces.times",
 }  # merged into the modules that use them
 DIRECTIVES = {
     "language_level": 3,

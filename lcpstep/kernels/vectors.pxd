@@ -34,3 +34,18 @@ cdef inline bint finite(double* x, Py_ssize_t n) noexcept nogil:
     for i in range(n):
         total += x[i] - x[i]
     return total == 0.0
+
+
+cdef inline double distance(double* x, double* y, Py_ssize_t n) noexcept nogil:
+    cdef double most = 0.0
+    for i in range(n):
+        if x[i] - y[i] > most:
+            most = x[i] - y[i]
+        elif y[i] - x[i] > most:
+            most = y[i] - x[i]
+    return most
+
+
+cdef inline void copy_indices(Py_ssize_t* x, Py_ssize_t* y, Py_ssize_t n) noexcept nogil:
+    for i in range(n):
+        x[i] = y[i]

@@ -5,7 +5,7 @@ The `.pxd` file has them as C knows them; for long rows see `lcpstep.rows`.
 
 from __future__ import annotations
 
-from lcpstep.pointers import Doubles
+from lcpstep.pointers import Doubles, Indices
 
 
 def copy(x: Doubles, y: Doubles, n: int) -> None:
@@ -44,3 +44,16 @@ def finite(x: Doubles, n: int) -> bool:
     for i in range(n):
         total += x[i] - x[i]
     return total == 0.0
+
+
+def distance(x: Doubles, y: Doubles, n: int) -> float:
+    """Largest difference of two vectors."""
+    most = 0.0
+    for i in range(n):
+        most = max(most, abs(x[i] - y[i]))
+    return most
+
+
+def copy_indices(x: Indices, y: Indices, n: int) -> None:
+    """X <- y, of indices."""
+    x[:n] = y[:n]

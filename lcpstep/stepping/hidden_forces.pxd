@@ -1,0 +1,8 @@
+from lcpstep.pointers cimport abs, max, min
+
+cdef double UNSURE
+
+cdef double late(
+    double one, double first, double second, double length, double opened, double end
+) noexcept nogil
+cdef double hidden(double p, double q) noexcept nogil

@@ -1,0 +1,33 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.vectors cimport clear, product
+from lcpstep.pointers cimport abs, after, indices_after, max, min
+from lcpstep.stepping.hidden_forces cimport hidden, late
+from lcpstep.stepping.theta_method.moving cimport Rows, State
+from lcpstep.stepping.theta_method.plan cimport Plan
+
+cdef Py_ssize_t ONE, FIRST, SECOND
+cdef double STICKS
+
+
+@cython.final
+cdef class Switches:
+    cdef object kept
+    cdef readonly Py_ssize_t n_c, n
+    cdef double* force
+    cdef double* impulse
+    cdef double* mobility
+    cdef double* response
+    cdef double* turned
+    cdef Py_ssize_t* holds
+    cdef Py_ssize_t* held
+    cdef void begin(self, State s, double slow) noexcept nogil
+    cdef void note(
+        self, Py_ssize_t part, Plan plan, State s, Rows rows, double* before, double slow
+    ) noexcept nogil
+    cdef void measure(self, Py_ssize_t k, Plan plan, State s, Rows rows) noexcept nogil
+    cdef void note_friction(
+        self, Py_ssize_t part, Plan plan, State s, Rows rows, double slow
+    ) noexcept nogil
+    cdef double unseen(self, double h, bint even) noexcept nogil
+    cdef double differ(self, Py_ssize_t k) noexcept nogil

@@ -1,0 +1,118 @@
+"""What the steps of `Moreau` by a tolerance do not show when contacts open and friction changes, as kernels.
+
+Each row of a contact, its normal and then its tangent, has a force that keeps it closed or sticking, negative where
+it would have to be pulled: for normals the impulse of a step over its length, or -(u+ - u) / (W h) where it has
+none; for tangents mu p_N - |p_T - (u_T+ - u_T) / W|. See `hidden_forces` for the errors that follow.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.pointers import Doubles, abs, after, indices_after, max, min
+    from lcpstep.stepping.hidden_forces import hidden, late
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+
+ONE, FIRST, SECOND = range(3)  # the step, its halves
+STICKS = 1.0 - 1e-9  # of its limit: friction below it; its speed does not tell, for sliding begins slowly
+
+
+class Switches:
+    """Rows of all contacts in the step and its halves: normals, and tangents where there is friction.
+
+    force, impulse : (3, n)    mean forces that keep the row closed, or sticking; impulses
+    holds : (3, n)             1 where it was kept to the end
+    held : (n,)                1 where it was so at the start
+    mobility : (n,)            when last in contact
+    response : (n,)            largest velocity that an impulse makes
+    turned : (n,)              impulse of friction with the wrong sign
+
+    Parameters
+    ----------
+    n_c, n : int   contacts; rows
+    """
+
+    def __init__(self, n_c: int, n: int) -> None:
+        self.n_c, self.n = n_c, n
+        self.kept = np.zeros(9 * n), np.zeros(4 * n, dtype=np.intp)
+        self.force, self.holds = doubles(self.kept[0]), indices(self.kept[1])
+        self.impulse, self.mobility = after(self.force, 3 * n), after(self.force, 6 * n)
+        self.response, self.turned = after(self.force, 7 * n), after(self.force, 8 * n)
+        self.held = indices_after(self.holds, 3 * n)
+
+    def begin(self, s: State, slow: float) -> None:
+        """A step begins; which contacts have lasted."""
+        for i in range(self.n_c):
+            self.held[i] = 1 if s.closed[i] > 0 and abs(s.u[i]) <= slow else 0
+        clear(self.turned, self.n)
+
+    def note(self, part: int, plan: Plan, s: State, rows: Rows, before: Doubles, slow: float) -> None:
+        """Rows of a part that has been taken; `before`: gap velocities at its start."""
+        first = part * self.n
+        for i in range(self.n_c):
+            p = rows.p[i]
+            if p > 0.0:
+                self.measure(i, plan, s, rows)
+            self.impulse[first + i], self.holds[first + i] = p, 1 if p > 0.0 else 0
+            self.force[first + i] = p / plan.h
+            if p == 0.0 and self.mobility[i] > 0.0:
+                self.force[first + i] = -(s.u[i] - before[i]) / (self.mobility[i] * plan.h)
+        if rows.n_t > 0:
+            self.note_friction(part, plan, s, rows, slow)
+
+    def measure(self, k: int, plan: Plan, s: State, rows: Rows) -> None:
+        """How a row answers impulses."""
+        total, most, n = 0.0, 0.0, s.n_q
+        for j in range(n):
+            total += rows.H[k * n + j] * plan.X[k * n + j]
+            most = max(most, abs(plan.X[k * n + j]))
+        self.mobility[k], self.response[k] = total, most
+
+    def note_friction(self, part: int, plan: Plan, s: State, rows: Rows, slow: float) -> None:
+        """The same of the tangents."""
+        n, first = self.n_c, part * self.n
+        for i in range(rows.n_t):
+            k, mu, p, normal = n + i, rows.problem.mu[i], rows.p[n + i], rows.p[i]
+            if mu == 0.0 or normal == 0.0:
+                self.holds[first + k], self.held[k] = 0, 0
+                continue
+            self.measure(k, plan, s, rows)
+            W, u, end = self.mobility[k], rows.sliding[i], product(rows.T, s.v, i, s.n_q) + rows.T_t[i]
+            if part != SECOND:
+                self.held[k] = 1 if abs(u) <= slow and self.held[i] > 0 else 0
+            self.impulse[first + k] = p
+            self.holds[first + k] = 1 if abs(p) < STICKS * mu * normal else 0
+            if W > 0.0:
+                self.force[first + k] = (mu * normal - abs(p - (end - u) / W)) / plan.h
+            if part != ONE and min(u, end) < -slow and max(u, end) > slow:
+                self.turned[k] = max(self.turned[k], 2.0 * abs(p) * abs(u) / (abs(u) + abs(end)))
+
+    def unseen(self, h: float, even: bool) -> float:
+        """Error of the velocities after two halves of h/2; `even` where impulses are means of both ends of a step."""
+        worst, n = 0.0, self.n
+        for k in range(n):
+            p = self.turned[k]
+            if self.held[k] > 0:
+                opened = h if self.holds[SECOND * n + k] > 0 else 0.5 * h
+                if self.holds[FIRST * n + k] == 0:
+                    opened = 0.0
+                one, first, second = self.force[k], self.force[n + k], self.force[2 * n + k]
+                if not even:  # forces at the ends of the parts: along a line
+                    one, first, second = first, 0.5 * (3.0 * first - one), 0.5 * (first + one)
+                p = max(p, late(one, first, second, h, opened, h))
+                if self.holds[ONE * n + k] > 0 and opened == h:
+                    p = max(p, self.differ(k))
+            worst = max(worst, p * self.response[k])
+        return worst
+
+    def differ(self, k: int) -> float:
+        """By how much the step and its halves disagree about an impulse."""
+        one, two = self.impulse[k], self.impulse[self.n + k] + self.impulse[2 * self.n + k]
+        if one > 0.0 and two > 0.0:
+            return hidden(one, two)
+        return abs(one - two)

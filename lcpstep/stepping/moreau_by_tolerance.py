@@ -1,0 +1,252 @@
+"""Steps of `Moreau` chosen by a tolerance: what one step and its two halves do, as kernels.
+
+Beside the difference of the two runs these count as errors, for both may agree on what is wrong:
+
+    h |v+ - v|       position, in steps with an impact: its place in the step is not known
+    |v_free - v|     velocity, in these steps: what the forces do from the start of the step to the impact
+    depth            by which a contact without impulse has gone below its obstacle, or has been below in between
+
+and what releases and friction hide (`hidden_switches`).
+Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
+step before an impact is halved until it is short, which costs the logarithm of its length. A contact that closes
+slower than the tolerance resolves is closed without rebound, so that chattering ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import cython
+import numpy as np
+
+from lcpstep.stepping.adaptive import LEVELS, PAUSED, REACHED, WANTED
+from lcpstep.stepping.step_control import Control
+from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
+    from lcpstep.pointers import abs, after, inf, max, min
+    from lcpstep.stepping.hidden_switches import Switches
+    from lcpstep.stepping.step_control import LEAST_SHARE, stamp
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.theta_loop import run
+
+LATE = 1e-9  # of a step: what rounding may take from the last one's end
+ROWS = 4  # that a step may keep besides the times asked for
+SAVED = 9  # vectors of n_q numbers
+
+
+class Attempts(Control):
+    """A run of `Moreau` by a tolerance.
+
+    m, plan, s, rows, record    as the loop has them; the matrices of the plan are those of the part at hand
+    times, n_times, next_time   states asked for, which are kept here and not by the loop
+    restitution                 the scene's own, (n_c,)
+    q, v, force, g, u, closed, impulse    the state at the start of the step
+    steps, row, event, asked    counters there
+    one_q, one_v                where the one step led
+    part_q, part_v, part_g, part_u        the state at the start of the part at hand
+    between_q, between_v        a state within it
+    struck                      whether anything was, in the step or one of its halves
+    switches                    contacts that open, and friction
+    A_q, A_v, A_f, X, W         of every level, where the system is linear
+    made                        levels of which there are any
+
+    Parameters
+    ----------
+    m, plan, s, rows, record    as above
+    make : the plan of steps of a size
+    span, h, tolerance, order    see `Control`
+    """
+
+    def __init__(
+        self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, make: Callable[[float], Plan],
+        span: tuple[float, float], h: float, tolerance: float, order: int,
+    ) -> None:  # fmt: skip
+        super().__init__(span, h, tolerance, order)
+        self.m, self.plan, self.s, self.rows, self.record, self.make = m, plan, s, rows, record, make
+        self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
+        self.switches, self.struck = Switches(s.n_c, rows.n_c + rows.n_t), False
+        places = LEVELS + 2 if m.linear else 1
+        self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
+        self.own_made = np.full(LEVELS + 2, not m.linear, dtype=np.intp)
+        self.made = indices(self.own_made)
+        self.A_q, self.A_v = doubles(self.matrices["A_q"]), doubles(self.matrices["A_v"])
+        self.A_f, self.X = doubles(self.matrices["A_f"]), doubles(self.matrices["X"])
+        self.W = doubles(self.matrices["W"])
+        self.place_saved()
+        copy(self.restitution, self.m.restitution, s.n_c)
+        self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
+
+    def place_saved(self) -> None:
+        """Where the state at the start of steps and parts is kept."""
+        n_q, n_c = self.s.n_q, self.s.n_c
+        self.kept = np.zeros(SAVED * n_q + 5 * n_c + self.rows.n), np.zeros(n_c, dtype=np.intp)
+        self.steps_before = self.row = self.event = self.asked = 0
+        self.q, self.closed = doubles(self.kept[0]), indices(self.kept[1])
+        self.v, self.force = after(self.q, n_q), after(self.q, 2 * n_q)
+        self.one_q, self.one_v = after(self.q, 3 * n_q), after(self.q, 4 * n_q)
+        self.part_q, self.part_v = after(self.q, 5 * n_q), after(self.q, 6 * n_q)
+        self.between_q, self.between_v = after(self.q, 7 * n_q), after(self.q, 8 * n_q)
+        self.g = after(self.q, SAVED * n_q)
+        self.u, self.part_g = after(self.g, n_c), after(self.g, 2 * n_c)
+        self.part_u, self.restitution = after(self.g, 3 * n_c), after(self.g, 4 * n_c)
+        self.impulse = after(self.g, 5 * n_c)
+
+    def prepare(self) -> None:
+        """Matrices of the level at hand and of its halves."""
+        for level in (self.level, self.level + 1):
+            if not self.made[level]:
+                made = self.make(self.step_size(level)).matrices
+                for name in made:
+                    self.matrices[name][level] = made[name]
+                self.made[level] = 1
+
+    def ready(self) -> int:
+        """Whether there is room for the states of a step, and whether its matrices are made."""
+        if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
+            return PAUSED
+        return REACHED if self.made[self.level] and self.made[self.level + 1] else WANTED
+
+    def attempt(self) -> int:
+        """One step, then two halves of it. The halves are left out where they cannot help."""
+        n = self.s.n_q
+        slow, h, t = self.resolved(self.size_v), self.step_size(self.level), self.now()
+        self.struck = False
+        self.switches.begin(self.s, slow)
+        code = self.part(0, t, h, slow)
+        if code == FINISHED:
+            share = max(1.0, h / (self.span * LEAST_SHARE))
+            if 0.5 * self.apart_q > share * self.resolved(self.size_q) or 0.5 * self.apart_v > share * slow:
+                self.apart_q = inf
+            else:
+                copy(self.one_q, self.s.q, n)
+                copy(self.one_v, self.s.v, n)
+                self.restore()
+                self.apart_q = self.apart_v = 0.0
+                code = self.halves(t, h, slow)
+        self.full = code == LOG_FULL and self.event > 0
+        self.failed = code != FINISHED
+        self.far_q, self.far_v = largest(self.s.q, 0.0, n), largest(self.s.v, 0.0, n)
+        return code
+
+    def halves(self, t: float, h: float, slow: float) -> int:
+        """Two steps of half the size, and what they differ by from the one."""
+        code = self.part(1, t, 0.5 * h, slow)
+        if code == FINISHED:
+            code = self.part(2, t + 0.5 * h, 0.5 * h, slow)
+        if code != FINISHED:
+            return code
+        if self.record.event > self.event:
+            self.happened = True
+        self.apart_q = max(self.apart_q, distance(self.one_q, self.s.q, self.s.n_q))
+        if not self.struck:
+            self.apart_v = max(self.apart_v, distance(self.one_v, self.s.v, self.s.n_q))
+            self.apart_v = max(self.apart_v, self.switches.unseen(h, self.plan.theta == 0.5))
+        return FINISHED
+
+    def part(self, part: int, start: float, h: float, slow: float) -> int:
+        """The step (part 0), or a half of it, taken from `start`; errors at its contacts."""
+        row, event = self.record.row, self.record.event
+        self.before(slow)
+        self.place(self.level if part == 0 else self.level + 1, h)
+        k = self.s.steps
+        code = run(self.m, self.plan, self.s, self.rows, self.record, start, k, k + 1, False, False)
+        if code != FINISHED:
+            return code
+        self.after_part(h, slow)
+        self.switches.note(part, self.plan, self.s, self.rows, self.part_u, slow)
+        end = start + h
+        if part == 2 and end != self.goal():
+            stamp(self.record, row, event, end, self.goal())
+            end = self.goal()
+        if part > 0:
+            self.keep_times(start, end)
+        return FINISHED
+
+    def place(self, level: int, h: float) -> None:
+        """What a step of a level multiplies with."""
+        n, rows, k = self.s.n_q, self.rows.n, level if self.m.linear else 0
+        self.plan.h = h
+        self.plan.A_q, self.plan.A_v = after(self.A_q, k * n * n), after(self.A_v, k * n * n)
+        self.plan.A_f, self.plan.X = after(self.A_f, k * n * n), after(self.X, k * rows * n)
+        self.plan.W = after(self.W, k * rows * rows)
+
+    def before(self, slow: float) -> None:
+        """Remember where a part begins; contacts slower than `slow` have no restitution in it."""
+        copy(self.part_q, self.s.q, self.s.n_q)
+        copy(self.part_v, self.s.v, self.s.n_q)
+        for i in range(self.s.n_c):
+            self.part_g[i], self.part_u[i], self.rows.p[i] = self.s.g[i], self.s.u[i], 0.0
+            self.m.restitution[i] = self.restitution[i] if abs(self.s.u[i]) > slow else 0.0
+
+    def after_part(self, h: float, slow: float) -> None:
+        """Errors of a part at its contacts."""
+        deeper, struck = 0.0, False
+        for i in range(self.s.n_c):
+            gained = max(0.0, -self.s.g[i]) - max(0.0, -self.part_g[i])
+            if self.rows.p[i] > 0.0:
+                struck = struck or abs(self.s.u[i] - self.part_u[i]) > slow
+            else:
+                gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
+                if gained > 0.0:
+                    self.happened = True
+            deeper = max(deeper, gained)
+        self.apart_q = max(self.apart_q, deeper)
+        if struck:
+            self.happened = self.struck = True
+            self.apart_q = max(self.apart_q, h * distance(self.s.v, self.part_v, self.s.n_q))
+            self.apart_v = max(self.apart_v, distance(self.s.v_free, self.part_v, self.s.n_q))
+
+    def keep_times(self, t: float, t_next: float) -> None:
+        """Keep the states asked for within a part: velocities linear, positions as `between` would have them."""
+        h = t_next - t
+        bend = 1.0 if self.plan.theta == 0.5 else 0.0
+        while self.record.next_time < self.n_times and self.times[self.record.next_time] <= t_next + LATE * h:
+            x = min(1.0, (self.times[self.record.next_time] - t) / h)
+            for i in range(self.s.n_q):
+                q, v = self.part_q[i], self.part_v[i]
+                curve = 0.5 * bend * h * (self.s.v[i] - v)
+                self.between_q[i] = q + x * (self.s.q[i] - q) - x * (1.0 - x) * curve
+                self.between_v[i] = v + x * (self.s.v[i] - v)
+            self.record.keep(
+                self.times[self.record.next_time], 0.0, self.between_q, self.between_v, self.s.impulse
+            )
+            self.record.next_time = self.record.next_time + 1
+
+    def store(self) -> None:
+        """Keep the state at the start of a step."""
+        copy(self.q, self.s.q, self.s.n_q)
+        copy(self.v, self.s.v, self.s.n_q)
+        copy(self.force, self.s.force, self.s.n_q)
+        copy(self.g, self.s.g, self.s.n_c)
+        copy(self.u, self.s.u, self.s.n_c)
+        copy_indices(self.closed, self.s.closed, self.s.n_c)
+        copy(self.impulse, self.s.impulse, self.rows.n)
+        self.steps_before = self.s.steps
+        self.row, self.event, self.asked = self.record.row, self.record.event, self.record.next_time
+
+    def restore(self) -> None:
+        """Go back there; work that was done stays counted, and whether anything happened known."""
+        if self.record.event > self.event:
+            self.happened = True
+        copy(self.s.q, self.q, self.s.n_q)
+        copy(self.s.v, self.v, self.s.n_q)
+        copy(self.s.force, self.force, self.s.n_q)
+        copy(self.s.g, self.g, self.s.n_c)
+        copy(self.s.u, self.u, self.s.n_c)
+        copy_indices(self.s.closed, self.closed, self.s.n_c)
+        copy(self.s.impulse, self.impulse, self.rows.n)
+        self.s.steps, self.s.iteration = self.steps_before, 0
+        self.record.row, self.record.event, self.record.next_time = self.row, self.event, self.asked
+
+
+def dip(g: float, u: float, u_next: float, h: float) -> float:
+    """How deep a gap that closes first and then opens has been below zero in between."""
+    if not u < 0.0 < u_next:
+        return 0.0
+    return max(0.0, 0.5 * h * u * u / (u_next - u) - max(0.0, g))

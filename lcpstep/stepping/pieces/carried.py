@@ -1,0 +1,22 @@
+"""Linear scenes in a moving frame, as `Located` steps them: in coordinates q + c(t), in which the frame rests."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import LEAD, TIME, Record
+    from lcpstep.pointers import after
+
+
+def put_kept_back(m: Model, record: Record) -> None:
+    """The kept states in the coordinates of the scene."""
+    n, c = m.n_q, m.frame_now
+    for k in range(record.row):
+        row = after(record.rows, k * record.row_size)
+        q, v = after(row, LEAD), after(row, LEAD + n)
+        m.frame.fill(row[TIME], q, v, c)
+        for i in range(n):
+            q[i] -= c[3 * i]
+            v[i] -= c[3 * i + 1]

@@ -1,0 +1,154 @@
+"""Forces of the closed contacts of `Located`: who needs none opens.
+
+    0 <= alpha       complementary to  lambda >= 0       on all closed contacts, alpha the gap accelerations
+
+at the start of a piece (`hold`), and the same of gap velocities and impulses at its end (`land`), where normals turn
+or obstacles move. A contact that would have to be pulled opens. Source: G. Osorio, Complex Behavior in Impacting
+Systems, eq. 3.15.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after
+    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
+    from lcpstep.stepping.pieces.jointed import answer_force
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+    from lcpstep.stepping.pieces.refine import keep_closed, solve_chosen
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
+
+
+def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) -> bool:
+    """Forces of the contacts that rest from w.alpha, and the acceleration with them; who needs none opens.
+
+    All that touch at rest are decided in one problem: to add them one by one could go on for ever.
+    """
+    n = w.n_q
+    copy(w.a, w.free, w.n_q)
+    n_k = choose_resting(w)
+    if n_k == 0:
+        return True
+    for c in range(w.n_c):
+        w.fall[c] = 0.0
+    rest = w.end - w.sigma
+    W = after(plan.WA, place * w.n_c * w.n_c) if plan.constant else w.W
+    MG = after(plan.AG, place * w.n_c * w.n_q) if plan.constant else w.MG
+    if not solve_chosen(m, plan, w, W, place if plan.constant else INERTIA, n_k):
+        return False
+    for i in range(n):
+        w.a_try[i] = abs(w.free[i])
+    for k in range(n_k):
+        c, force = w.chosen[k], w.z[k]
+        if force > 0.0:
+            for i in range(n):
+                w.a[i] += MG[c * w.n_q + i] * force
+                w.a_try[i] += abs(MG[c * w.n_q + i] * force)
+    zero_rounding(plan, w)
+    if plan.plain and n_k > 1 and keep_closed(w, W, MG, n_k):
+        zero_rounding(plan, w)
+    for k in range(n_k):
+        c, force = w.chosen[k], w.z[k]
+        if force == 0.0:
+            alpha = leaving(m, w, W, k, n_k)
+            if alpha > 0.0:
+                if w.status[c] == CLOSED:
+                    at = release_time(w, c, t, rest, alpha / W[c * w.n_c + c])
+                    release(m, plan, w, record, c, at, 0.0)
+                w.grounded[c] = LEFT
+                continue
+        if w.status[c] == OPEN:
+            stick(w, record, c, t)
+            turn(m, plan, w, c, 0.0, False)
+        w.older[c], w.older_time[c] = force, t + 0.5 * rest
+        w.force_now[c] = force
+    return True
+
+
+def choose_resting(w: Work) -> int:
+    """Contacts that rest on their obstacles, closed or just touching; their number."""
+    n_k = 0
+    for c in range(w.n_c):
+        closed = w.status[c] == CLOSED
+        if closed or (w.touching and w.grounded[c] == GROUND and w.rate[c] == 0.0):
+            w.chosen[n_k] = c
+            w.z[n_k] = w.force_now[c] if closed else 0.0
+            w.b[n_k] = w.alpha[c]
+            n_k += 1
+    w.touching = False
+    return n_k
+
+
+def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
+    """Acceleration with which the k-th chosen contact, which carries no force, opens; 0 if it is but rounding."""
+    c = w.chosen[k]
+    alpha, size = w.b[k], 0.0
+    for j in range(n_k):
+        d = w.chosen[j]
+        alpha += W[c * w.n_c + d] * w.z[j]
+        size += abs(W[c * w.n_c + d] * w.z[j])
+    if alpha <= ROUNDING * (size + abs(w.b[k])):
+        return 0.0
+    return alpha if alpha > ROUNDING * (size + acceleration_terms(m, w, c)) else 0.0
+
+
+def pulls(m: Model, w: Work, c: int) -> bool:
+    """Whether the negative force in w.p of closed contact c is more than rounding of what it balances."""
+    size = 0.0
+    for d in range(w.n_c):
+        if w.status[d] == CLOSED:
+            size += abs(w.W[c * w.n_c + d] * w.p[d])
+    return -w.W[c * w.n_c + c] * w.p[c] > ROUNDING * (size + acceleration_terms(m, w, c))
+
+
+def zero_rounding(plan: Plan, w: Work) -> None:
+    """What is but rounding of the sums in w.a_try is zero: accelerations, and velocities that they made."""
+    for i in range(w.n_q):
+        if abs(w.a[i]) <= ROUNDING * w.a_try[i]:
+            w.a[i] = 0.0
+            if plan.plain and abs(w.v[i]) <= ROUNDING * w.a_try[i] * plan.h:
+                w.v[i] = 0.0
+
+
+def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) -> bool:
+    """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
+
+    A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
+    forces over the piece do: damping answers them.
+    """
+    place, n_k = w.made_with if plan.constant else INERTIA, 0
+    W = after(plan.WA, place * w.n_c * w.n_c) if plan.constant else w.W
+    MG = after(plan.AG, place * w.n_c * w.n_q) if plan.constant else w.MG
+    for c in range(w.n_c):
+        if w.status[c] == CLOSED:
+            w.chosen[n_k] = c
+            w.z[n_k] = 0.5 * tau * w.force_now[c]
+            w.b[n_k] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            n_k += 1
+    if n_k == 0:
+        return True
+    if not solve_chosen(m, plan, w, W, place, n_k):
+        return False
+    for k in range(n_k):
+        c, p = w.chosen[k], w.z[k]
+        w.p[c] = p
+        w.impulse[c] += p
+        if w.joined:
+            answer_force(w, c, p)
+        for i in range(w.n_q):
+            w.v[i] += MG[c * w.n_q + i] * p
+    for k in range(n_k):
+        c = w.chosen[k]
+        if w.p[c] == 0.0 and tau > 0.0:
+            u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            if u > ROUNDING * speed_terms(plan, w, c):
+                lost = 2.0 * u / (tau * W[c * w.n_c + c])
+                force = w.force_now[c]
+                share = force / (force + lost) if force > 0.0 else 0.0
+                release(m, plan, w, record, c, t - tau + tau * share, u)
+    return True

@@ -1,0 +1,70 @@
+"""Corners of a scene in `Located`, as kernels: where they are, and what an obstacle does whose velocity jumps at one.
+
+A corner at which the velocity of a gap jumps is an impact of every contact that is closed there, to rounding. u- is
+taken before the jump and u+ after it, as the event-driven integrator does: with u the gap velocity of the present v
+on the far side,
+
+    0 <= u + W p + r min(u-, 0)   complementary to   p >= 0,       r = 0 for contacts that were closed.
+
+The obstacle takes a closed contact along or, where it drops, leaves it. A contact that closes within rounding of
+the corner belongs to it. So the motion does not depend on where the corner falls in a step.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from math import floor
+
+    from lcpstep.kernels.dynamics import gap_rates, moves
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.stepping.pieces.codes import CLOSED, GROUND
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does so by rounding
+
+
+def find_corners(plan: Plan, t: float) -> tuple[float, float]:
+    """The smooth interval that begins at t or holds it."""
+    low, high = -inf, inf
+    if plan.n_corners == 0:
+        return low, high
+    turn = 0.0 if plan.period == inf else floor(t / plan.period) * plan.period
+    for k in range(-1, 3):
+        if k == 0 or plan.period < inf:
+            for i in range(plan.n_corners):
+                time = plan.corners[i] + (turn + k * plan.period if plan.period < inf else 0.0)
+                if time <= t + plan.margin:
+                    low = max(low, time)
+                else:
+                    high = min(high, time)
+    return low, high
+
+
+def obstacles_move(m: Model) -> bool:
+    """Whether a gap has a velocity of its own, which may jump at a corner."""
+    return (m.flat and moves(m)) or (not m.flat and m.gap_t.given)
+
+
+def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:
+    """Gap velocities after the corner; which contacts it strikes. Speeds that do not jump keep their digits."""
+    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
+    n_s = 0
+    for c in range(w.n_c):
+        before, later = w.rate[c], product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+        size = abs(w.gap_t[c])
+        w.before[c] = before
+        for i in range(w.n_q):
+            size += abs(w.G[c * w.n_q + i] * w.v[i])
+        if abs(later - before) > JUMP * (size + abs(before)):
+            w.rate[c] = later
+            near = plan.slack + 4.0 * plan.margin * (abs(before) + abs(later))
+            if w.status[c] == CLOSED or (w.gap[c] <= near and min(before, later) < 0.0):
+                w.chosen[n_s] = c
+                w.gap[c], w.grounded[c] = 0.0, GROUND
+                n_s += 1
+    return n_s

@@ -1,0 +1,17 @@
+from lcpstep.kernels.dynamics cimport external_force
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.vectors cimport product
+from lcpstep.pointers cimport abs
+from lcpstep.stepping.pieces.codes cimport CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
+from lcpstep.stepping.pieces.impulses cimport strike
+from lcpstep.stepping.pieces.keep cimport keep
+from lcpstep.stepping.pieces.magnitudes cimport speed_terms
+from lcpstep.stepping.pieces.smooth cimport free_acceleration, lift, refactor, respond
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.switches cimport idle, stick, turn
+from lcpstep.stepping.pieces.times cimport within
+
+cdef Py_ssize_t event(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
+cdef void straighten(Model m, Plan plan, Work w, Py_ssize_t d) noexcept nogil
+cdef double height(Model m, Work w, Py_ssize_t c) noexcept nogil

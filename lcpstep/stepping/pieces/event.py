@@ -1,0 +1,77 @@
+"""An impact of `Located`, as kernels: the impulses (`impulses`), and state and gaps made to agree after it."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs
+    from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
+    from lcpstep.stepping.pieces.impulses import strike
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.smooth import free_acceleration, lift, refactor, respond
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import idle, stick, turn
+    from lcpstep.stepping.pieces.times import within
+
+
+def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
+    """The impact of contact c at w.sigma, or that of a corner, and what it changes."""
+    now = t + w.sigma
+    if c != CORNER and w.rate[c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
+        w.gap[c], w.grounded[c] = 0.0, GROUND
+        if w.rate[c] <= ROUNDING * speed_terms(plan, w, c):
+            stick(w, record, c, now)
+            turn(m, plan, w, c, 0.0, False)
+        idle(w)
+        return FINISHED
+    if not plan.constant:
+        if not refactor(m, w, now):
+            return NOT_FINITE
+        respond(m, w)
+    n_s = strike(m, plan, w, record, c, now)
+    if n_s <= 0:
+        idle(w)
+        return LCP_FAILED if n_s < 0 else FINISHED
+    if plan.plain:  # rounding of the state must not add up over many impacts
+        for k in range(n_s):
+            d = w.chosen[k]
+            lift(m, plan, w, w.q, d, -height(m, w, d))
+            straighten(m, plan, w, d)
+    if plan.trapezoidal and not plan.steady:
+        external_force(m, within(plan, w, now), w.q, w.v, w.force)
+        w.force_evaluations += 1
+    elif not plan.trapezoidal:
+        if not free_acceleration(m, w, within(plan, w, now), w.q, w.v, w.free):
+            return NOT_FINITE
+        w.force_evaluations += 1
+    if record.keeps_events():
+        keep(w, record, now, 1.0)
+    return FINISHED
+
+
+def straighten(m: Model, plan: Plan, w: Work, d: int) -> None:
+    """The velocities that gap d has left with, and the gap velocities of the contacts in flight that go with them.
+
+    Without the latter the rounding of the Delassus matrix acts the same way at every impact: at a mass ratio of 1e12
+    it turns the motion by a ten-thousandth. Gap velocities finer than the velocities resolve stay as they are.
+    """
+    error = w.rate[d] - product(m.G, w.v, d, w.n_q)
+    if error == 0.0 or not w.W[d * w.n_c + d] > 0.0:
+        return
+    lift(m, plan, w, w.v, d, error)
+    for c in range(w.n_c):
+        if w.status[c] == OPEN and w.grounded[c] == 0:
+            change = w.W[c * w.n_c + d] * error / w.W[d * w.n_c + d]
+            if abs(change) <= ROUNDING * abs(w.rate[c]):
+                w.rate[c] += change
+
+
+def height(m: Model, w: Work, c: int) -> float:
+    """The gap c of a flat contact at rest, from the coordinates."""
+    return product(m.G, w.q, c, w.n_q) + m.offset[c]

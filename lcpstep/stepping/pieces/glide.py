@@ -1,0 +1,80 @@
+"""Steps of `Located` without events, in registers, as a kernel: one linear degree of freedom and its contact.
+
+The step is that of `smooth`: A a = (F(t) + F(t + h)) / 2 - C v - K (q + v h / 2).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force, moves, obstacle
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.pointers import abs, inf
+    from lcpstep.stepping.pieces.codes import SAME_TIME
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+
+def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, last: int) -> None:
+    """Steps of one linear degree of freedom without events, up to the first that may have one.
+
+    The arithmetic is that of `step` to the last bit; only the state stays in registers, which halves the time.
+    """
+    h = plan.h
+    A_inverse, C, K = plan.A_inverse[0], m.C[0], m.K[0]
+    q, v, f = w.q[0], w.v[0], w.force[0]
+    g, u, G, offset, s = inf, 0.0, 0.0, 0.0, 0.0
+    contact, moving = w.n_c > 0, moves(m)
+    if contact:
+        g, u, G, offset = w.gap[0], w.rate[0], m.G[0], m.offset[0]
+        if moving:
+            obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
+            s = m.motion_now[2]
+    k = start = w.steps
+    while k < last:
+        t = t0 + h * (k - first) + h
+        if t > w.high or record.row + 4 > record.row_capacity:
+            break
+        inner = within(plan, w, t)
+        external_force(m, inner, w.q, w.v, w.next_force)
+        f_next = w.next_force[0]
+        a = A_inverse * (0.5 * (f + f_next) - (C * v + K * (q + 0.5 * h * v)))
+        if a - a != 0.0:
+            break
+        if contact:
+            half, s_next = 0.5 * (G * a), 0.0
+            if moving:
+                obstacle(m, inner, w.q, w.v)
+                s_next = m.motion_now[2]
+                half = 0.5 * ((G * a - 0.5 * (s + s_next)) + (s_next - s) / 6.0)
+            if half - half != 0.0:
+                break
+            latest = h + SAME_TIME * (abs(t) + h)
+            if may_reach_zero(g, u, half, latest) and first_zero(g, u, half) <= latest:
+                break
+            if moving:
+                if inner != t:
+                    obstacle(m, t, w.q, w.v)
+                q_next, v_next = q + h * (v + 0.5 * h * a), v + h * a
+                g_next = offset - m.motion_now[0] + G * q_next
+                if not g_next > 0.0:
+                    break
+                g, u, s = g_next, G * v_next - m.motion_now[1], s_next
+            else:
+                g, u = g + h * (u + h * half), u + 2.0 * h * half
+        q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
+        k += 1
+        if record.is_due(k):
+            w.q[0], w.v[0] = q, v
+            keep(w, record, t0 + h * (k - first), 0.0)
+    w.q[0], w.v[0], w.force[0] = q, v, f
+    if contact:
+        w.gap[0], w.rate[0] = g, u
+        if k > start:
+            w.turned[0], w.sigma = -h, 0.0
+    w.steps = k
+    w.force_evaluations += k - start

@@ -1,0 +1,236 @@
+"""Impacts of `Located`: their impulses, and the end of chattering.
+
+    0 <= u+ + r u-   complementary to  p >= 0        the contacts that fire, and the closed ones that a chain of
+                                                     contacts connects with them
+
+A contact whose next hop would be shorter than a small fraction of the step is closed: under the acceleration of the
+piece, which is constant, the remaining impacts of a single contact end at T = 2 u+ / (|alpha| (1 - r)), and up to
+there they have the effect of a closed contact. Sources: J. J. Moreau, Unilateral contact and dry friction in finite
+freedom dynamics (1988); G. Osorio, Complex Behavior in Impacting Systems, eq. 4.2.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rounding, order_matters
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.pointers import abs, max, min
+    from lcpstep.stepping.pieces.codes import (
+        ACCUMULATION,
+        CLOSED,
+        CORNER,
+        GROUND,
+        IMPACT,
+        INERTIA,
+        LEFT,
+        OPEN,
+        ROUNDING,
+    )
+    from lcpstep.stepping.pieces.corners import choose_jumping
+    from lcpstep.stepping.pieces.jointed import answer_impulse
+    from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
+    from lcpstep.stepping.pieces.refine import solve_chosen
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, release, stick, turn
+
+SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
+SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
+SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
+IN_A_ROW = (
+    8  # so many impacts, each at the instant of the one before, are an inelastic collapse once they are faint
+)
+
+
+def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) -> int:
+    """The impact of contact `first`, and of those that fire with it, or (CORNER) of those whose velocity jumps.
+
+    Returns how many took part, -1 where the impact was not solved.
+    """
+    n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first)
+    if n_s == 0:
+        return 0
+    if w.closed_now > 0:
+        n_s = choose_connected(w, n_s)
+    for k in range(n_s):
+        c = w.chosen[k]
+        w.z[k] = w.b[k] = w.p[c] = 0.0
+        w.plastic[c] = 0
+        if w.status[c] == OPEN:
+            w.plastic[c] = 1 if first != CORNER and closes(m, plan, w, c, n_s == 1) else 0
+            r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
+            w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
+        elif first == CORNER:
+            w.b[k] = w.rate[c]
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s):
+        return -1
+    jump(plan, w, n_s)
+    for k in range(n_s):
+        after_impact(m, plan, w, record, w.chosen[k], w.z[k], t)
+    w.events += 1
+    return n_s
+
+
+def choose_struck(m: Model, plan: Plan, w: Work, first: int) -> int:
+    """Contacts that fire now; their number.
+
+    Those that close with one speed land together, those that touched before are pushed together, and so are those
+    of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
+    are struck one after another, as they would be a little apart.
+    """
+    for c in range(w.n_c):
+        # A gap within the slack may still be open: its speed is not yet the one that it will close with
+        closing = c == first or (
+            w.gap[c] <= plan.slack and abs(w.rate[c] + w.fall[c]) <= SAME_SPEED * w.fall[c]
+        )
+        if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
+            w.rate[c] = -w.fall[c]
+    w.chosen[0] = first
+    u, n_s = w.rate[first], 1
+    touched = w.grounded[first] >= GROUND and w.last[first] < 0.0
+    w.gap[first], w.grounded[first] = 0.0, GROUND
+    for c in range(w.n_c):
+        w.before[c] = w.rate[c]
+        if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and w.gap[c] <= plan.slack:
+            pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
+            if pushed or abs(w.rate[c] - u) <= SAME_SPEED * abs(u) or tied(m, plan, w, first, c):
+                w.chosen[n_s] = c
+                w.gap[c], w.grounded[c] = 0.0, GROUND
+                n_s += 1
+    return n_s
+
+
+def tied(m: Model, plan: Plan, w: Work, first: int, c: int) -> bool:
+    """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
+
+    Contacts that have struck at this instant already are in the midst of a sequence, which has an order.
+    """
+    if at_this_instant(plan, w, first) or at_this_instant(plan, w, c):
+        return False
+    if w.gap[c] > gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c)):
+        return False
+    W, n, r = w.W, w.n_c, m.restitution
+    W_c, W_d, W_cd = W[first * n + first], W[c * n + c], W[first * n + c]
+    return order_matters(W_c, W_d, W_cd, r[first], r[c], w.rate[first], w.rate[c])
+
+
+def at_this_instant(plan: Plan, w: Work, c: int) -> bool:
+    """Whether contact c has struck at the instant at hand already."""
+    return w.last[c] >= 0.0 and w.sigma - w.last[c] <= COLLAPSE * plan.h
+
+
+def choose_connected(w: Work, n_s: int) -> int:
+    """Add the closed contacts that a chain of closed contacts connects with the chosen ones."""
+    n_c = w.n_c
+    for c in range(n_c):
+        w.p[c] = 1.0 if w.status[c] == CLOSED else 0.0  # still to be looked at
+    for k in range(n_s):
+        w.p[w.chosen[k]] = 0.0
+    k = 0
+    while k < n_s:
+        for c in range(n_c):
+            if w.p[c] == 1.0 and w.W[w.chosen[k] * w.n_c + c] != 0.0:
+                w.chosen[n_s] = c
+                w.p[c] = 0.0
+                n_s += 1
+        k += 1
+    return n_s
+
+
+def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
+    """Whether the contact that fires is closed: its next hops are too short to be followed."""
+    r = m.restitution[c]
+    since = w.sigma - w.last[c]
+    w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
+    if since > COLLAPSE * plan.h or w.last[c] < 0.0:
+        w.close_hits[c] = 0
+    else:
+        w.close_hits[c] += 1
+    w.last[c] = w.sigma
+    if r == 1.0 or r == 0.0:
+        return False
+    hits = w.close_hits[c]
+    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.rate[c])):
+        return True
+    if w.half[c] >= 0.0:
+        return False
+    hop = -r * w.rate[c] / -w.half[c]
+    if not alone:
+        return hop < SHORT_TOGETHER * plan.h
+    ends_in_time = hop / (1.0 - r) <= w.end - w.sigma
+    return (
+        ends_in_time and (hop < SHORT * plan.h or w.hits[c] > plan.many)
+    ) or hop < COLLAPSE * SHORT * plan.h
+
+
+def jump(plan: Plan, w: Work, n_s: int) -> None:
+    """Velocities after the impulses z of the chosen contacts; what rounding leaves of zero is zero."""
+    n = w.n_q
+    for i in range(n):
+        w.v_try[i] = abs(w.v[i])
+    for k in range(n_s):
+        c, p = w.chosen[k], w.z[k]
+        if p > 0.0:
+            if w.joined:
+                answer_impulse(w, c, p)
+            for i in range(n):
+                w.v[i] += w.MG[c * w.n_q + i] * p
+                w.v_try[i] += abs(w.MG[c * w.n_q + i] * p)
+    for i in range(n):
+        w.swing[i] = max(w.swing[i], w.v_try[i])
+        if abs(w.v[i]) <= ROUNDING * w.v_try[i]:
+            w.v[i] = 0.0
+    for k in range(n_s):
+        if w.z[k] > 0.0:
+            push(plan, w, w.chosen[k], w.z[k])
+
+
+def push(plan: Plan, w: Work, d: int, p: float) -> None:
+    """Gap velocities after the impulse of contact d; a contact that touches may be left at rest by it."""
+    for c in range(w.n_c):
+        change = w.W[c * w.n_c + d] * p
+        if change != 0.0:
+            w.rate[c] += change
+            w.fall[c] = 0.0
+            u = abs(w.rate[c])
+            touches = u <= SMALL * abs(change) and w.gap[c] <= plan.slack
+            if touches and u <= ROUNDING * speed_terms(plan, w, c):
+                w.gap[c] = w.rate[c] = 0.0
+                w.grounded[c], w.touching = GROUND, True
+            elif w.grounded[c] == LEFT:
+                w.grounded[c], w.touching = GROUND, True
+
+
+def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float, t: float) -> None:
+    """Note the impact of a contact; the velocity it leaves with, to the last digit."""
+    r, before = m.restitution[c], min(w.before[c], 0.0)
+    w.impulse[c] += p
+    if w.status[c] == CLOSED:
+        if p > 0.0:
+            w.rate[c] = 0.0
+            record.note(t, c, 0.0, 0.0, p, IMPACT)
+        elif w.rate[c] > ROUNDING * speed_terms(plan, w, c):
+            release(m, plan, w, record, c, t, w.rate[c])
+        else:
+            w.rate[c] = 0.0
+        return
+    if p == 0.0:
+        return
+    turn(m, plan, w, c, before, True)
+    if w.plastic[c] == 1:
+        T = 0.0
+        if w.half[c] < 0.0 and w.close_hits[c] < IN_A_ROW:
+            T = r * before / w.half[c] / (1.0 - r)
+            p += -2.0 * w.half[c] * T / w.W[c * w.n_c + c]
+        record.note(t + T, c, before, 0.0, p, ACCUMULATION)
+        stick(w, record, c, t + T)
+        return
+    w.rate[c] = -r * before if r > 0.0 else 0.0
+    w.fall[c] = w.rate[c] if plan.plain and plan.steady else 0.0
+    record.note(t, c, before, w.rate[c], p, IMPACT)
+    if r == 0.0:
+        stick(w, record, c, t)
+    elif before == 0.0:
+        w.touching = True

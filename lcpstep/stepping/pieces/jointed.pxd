@@ -1,0 +1,22 @@
+from lcpstep.kernels.record cimport LEAD, TIME, Record
+from lcpstep.kernels.vectors cimport add, clear, copy
+from lcpstep.pointers cimport after, max, min
+from lcpstep.stepping.pieces.codes cimport JOINTS_FAILED, NO_POSITION
+from lcpstep.stepping.pieces.joints cimport accelerate, put, reduce, take, turn
+from lcpstep.stepping.pieces.state cimport Work
+
+cdef void take_joints(Work w, double t) noexcept nogil
+cdef void join_acceleration(Work w, double t, double* q, double* v, double* a) noexcept nogil
+cdef void reduce_mobility(Work w, Py_ssize_t c) noexcept nogil
+cdef void put_on_joints(Work w, double t, double slack, double* q) noexcept nogil
+cdef void settle_velocity(Work w, double t) noexcept nogil
+cdef void turn_with_joints(Work w, double t) noexcept nogil
+cdef void turn_onto_joints(Work w, double* v) noexcept nogil
+cdef Py_ssize_t joints_failed(Work w) noexcept nogil
+cdef void load_joints(Work w) noexcept nogil
+cdef void reach_joints(Work w, double t, double tau, double slack) noexcept nogil
+cdef void meet_joints(Work w, double t, double tau) noexcept nogil
+cdef void hold_joints(Work w, double span) noexcept nogil
+cdef void answer_impulse(Work w, Py_ssize_t c, double p) noexcept nogil
+cdef void answer_force(Work w, Py_ssize_t c, double p) noexcept nogil
+cdef void share_out(Work w, Record record, Py_ssize_t first, double now, double tau) noexcept nogil

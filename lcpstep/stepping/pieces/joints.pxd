@@ -1,0 +1,45 @@
+cimport cython
+from lcpstep.arrays cimport doubles
+from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport clear, product
+from lcpstep.pointers cimport abs, after, inf, max
+from lcpstep.stepping.constraints.directions cimport divide_by_mass
+from lcpstep.stepping.constraints.joint_rows cimport Elimination, factorise_joints, solve_joints
+from lcpstep.stepping.pieces.codes cimport ROUNDING
+
+cdef double HELPS, STALLED, CONTRADICTION
+cdef Py_ssize_t PROJECTIONS, VECTORS
+
+
+@cython.final
+cdef class Joints:
+    cdef Model system, rows
+    cdef Elimination elimination
+    cdef readonly object numbers
+    cdef readonly Py_ssize_t n_j, n_q
+    cdef public Py_ssize_t failed, culprit
+    cdef double* turning
+    cdef double* stretch
+    cdef double* curvature
+    cdef double* free
+    cdef double* load
+    cdef double* piece
+    cdef double* answer
+    cdef double* push
+    cdef double* J
+    cdef double* J_try
+    cdef double* MJ
+    cdef double* S
+    cdef double* share
+    cdef double* before
+    cdef double* shifted
+
+
+cdef void take(Joints j, double* M, double t, double* q, double* v) noexcept nogil
+cdef void accelerate(Joints j, double* M, double t, double* q, double* v, double* a) noexcept nogil
+cdef void answer(Joints j, double* x, double* rate, double* out) noexcept nogil
+cdef void follow(Joints j, double* multipliers, double* x) noexcept nogil
+cdef void reduce(Joints j, Py_ssize_t c, double* x) noexcept nogil
+cdef bint put(Joints j, double* M, double t, double* q, double* v, double slack) noexcept nogil
+cdef bint turn(Joints j, double* v) noexcept nogil

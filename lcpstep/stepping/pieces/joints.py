@@ -1,0 +1,172 @@
+"""What joints do to accelerations, mobilities, positions and velocities at one state.
+
+    P = M^-1 - M^-1 J^T S^-1 J M^-1,     S = J M^-1 J^T
+    acceleration  a = P f - M^-1 J^T S^-1 bias,      mobility of a contact  P G_c^T
+
+and the smallest changes of position and velocity, in the metric of the mass, that put them back onto the joints
+g_J(t, q) = 0 and J v + dg_J/dt = 0. Redundant joints: see `elimination`. Source: F. Pfeiffer, C. Glocker, Multibody
+Dynamics with Unilateral Contacts (Wiley 1996), chapter 4.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.pointers import Doubles, abs, after, inf, max
+    from lcpstep.stepping.constraints.directions import divide_by_mass
+    from lcpstep.stepping.constraints.joint_rows import Elimination, factorise_joints, solve_joints
+    from lcpstep.stepping.pieces.codes import ROUNDING
+
+PROJECTIONS = 50  # of Newton
+HELPS = 0.25  # of a joint's gap: what an iteration may leave of it without a new Jacobian
+STALLED = 1e4  # of the slack: how much rounding in the joints' own arithmetic may leave
+CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
+VECTORS = 8  # of a number for each joint
+
+
+class Joints:
+    """Joints of a scene at the state last looked at, and work space.
+
+    n_j
+    turning, stretch, curvature : (n_j,)   dg/dt, gap and bias
+    free, load      multipliers without contact forces, and with them, at the base of a piece
+    piece           impulses of the piece at hand
+    answer, push    impulses of the problem at hand, and those that moved the position
+    J, J_try, MJ : (n_j, n_q)   Jacobian, one to try, rows M^-1 J^T
+    S : (n_j, n_j)              J M^-1 J^T, which `elimination` solves with
+    share : (n_c, n_j)          multipliers for a unit force of each contact
+    before, shifted : (n_q,)
+    failed          why the run cannot go on, or 0;
+    culprit         is then the joint that does not hold
+
+    Parameters
+    ----------
+    system : Model  of the scene, with its contacts
+    rows : Model    of its joints in the place of contacts
+    """
+
+    def __init__(self, system: Model, rows: Model) -> None:
+        self.system = system
+        self.rows, self.n_j, self.n_q = rows, rows.n_c, rows.n_q
+        self.failed = self.culprit = 0
+        n, n_q, n_c = self.n_j, self.n_q, system.n_c
+        self.elimination = Elimination(n, 0)
+        self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + 2 * n_q)
+        self.turning = doubles(self.numbers)
+        self.stretch = after(self.turning, n)
+        self.curvature = after(self.stretch, n)
+        self.free = after(self.curvature, n)
+        self.load = after(self.free, n)
+        self.piece = after(self.load, n)
+        self.answer = after(self.piece, n)
+        self.push = after(self.answer, n)
+        self.J = after(self.push, n)
+        self.J_try = after(self.J, n * n_q)
+        self.MJ = after(self.J_try, n * n_q)
+        self.S = after(self.MJ, n * n_q)
+        self.share = after(self.S, n * n)
+        self.before = after(self.share, n_c * n)
+        self.shifted = after(self.before, n_q)
+
+
+def take(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles) -> None:
+    """Jacobian of the joints and their Delassus matrix; M is Cholesky's factor of a mass matrix that changes."""
+    n, n_q = j.n_j, j.n_q
+    gap_rates(j.rows, t, q, v, j.J, j.turning)
+    for k in range(n):
+        divide_by_mass(
+            not j.system.mass.given, j.system.M_inverse, M, after(j.J, k * n_q), after(j.MJ, k * n_q), n_q
+        )
+        for i in range(n):
+            j.S[i * n + k] = product(j.J, after(j.MJ, k * n_q), i, n_q)
+    factorise_joints(j.elimination, j.S, n, 0)
+
+
+def accelerate(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, a: Doubles) -> None:
+    """The acceleration with the forces of the joints, a being that without."""
+    take(j, M, t, q, v)
+    bias(j.rows, t, q, v, j.shifted, j.J_try, j.stretch, j.curvature)
+    answer(j, a, j.curvature, j.free)
+
+
+def answer(j: Joints, x: Doubles, rate: Doubles, out: Doubles) -> None:
+    """Multipliers that make J x + rate zero, into `out`, and x with them."""
+    for k in range(j.n_j):
+        j.elimination.y[k] = -product(j.J, x, k, j.n_q) - rate[k]
+    solve_joints(j.elimination, out)
+    follow(j, out, x)
+
+
+def follow(j: Joints, multipliers: Doubles, x: Doubles) -> None:
+    """X + M^-1 J^T times the multipliers."""
+    n_q = j.n_q
+    for i in range(n_q):
+        for k in range(j.n_j):
+            x[i] += j.MJ[k * n_q + i] * multipliers[k]
+
+
+def reduce(j: Joints, c: int, x: Doubles) -> None:
+    """Take from M^-1 G_c^T, in x, what the joints hold back; nothing but rounding is nothing."""
+    n_q, share = j.n_q, after(j.share, c * j.n_j)
+    for k in range(j.n_j):
+        j.elimination.y[k] = -product(j.J, x, k, n_q)
+    solve_joints(j.elimination, share)
+    for i in range(n_q):
+        size = abs(x[i])
+        for k in range(j.n_j):
+            x[i] += j.MJ[k * n_q + i] * share[k]
+            size += abs(j.MJ[k * n_q + i] * share[k])
+        if abs(x[i]) <= ROUNDING * size:
+            x[i] = 0.0
+
+
+def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -> bool:
+    """Q onto the joints by Newton's method, with Jacobian and directions of the state last taken while that helps."""
+    before = inf
+    clear(j.push, j.n_j)
+    for _ in range(PROJECTIONS):
+        gaps(j.rows, t, q, v, j.stretch)
+        worst = 0.0
+        for k in range(j.n_j):
+            if not abs(j.stretch[k]) <= worst:
+                worst, j.culprit = abs(j.stretch[k]), k
+        if worst <= slack or 0.5 * before < worst <= STALLED * slack:
+            return True
+        if not worst < inf:
+            return False
+        if worst > HELPS * before:
+            take(j, M, t, q, v)
+        before = worst
+        for k in range(j.n_j):
+            j.elimination.y[k] = -j.stretch[k]
+        solve_joints(j.elimination, j.answer)
+        follow(j, j.answer, q)
+        for k in range(j.n_j):
+            j.push[k] += j.answer[k]
+    return False
+
+
+def turn(j: Joints, v: Doubles) -> bool:
+    """V onto the rates of the joints at the state last taken; the impulses for that into `answer`."""
+    n_q = j.n_q
+    largest = 0.0
+    for i in range(n_q):
+        largest = max(largest, abs(v[i]))
+    answer(j, v, j.turning, j.answer)
+    for k in range(j.n_j):
+        rate, size = product(j.J, v, k, n_q) + j.turning[k], abs(j.turning[k])
+        for i in range(n_q):
+            speed = max(largest, abs(v[i]))
+            for n in range(j.n_j):
+                speed = max(speed, abs(j.MJ[n * n_q + i] * j.answer[n]))
+            size += abs(j.J[k * n_q + i]) * speed
+        if abs(rate) > CONTRADICTION * size:
+            j.culprit = k
+            return False
+    return True

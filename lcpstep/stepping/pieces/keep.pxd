@@ -1,0 +1,14 @@
+from lcpstep.kernels.dynamics cimport gap_rates
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport LEAD, MODE, Record
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport after, max, min
+from lcpstep.stepping.pieces.smooth cimport refactor, settle_state
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.times cimport within
+
+cdef void keep_times(Work w, Record record, double now, double before) noexcept nogil
+cdef void keep_now(Work w, Record record, double before) noexcept nogil
+cdef void remember(Work w) noexcept nogil
+cdef void keep_between(Model m, Plan plan, Work w, Record record, double base, double tau, double end) noexcept nogil
+cdef void keep(Work w, Record record, double t, double jump) noexcept nogil

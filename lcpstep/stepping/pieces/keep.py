@@ -1,0 +1,83 @@
+"""What `Located` keeps of a motion, as kernels: states at steps and events, and those asked for within a piece."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import LEAD, MODE, Record
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import after, max, min
+    from lcpstep.stepping.pieces.smooth import refactor, settle_state
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+
+def keep_times(w: Work, record: Record, now: float, before: float) -> None:
+    """Keep the states asked for before the given time, along the piece that begins now."""
+    while record.next_time < record.n_times and record.times[record.next_time] < before:
+        t = record.times[record.next_time]
+        tau = max(0.0, t - now)
+        for i in range(w.n_q):
+            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+            w.v_try[i] = w.v[i] + tau * w.a[i]
+        record.keep(t, 0.0, w.q_try, w.v_try, w.impulse)
+        record.next_time += 1
+
+
+def keep_now(w: Work, record: Record, before: float) -> None:
+    """Keep the current state for the times asked for before the given one."""
+    while record.next_time < record.n_times and record.times[record.next_time] < before:
+        record.keep(record.times[record.next_time], 0.0, w.q, w.v, w.impulse)
+        record.next_time += 1
+
+
+def remember(w: Work) -> None:
+    """Note the base of a piece, within which states will be asked for once its end is known."""
+    copy(w.q_from, w.q, w.n_q)
+    copy(w.v_from, w.v, w.n_q)
+    copy(w.a_from, w.a, w.n_q)
+    copy(w.impulse_from, w.impulse, w.n_c)
+
+
+def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau: float, end: float) -> None:
+    """Keep the states asked for within the piece that has been made, bent so that they meet the state at its end.
+
+    Velocities along the acceleration of the base alone would be of order one.
+    """
+    n, n_c, share = w.n_q, w.n_c, 0.0
+    for c in range(n_c):
+        w.change[c] = w.impulse[c] - w.impulse_from[c]
+        w.impulse[c] = w.impulse_from[c]
+    while record.next_time < record.n_times and record.times[record.next_time] < end:
+        t = record.times[record.next_time]
+        s = min(max(0.0, t - base), tau)
+        r = s / tau
+        for i in range(n):
+            q, v, a = w.q_from[i], w.v_from[i], w.a_from[i]
+            bent = w.q[i] - q - tau * (v + 0.5 * tau * a)
+            w.q_try[i] = q + s * (v + 0.5 * s * a) + r * r * r * bent
+            w.v_try[i] = v + s * a + r * r * (w.v[i] - v - tau * a)
+        for c in range(n_c):
+            w.impulse[c] += (r - share) * w.change[c]
+        share = r
+        settle_state(m, plan, w, t, w.q_try)
+        record.keep(t, 0.0, w.q_try, w.v_try, w.impulse)
+        record.next_time += 1
+    for c in range(n_c):
+        w.impulse[c] += (1.0 - share) * w.change[c]
+    if not plan.constant:  # `settle_state` has looked elsewhere
+        gap_rates(m, within(plan, w, base + tau), w.q, w.v, w.G, w.gap_t)
+        refactor(m, w, base + tau)
+
+
+def keep(w: Work, record: Record, t: float, jump: float) -> None:
+    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here."""
+    if record.take_back(t):
+        row = after(record.rows, record.row * record.row_size)
+        jump = max(jump, row[MODE])
+        for c in range(w.n_c + w.n_j):
+            w.impulse[c] += row[LEAD + 2 * w.n_q + c]
+    record.keep(t, jump, w.q, w.v, w.impulse)

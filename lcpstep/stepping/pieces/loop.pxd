@@ -1,0 +1,55 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport external_force
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, max
+from lcpstep.stepping.pieces.carried cimport put_kept_back
+from lcpstep.stepping.pieces.codes cimport (
+    BUFFER_FULL, CLOSED, CORNER, EPS, FINISHED, GROUND, NOBODY, NOT_FINITE, OPEN, STOPPED, TOO_MANY_EVENTS,
+)
+from lcpstep.stepping.pieces.corners cimport find_corners, obstacles_move
+from lcpstep.stepping.pieces.glide cimport glide
+from lcpstep.stepping.pieces.jointed cimport joints_failed
+from lcpstep.stepping.pieces.keep cimport keep, keep_now
+from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms
+from lcpstep.stepping.pieces.settle cimport endless, settle
+from lcpstep.stepping.pieces.smooth cimport free_acceleration, measure, respond
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.times cimport just_after, within
+
+cdef Py_ssize_t AGAIN
+
+
+cdef class Steps:
+    cdef public Plan plan
+    cdef readonly Model m
+    cdef readonly Work w
+    cdef readonly Record record
+    cdef bint gliding, ends
+    cdef double tau
+    cdef Py_ssize_t found
+    cdef Py_ssize_t start(self, double t) noexcept
+    @cython.locals(end=Py_ssize_t, code=Py_ssize_t)
+    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
+    cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last)
+    @cython.locals(c=Py_ssize_t, code=Py_ssize_t)
+    cdef Py_ssize_t step(self, double t) noexcept nogil
+    cdef Py_ssize_t piece(self, double t) noexcept nogil
+    @cython.locals(pausing=bint)
+    cdef Py_ssize_t struck(self, double t, Py_ssize_t c) noexcept nogil
+    @cython.locals(turns=bint)
+    cdef bint begin_interval(self, double t) noexcept nogil
+    cdef void pass_corner(self, double t) noexcept nogil
+    cdef void look_ahead(self, double t) noexcept nogil
+    cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
+    cdef Py_ssize_t find(self, double t) noexcept nogil
+    cdef Py_ssize_t follow(self, double t) noexcept nogil
+    cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
+
+
+cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
+@cython.locals(code=Py_ssize_t)
+cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept nogil
+cdef void begin_step(Work w) noexcept nogil
+cdef bint finite(Work w) noexcept nogil

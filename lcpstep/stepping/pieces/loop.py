@@ -1,0 +1,259 @@
+"""The loop of `Located`, as kernels: steps, and within each step the impacts at their own times.
+
+A step is a chain of pieces of smooth motion (`smooth`). A piece ends where the first gap closes, at a corner of
+the scene, or with the step; there the impulses are found (`impulses`), and the next piece begins with the
+velocities after them. Gaps of contacts that have just fired count from zero, so a chain of ever shorter hops is
+followed without loss of digits.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs, max
+    from lcpstep.stepping.pieces.carried import put_kept_back
+    from lcpstep.stepping.pieces.codes import (
+        BUFFER_FULL,
+        CLOSED,
+        CORNER,
+        EPS,
+        FINISHED,
+        GROUND,
+        NOBODY,
+        NOT_FINITE,
+        OPEN,
+        STOPPED,
+        TOO_MANY_EVENTS,
+    )
+    from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
+    from lcpstep.stepping.pieces.glide import glide
+    from lcpstep.stepping.pieces.jointed import joints_failed
+    from lcpstep.stepping.pieces.keep import keep, keep_now
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms
+    from lcpstep.stepping.pieces.settle import endless, settle
+    from lcpstep.stepping.pieces.smooth import free_acceleration, measure, respond
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import just_after, within
+
+
+def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+    """Forces, gaps and status of the initial state, which is kept where states are."""
+    w.low, w.high = find_corners(plan, t)
+    if plan.trapezoidal:
+        external_force(m, within(plan, w, t), w.q, w.v, w.force)
+    elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+        return NOT_FINITE
+    w.force_evaluations += 1
+    if plan.steady:
+        for i in range(w.n_q):
+            w.free[i] = product(plan.A_inverse, w.force, i, w.n_q)
+    measure(m, plan, w, t)
+    if plan.constant:
+        respond(m, w)
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.free, c, w.n_q)
+    for c in range(w.n_c):
+        if w.gap[c] <= plan.slack:
+            w.gap[c], w.grounded[c] = 0.0, GROUND
+            size = abs(w.gap_t[c]) + plan.h * acceleration_terms(m, w, c)
+            for i in range(w.n_q):
+                size += abs(w.G[c * w.n_q + i] * w.v[i])
+            if abs(w.rate[c]) <= 64 * EPS * size:
+                w.rate[c], w.status[c] = 0.0, CLOSED
+                w.closed_now += 1
+    if record.n_times == 0:
+        keep(w, record, t, 0.0)
+    elif record.times[0] == t:
+        keep(w, record, t, 0.0)
+        record.next_time = 1
+    return FINISHED
+
+
+AGAIN = 8  # another round of the loop, in which nothing is known yet of the piece that begins
+
+
+class Steps:
+    """The loop over steps, and over the pieces of motion in a step; how a piece begins and goes on is an order's own.
+
+    tau      how long the piece at hand is,
+    found    whose event ends it, or NOBODY,
+    ends     and whether it ends with the smooth interval
+    gliding  whether one linear degree of freedom goes on in registers while nothing happens
+
+    Parameters
+    ----------
+    m : Model;  plan : Plan;  w : Work;  record : Record
+    """
+
+    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
+        self.m, self.plan, self.w, self.record = m, plan, w, record
+        self.gliding = self.ends = False
+        self.tau, self.found = 0.0, NOBODY
+
+    def begin(self, t: float) -> int:
+        """The initial state, at time t; a code."""
+        return self.start(t)
+
+    def put_back(self) -> None:
+        """Kept states, which are in the kernels' coordinates, in those of the scene."""
+        put_kept_back(self.m, self.record)
+
+    def start(self, t: float) -> int:
+        """Kernel of `begin`."""
+        with cython.nogil:
+            return begin_motion(self.m, self.plan, self.w, self.record, t)
+
+    def run(self, t0: float, first: int, last: int) -> int:
+        """`take`, called from Python."""
+        with cython.nogil:
+            return self.take(t0, first, last)
+
+    def take(self, t0: float, first: int, last: int) -> int:
+        """Steps w.steps .. last - 1, step `first` beginning at t0; says why it returned."""
+        while self.w.steps < last:
+            if not self.w.under_way:
+                if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
+                    if self.w.pausing:
+                        end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
+                    else:
+                        end = self.record.untimed_until(self.plan.h, t0, first, last)
+                    glide(self.m, self.plan, self.w, self.record, t0, first, end)
+                    if self.w.steps >= last:
+                        return FINISHED
+                begin_step(self.w)
+            t = t0 + self.plan.h * (self.w.steps - first)
+            code = self.step(t)
+            if code != FINISHED:
+                return code
+            t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
+            code = end_step(self.plan, self.w, self.record, t_next)
+            if code != FINISHED:
+                return code
+        return FINISHED
+
+    def step(self, t: float) -> int:
+        """The rest of the step that began at t: from w.sigma to its end."""
+        while True:
+            if self.record.full(4 * self.w.n_c + 4) or self.record.row + 4 > self.record.row_capacity:
+                return BUFFER_FULL
+            if self.record.event + self.w.idle > self.w.events_left:
+                return TOO_MANY_EVENTS
+            c, code = NOBODY, FINISHED
+            if self.w.sigma >= self.w.end:
+                if self.w.end >= self.plan.h:
+                    return FINISHED
+                c = CORNER if self.begin_interval(t) else NOBODY
+            if c == NOBODY:
+                code = self.piece(t)
+                c = self.found if code == FINISHED else NOBODY
+            if c != NOBODY:
+                code = self.struck(t, c)
+            if code != FINISHED and code != AGAIN:
+                return code
+
+    def piece(self, t: float) -> int:
+        """One piece of motion, up to the event that ends it; AGAIN where the motion goes on otherwise."""
+        code = self.begin_piece(t)
+        if code != FINISHED:
+            return code
+        if endless(self.plan, self.w):
+            code = settle(self.m, self.plan, self.w, self.record, t)
+            return AGAIN if code == FINISHED else code
+        code = self.find(t)
+        if code != FINISHED:
+            return code
+        code = self.follow(t)
+        return STOPPED if code == FINISHED and self.w.blind > 0.0 else code
+
+    def struck(self, t: float, c: int) -> int:
+        """The event of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
+        pausing = self.w.pausing and c != CORNER
+        if pausing:
+            copy(self.w.v_struck, self.w.v, self.w.n_q)
+        code = self.strike(t, c)
+        return STOPPED if pausing and code == FINISHED else code
+
+    def begin_interval(self, t: float) -> bool:
+        """The smooth interval from w.sigma to the next corner or the end of the step.
+
+        Whether it begins at a corner at which velocities of gaps may jump.
+        """
+        now, turns = t + self.w.sigma, False
+        if now >= self.w.high - self.plan.margin:
+            self.w.low, self.w.high = find_corners(self.plan, now)
+            turns = obstacles_move(self.m) or self.plan.joined
+            self.pass_corner(now)
+        self.w.end = self.plan.h
+        if t + self.plan.h > self.w.high + self.plan.margin:
+            self.w.end = max(self.w.high - t, self.w.sigma)
+        self.look_ahead(t + self.w.end)
+        return turns
+
+    # --- what the orders differ in -----------------------------------------------------------------------------
+
+    def pass_corner(self, t: float) -> None:
+        """What is kept of the forces at time t, at which they may jump."""
+
+    def look_ahead(self, t: float) -> None:
+        """What is to be known of the end t of a smooth interval."""
+
+    def begin_piece(self, t: float) -> int:
+        """Accelerations and contact forces at w.sigma; AGAIN if there is nothing to be gone through."""
+        return NOT_FINITE
+
+    def find(self, t: float) -> int:
+        """How far the piece goes that begins at w.sigma: `tau`, `found` and `ends`."""
+        return NOT_FINITE
+
+    def follow(self, t: float) -> int:
+        """Go on by `tau`."""
+        return NOT_FINITE
+
+    def strike(self, t: float, c: int) -> int:
+        """The event of contact c at w.sigma, or that of a corner, and what it changes."""
+        return NOT_FINITE
+
+
+def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
+    """What is kept where a step ends, at time t; whether the run goes on."""
+    late = just_after(plan, t)
+    keep_now(w, record, late)
+    w.steps += 1
+    w.under_way = False
+    if not finite(w):
+        return NOT_FINITE
+    code = joints_failed(w) if w.joined else FINISHED
+    if code == FINISHED and record.is_due(w.steps):
+        keep(w, record, t, 0.0)
+    return code
+
+
+def begin_step(w: Work) -> None:
+    """Nothing has happened in this step yet, but for what happened at the very end of the last one."""
+    end = w.sigma
+    if w.events > 0:
+        w.settled = w.stalled = 0.0
+        for i in range(w.n_q):
+            w.swing[i] = 0.0
+    w.sigma = w.end = 0.0
+    w.events, w.under_way = 0, True
+    for c in range(w.n_c):
+        w.hits[c] = w.close_hits[c] = 0
+        w.last[c] = 0.0 if end > 0.0 and w.last[c] == end else -1.0
+        w.turned[c] -= end
+
+
+def finite(w: Work) -> bool:
+    """Whether state and gaps are finite, and their accelerations in the last piece."""
+    total = 0.0
+    for i in range(w.n_q):
+        total += (w.q[i] - w.q[i]) + (w.v[i] - w.v[i])
+    for c in range(w.n_c):
+        total += (w.gap[c] - w.gap[c]) + (w.rate[c] - w.rate[c])
+        total += w.half[c] - w.half[c]
+    return total == 0.0

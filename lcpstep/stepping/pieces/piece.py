@@ -1,0 +1,219 @@
+"""A piece of motion of `Located`, as kernels: its accelerations and gap quadratics, where it ends, and the way there.
+
+Over the piece q(tau) = q + v tau + a tau^2 / 2; the gap of an open contact is g + u tau + half tau^2, whose first
+zero ends it (`quadratic`). Where gaps are no quadratics the zero is put right by Newton's method.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gaps, moves, obstacle
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs, after, max, min
+    from lcpstep.stepping.pieces.codes import (
+        CLOSED,
+        EPS,
+        FINISHED,
+        LCP_FAILED,
+        LEFT,
+        NOBODY,
+        NOT_FINITE,
+        OPEN,
+        SAME_TIME,
+    )
+    from lcpstep.stepping.pieces.contact_forces import hold, land
+    from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out
+    from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
+    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
+    from lcpstep.stepping.pieces.smooth import (
+        ON_THE_SURFACE,
+        accelerate,
+        advance,
+        gap_bias,
+        measure,
+        put_on_surface,
+        refactor,
+        respond,
+    )
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+POLISHING = 8  # Newton iterations onto a gap that is no quadratic
+
+
+def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
+    """Accelerations and gap quadratics of the piece that begins at t."""
+    n_c = w.n_c
+    place = accelerate(m, plan, w, t)
+    w.made_with = place
+    if n_c == 0:
+        copy(w.a, w.free, w.n_q)
+        return True
+    closed = w.closed_now > 0 or w.touching
+    if w.unchanged and not closed:
+        return True
+    w.unchanged = plan.steady and plan.plain and not closed
+    if m.flat:
+        flat_accelerations(m, plan, w, t)
+    elif needs_bias(w):
+        gap_bias(m, w, within(plan, w, t), w.q, w.v)
+        for c in range(n_c):
+            w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+    if closed and not plan.constant:
+        if not refactor(m, w, t):
+            return False
+        respond(m, w)
+    if not hold(m, plan, w, record, place, t):
+        return False
+    if plan.constant:
+        for c in range(n_c):
+            w.half[c] = 0.5 * (w.alpha[c] + w.bend[c])
+        if closed:
+            pressed(plan, w, place)
+    else:
+        fitted(m, w, t, w.end - w.sigma)
+    for c in range(n_c):
+        if w.status[c] == CLOSED:
+            w.gap[c] = w.rate[c] = w.half[c] = 0.0
+        elif w.grounded[c] == LEFT:
+            w.half[c] = max(w.half[c], 0.0)
+    return True
+
+
+def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """Mean accelerations of the gaps of flat contacts over the piece without contact forces.
+
+    In w.alpha so that the velocity is right at the end; w.bend is what must be added for the position.
+    """
+    if not plan.steady or moves(m):
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.free, c, w.n_q)
+    if moves(m):
+        obstacle(m, within(plan, w, t), w.q, w.v)
+        for c in range(w.n_c):
+            s, s_end = m.motion_now[c * 3 + 2], w.end_s[c]
+            w.alpha[c] -= 0.5 * (s + s_end)
+            w.bend[c] = (s_end - s) / 6.0
+            w.bias[c] = -0.5 * (s + s_end)
+
+
+def pressed(plan: Plan, w: Work, place: int) -> None:
+    """Add to the gap quadratics what contact forces do."""
+    WA = after(plan.WA, place * w.n_c * w.n_c)
+    for d in range(w.n_c):
+        force = w.force_now[d]
+        if w.status[d] == CLOSED and force > 0.0:
+            for c in range(w.n_c):
+                w.half[c] += 0.5 * WA[c * w.n_c + d] * force
+
+
+def fitted(m: Model, w: Work, t: float, rest: float) -> None:
+    """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
+    for i in range(w.n_q):
+        w.q_try[i] = w.q[i] + rest * (w.v[i] + 0.5 * rest * w.a[i])
+    gaps(m, t + rest, w.q_try, w.v, w.gap_try)
+    for c in range(w.n_c):
+        if w.grounded[c] != 0:
+            w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c])
+        else:
+            w.half[c] = (w.gap_try[c] - w.gap[c] - rest * w.rate[c]) / (rest * rest)
+
+
+def needs_bias(w: Work) -> bool:
+    """Whether some contact is closed or has just been left."""
+    some = False
+    for c in range(w.n_c):
+        some = some or w.status[c] == CLOSED or w.grounded[c] != 0
+    return some
+
+
+def first_contact(plan: Plan, w: Work, rest: float, t_end: float) -> tuple[int, float]:
+    """Which gap closes first, and when; NOBODY and the end of the piece if none does."""
+    found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
+    for c in range(w.n_c):
+        if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.rate[c], w.half[c], tau):
+            zero = first_zero(w.gap[c], w.rate[c], w.half[c])
+            if zero < tau or (zero == 0.0 and tau == 0.0 and w.rate[c] < w.rate[found]):
+                found, tau = c, zero
+    return found, min(tau, rest)
+
+
+def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: float) -> tuple[int, float]:
+    """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
+    if tau == 0.0:
+        return c, 0.0
+    for _ in range(POLISHING):
+        for i in range(w.n_q):
+            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+        if w.joined:
+            put_on_joints(w, t + tau, plan.slack, w.q_try)
+        gaps(m, t + tau, w.q_try, w.v, w.gap_try)
+        u = w.rate[c] + 2.0 * tau * w.half[c]
+        if abs(w.gap_try[c]) <= 0.125 * plan.slack:
+            return c, tau
+        if u >= 0.0:
+            break
+        change = -w.gap_try[c] / u
+        if tau + change > rest:
+            return NOBODY, rest
+        if tau + change <= 0.0:
+            break
+        tau += change
+        if abs(change) <= EPS * tau:
+            return c, tau
+    if w.gap_try[c] > 0.0:
+        return NOBODY, tau
+    return c, tau
+
+
+def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:
+    """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
+    now, first_row = t + w.sigma, record.row
+    if w.joined:
+        load_joints(w)
+    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    wanted = record.next_time < record.n_times and record.times[record.next_time] < end
+    if wanted and plan.plain:
+        keep_times(w, record, now, end)
+    elif wanted:
+        remember(w)
+    if tau > 0.0:
+        for c in range(w.n_c):
+            w.grounded[c] = 0
+        if not advance(m, plan, w, within(plan, w, now), tau):
+            return NOT_FINITE
+    w.sigma = w.end if to_end else w.sigma + tau
+    if to_end and plan.trapezoidal and not plan.steady:
+        copy(w.force, w.next_force, w.n_q)
+    if tau > 0.0 and (w.closed_now > 0 or penetrates(plan, w)):
+        if plan.plain:
+            if to_end:
+                put_on_surface(m, plan, w, now + tau)
+        else:
+            if not plan.constant:
+                if not refactor(m, w, now + tau):
+                    return NOT_FINITE
+                respond(m, w)
+            if not land(m, plan, w, record, now + tau, tau):
+                return LCP_FAILED
+            if penetrates(plan, w):
+                put_on_surface(m, plan, w, now + tau)
+            measure(m, plan, w, now + tau)
+    if wanted and not plan.plain:
+        keep_between(m, plan, w, record, now, tau, end)
+    if w.joined:
+        share_out(w, record, first_row, now, tau)
+    return FINISHED
+
+
+def penetrates(plan: Plan, w: Work) -> bool:
+    """Whether an open contact has been closed by what its quadratic neglects."""
+    lowest = 0.0
+    for c in range(w.n_c):
+        if w.status[c] == OPEN:
+            lowest = min(lowest, w.gap[c])
+    return not plan.plain and lowest < -ON_THE_SURFACE * plan.slack

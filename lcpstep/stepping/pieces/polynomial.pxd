@@ -1,0 +1,54 @@
+cimport cython
+from libc.math cimport cos, isfinite, sin
+from lcpstep.arrays cimport doubles
+from lcpstep.kernels.dynamics cimport gap_rates, gaps, obstacle
+from lcpstep.kernels.linear cimport grow_factor, solve_factored
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport after, max
+from lcpstep.stepping.pieces.codes cimport CLOSED
+from lcpstep.stepping.pieces.smooth cimport free_acceleration, gap_bias, respond
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.times cimport within
+
+cdef Py_ssize_t DEGREE, QUINTIC, CORRECTIONS
+cdef double DOUBTFUL
+cdef double[4] NODES, WEIGHTS
+
+
+@cython.final
+cdef class Polynomial:
+    cdef readonly object kept
+    cdef readonly double scale
+    cdef double* T
+    cdef double* a
+    cdef double* q
+    cdef double* v
+    cdef double* q_stage
+    cdef double* v_stage
+    cdef double* q_end
+    cdef double* v_end
+    cdef double* gap_from
+    cdef double* rate_from
+    cdef double* gap_to
+    cdef double* rate_to
+    cdef double* rate_now
+
+
+cdef bint on_surface(Model m, Plan plan, Work w) noexcept nogil
+cdef bint acceleration(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil
+cdef void biases(Model m, Plan plan, Work w, double t, double* q, double* v) noexcept nogil
+cdef bint constrained(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil
+cdef void factor_closed(Work w) noexcept nogil
+cdef void press(Work w, double* out, double share) noexcept nogil
+cdef void add_forces(Work w, double* out, Py_ssize_t n_k) noexcept nogil
+cdef bint expand(Model m, Plan plan, Work w, Polynomial z, double t, double length) noexcept nogil
+cdef bint taylor(Model m, Plan plan, Work w, Polynomial z, double t) noexcept nogil
+@cython.locals(good=bint)
+cdef bint hermite(Model m, Plan plan, Work w, Polynomial z, double t, double L) noexcept nogil
+cdef void state_at(Model m, Plan plan, Work w, Polynomial z, double t, double tau) noexcept nogil
+cdef void surface_state(Model m, Plan plan, Work w, Polynomial z, double t) noexcept nogil
+cdef void contacts_at(
+    Model m, Plan plan, Work w, Polynomial z, double t, double tau, double* g, double* u
+) noexcept nogil
+cdef bint force_at(Model m, Plan plan, Work w, Polynomial z, double t, double tau) noexcept nogil

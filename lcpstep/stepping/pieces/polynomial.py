@@ -1,0 +1,279 @@
+"""Pieces of smooth motion as polynomials, as kernels: Taylor's of a linear system, Hermite's of a Runge-Kutta step.
+
+Taylor: y'' = M^-1 (F(t) - C y' - K y) under constant and harmonic forces gives each coefficient from the two before,
+
+    (k+1) (k+2) T_{k+2} = M^-1 (F_k - C (k+1) T_{k+1} - K T_k),
+
+exact to rounding where the piece is short against the periods. In a moving frame y = q + c(t). Runge-Kutta: the
+classical step of order four, and the quintic through position, velocity and acceleration at both of its ends. Closed
+contacts enter by their forces, lambda = -(G M^-1 G^T)^-1 (G a + bias). Sources: E. Hairer, S. Norsett, G. Wanner,
+Solving Ordinary Differential Equations I, sections I.8 and II.1; G. Osorio, eq. 3.5.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from math import cos, isfinite, sin
+
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
+    from lcpstep.kernels.linear import grow_factor, solve_factored
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, after, max
+    from lcpstep.stepping.pieces.codes import CLOSED
+    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+DEGREE, QUINTIC = 22, 5  # of Taylor's polynomials and of Hermite's
+DOUBTFUL = 64.0  # rounding of a factor's diagonal, in its own units, from which on forces are corrected,
+CORRECTIONS = 2  # so many times
+NODES = [0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263]
+WEIGHTS = [0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692]
+
+
+class Polynomial:
+    """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events.
+
+    T : (DEGREE + 1, n_q)
+    scale
+    a : (5, n_q)            accelerations of the stages
+    q, v                    state last asked for
+    q_stage, v_stage, q_end, v_end
+    gap_from, rate_from, gap_to, rate_to    gaps and their velocities at both ends of an interval of the scan
+    rate_now
+
+    Parameters
+    ----------
+    n_q, n_c : int   coordinates, contacts
+    """
+
+    def __init__(self, n_q: int, n_c: int) -> None:
+        self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + 5 * n_c)
+        x = doubles(self.kept)
+        self.scale = 1.0
+        self.T, self.a = x, after(x, (DEGREE + 1) * n_q)
+        x = after(x, (DEGREE + 6) * n_q)
+        self.q, self.v, self.q_stage = x, after(x, n_q), after(x, 2 * n_q)
+        self.v_stage, self.q_end, self.v_end = after(x, 3 * n_q), after(x, 4 * n_q), after(x, 5 * n_q)
+        x = after(x, 6 * n_q)
+        self.gap_from, self.rate_from, self.gap_to = x, after(x, n_c), after(x, 2 * n_c)
+        self.rate_to, self.rate_now = after(x, 3 * n_c), after(x, 4 * n_c)
+
+
+def on_surface(m: Model, plan: Plan, w: Work) -> bool:
+    """Whether the one coordinate of an exact motion lies on its obstacle, which then says where it is."""
+    return plan.exact and w.closed_now > 0 and w.n_q == 1
+
+
+def acceleration(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
+    """Acceleration with the forces of closed contacts, if there are any; False where a matrix fails."""
+    w.force_evaluations += 1
+    if w.closed_now == 0:
+        return free_acceleration(m, w, within(plan, w, t), q, v, out)
+    return constrained(m, plan, w, t, q, v, out)
+
+
+def biases(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles) -> None:
+    """Gap accelerations at v' = 0, into w.bias."""
+    inner = within(plan, w, t)
+    if not m.flat:
+        gap_bias(m, w, inner, q, v)
+        return
+    obstacle(m, inner, q, v)
+    for c in range(w.n_c):
+        w.bias[c] = -m.motion_now[3 * c + 2] if m.motion.given else 0.0
+
+
+def constrained(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
+    """Acceleration with the forces of closed contacts, which go to w.p; False where a matrix fails."""
+    if not free_acceleration(m, w, within(plan, w, t), q, v, out):
+        return False
+    gap_rates(m, t, q, v, w.G, w.gap_t)
+    biases(m, plan, w, t, q, v)
+    if not plan.constant:
+        respond(m, w)
+    for c in range(w.n_c):
+        w.alpha[c] = product(w.G, out, c, w.n_q) + w.bias[c]
+    factor_closed(w)
+    press(w, out, 1.0)
+    return True
+
+
+def factor_closed(w: Work) -> None:
+    """Cholesky's factor of the closed contacts' Delassus matrix: of the independent ones, those under load first."""
+    n_c, n_k = w.n_c, 0
+    for loaded in range(1, -1, -1):
+        for c in range(n_c):
+            if w.status[c] == CLOSED and (w.force_now[c] > 0.0) == loaded:
+                w.held[n_k] = c
+                if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
+                    n_k += 1
+    w.pivots[n_c] = n_k
+
+
+def press(w: Work, out: Doubles, share: float) -> None:
+    """Forces that cancel w.alpha of the closed contacts, into w.p; what they do to the acceleration `out`.
+
+    Where the factor is in doubt, as beside very unlike masses, what the acceleration leaves of `share` of the
+    obstacles' own w.bias is taken out of both.
+    """
+    n_c, n_k, doubt = w.n_c, w.pivots[w.n_c], 0.0
+    for c in range(n_c):
+        w.p[c] = 0.0
+    for k in range(n_k):
+        doubt = max(doubt, w.doubt[k])
+    add_forces(w, out, n_k)
+    if doubt > DOUBTFUL:
+        for _ in range(CORRECTIONS):
+            for k in range(n_k):
+                c = w.held[k]
+                w.alpha[c] = product(w.G, out, c, w.n_q) + share * w.bias[c]
+            add_forces(w, out, n_k)
+
+
+def add_forces(w: Work, out: Doubles, n_k: int) -> None:
+    """Add to w.p and to the acceleration what cancels w.alpha."""
+    for k in range(n_k):
+        w.change[k] = -w.alpha[w.held[k]]
+    solve_factored(w.problem, w.n_c, n_k, w.change)
+    for k in range(n_k):
+        c, force = w.held[k], w.change[k]
+        w.p[c] += force
+        for i in range(w.n_q):
+            out[i] += w.MG[c * w.n_q + i] * force
+
+
+def expand(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) -> bool:
+    """The polynomial of the piece that begins at t."""
+    if plan.exact:
+        return taylor(m, plan, w, z, t)
+    return hermite(m, plan, w, z, t, length)
+
+
+def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
+    """Taylor coefficients of y at t."""
+    n = w.n_q
+    z.scale = 1.0
+    copy(z.T, w.q, w.n_q)
+    copy(after(z.T, n), w.v, w.n_q)
+    if m.frame.given:
+        m.frame.fill(t, w.q, w.v, m.frame_now)
+        for i in range(n):
+            z.T[i] += m.frame_now[3 * i]
+            z.T[n + i] += m.frame_now[3 * i + 1]
+    if on_surface(m, plan, w):
+        return True
+    if w.closed_now > 0:
+        factor_closed(w)
+    c_k, s_k = cos(m.omega * t), sin(m.omega * t)
+    for k in range(DEGREE - 1):
+        for i in range(n):
+            w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k + (m.constant[i] if k == 0 else 0.0)
+            for j in range(n):
+                w.a_try[i] -= (
+                    m.C[i * n + j] * (k + 1) * z.T[(k + 1) * n + j] + m.K[i * n + j] * z.T[k * n + j]
+                )
+        for i in range(n):
+            w.v_try[i] = product(m.M_inverse, w.a_try, i, w.n_q)
+        if w.closed_now > 0:
+            for c in range(w.n_c):
+                w.alpha[c] = product(m.G, w.v_try, c, w.n_q)
+            press(w, w.v_try, 0.0)
+        for i in range(n):
+            z.T[(k + 2) * n + i] = w.v_try[i] / ((k + 1) * (k + 2))
+        c_k, s_k = -m.omega * s_k / (k + 1), m.omega * c_k / (k + 1)
+    return True
+
+
+def hermite(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, L: float) -> bool:
+    """Runge-Kutta step of length L, and the quintic through both of its ends.
+
+    The changes are summed up without the state, beside which those of a very short step would be rounded away.
+    """
+    n = w.n_q
+    good = acceleration(m, plan, w, t, w.q, w.v, z.a)
+    for i in range(n):
+        z.q_end[i] = L * w.v[i] / 6.0
+        z.v_end[i] = L * z.a[i] / 6.0
+        z.v_stage[i] = w.v[i]
+    for k in range(1, 4):
+        share = 1.0 if k == 3 else 0.5
+        weight = L / (6.0 if k == 3 else 3.0)
+        for i in range(n):
+            z.q_stage[i] = w.q[i] + share * L * z.v_stage[i]
+            z.v_stage[i] = w.v[i] + share * L * z.a[(k - 1) * n + i]
+        good = good and acceleration(m, plan, w, t + share * L, z.q_stage, z.v_stage, after(z.a, k * n))
+        for i in range(n):
+            z.q_end[i] += weight * z.v_stage[i]
+            z.v_end[i] += weight * z.a[k * n + i]
+    for i in range(n):
+        z.q_stage[i] = w.q[i] + z.q_end[i]
+        z.v_stage[i] = w.v[i] + z.v_end[i]
+    good = good and acceleration(m, plan, w, t + L, z.q_stage, z.v_stage, after(z.a, 4 * n))
+    z.scale = L
+    for i in range(n):
+        c_1, c_2 = L * w.v[i], 0.5 * L * L * z.a[i]
+        d = z.q_end[i] - c_1 - c_2
+        d_v = L * z.v_end[i] - 2.0 * c_2
+        d_a = L * L * z.a[4 * n + i] - 2.0 * c_2
+        z.T[i], z.T[n + i], z.T[2 * n + i] = w.q[i], c_1, c_2
+        z.T[3 * n + i] = 10.0 * d - 4.0 * d_v + 0.5 * d_a
+        z.T[4 * n + i] = -15.0 * d + 7.0 * d_v - d_a
+        z.T[5 * n + i] = 6.0 * d - 3.0 * d_v + 0.5 * d_a
+        good = good and isfinite(z.T[5 * n + i])  # what all stages are in
+    return good
+
+
+def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> None:
+    """State at tau after the base t of the piece, into z.q and z.v."""
+    n = w.n_q
+    if on_surface(m, plan, w):
+        surface_state(m, plan, w, z, t + tau)
+        return
+    degree = DEGREE if plan.exact else QUINTIC
+    s = tau / z.scale
+    for i in range(n):
+        q, v = z.T[degree * n + i], 0.0
+        for k in range(degree - 1, -1, -1):
+            v = v * s + q
+            q = q * s + z.T[k * n + i]
+        z.q[i], z.v[i] = q, v / z.scale
+    if plan.exact and m.frame.given:
+        m.frame.fill(t + tau, w.q, w.v, m.frame_now)
+        for i in range(n):
+            z.q[i] -= m.frame_now[3 * i]
+            z.v[i] -= m.frame_now[3 * i + 1]
+
+
+def surface_state(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> None:
+    """State of the one coordinate on its obstacle; at a corner with the velocity on the near side."""
+    inner = within(plan, w, t)
+    for c in range(w.n_c):
+        if w.status[c] == CLOSED:
+            obstacle(m, t, w.q, w.v)
+            z.q[0] = (m.motion_now[3 * c] - m.offset[c]) / m.G[c]
+            if inner != t:
+                obstacle(m, inner, w.q, w.v)
+            z.v[0] = m.motion_now[3 * c + 1] / m.G[c]
+
+
+def contacts_at(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, g: Doubles, u: Doubles
+) -> None:
+    """Gaps and gap velocities at tau after the base of the piece."""
+    state_at(m, plan, w, z, t, tau)
+    gaps(m, t + tau, z.q, z.v, g)
+    gap_rates(m, t + tau, z.q, z.v, w.G_try, w.gap_t_try)
+    for c in range(w.n_c):
+        u[c] = product(w.G_try, z.v, c, w.n_q) + w.gap_t_try[c]
+
+
+def force_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> bool:
+    """Forces of the closed contacts at tau after the base of the piece, into w.p."""
+    state_at(m, plan, w, z, t, tau)
+    return acceleration(m, plan, w, t + tau, z.q, z.v, w.v_try)

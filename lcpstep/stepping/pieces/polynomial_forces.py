@@ -1,0 +1,90 @@
+"""Which contacts are closed on a polynomial piece of `Located`, as kernels: one complementarity problem at its base.
+
+Where a force vanishes it does not say whether its contact opens, the first derivative that is not zero does. There
+the problem is that of the accelerations a little later: a force of order k in time, beside others that are not zero,
+has the sign of its k-th derivative then.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import Doubles
+    from lcpstep.stepping.pieces.codes import GROUND, LEFT, OPEN, WHOLE
+    from lcpstep.stepping.pieces.contact_forces import hold
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
+    from lcpstep.stepping.pieces.scan import SOON
+    from lcpstep.stepping.pieces.smooth import free_acceleration, respond
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+UNDECIDED = -1.0  # in place of a time ahead
+
+
+def load(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, length: float) -> bool:
+    """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
+    n_c = w.n_c
+    if n_c == 0:
+        return True
+    undecided = w.ahead == UNDECIDED
+    w.ahead = 0.0
+    if undecided:
+        w.ahead = SOON * length
+        return look_ahead(m, plan, w, z, record, t, w.ahead)
+    if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+        return False
+    needed = w.closed_now > 0 or w.touching
+    for c in range(n_c):
+        needed = needed or w.grounded[c] != 0
+        w.older[c] = 0.0
+    if not needed:
+        return True
+    return decide(m, plan, w, record, t, w.q, w.v, t)
+
+
+def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, ahead: float) -> bool:
+    """The same where a contact force vanishes: which contacts are closed from now on shows a little later.
+
+    There forces are as their first derivative that does not vanish says. The way there is that of the forces now.
+    """
+    if not acceleration(m, plan, w, t, w.q, w.v, w.a):
+        return False
+    q, v = z.q_stage, z.v_stage
+    for i in range(w.n_q):
+        q[i] = w.q[i] + ahead * (w.v[i] + 0.5 * ahead * w.a[i])
+        v[i] = w.v[i] + ahead * w.a[i]
+    later = t + ahead
+    if not free_acceleration(m, w, within(plan, w, later), q, v, w.free):
+        return False
+    w.touching = True
+    for c in range(w.n_c):
+        w.older[c] = 0.0
+        if w.grounded[c] == LEFT:
+            w.grounded[c] = GROUND
+    return decide(m, plan, w, record, later, q, v, t)
+
+
+def decide(
+    m: Model, plan: Plan, w: Work, record: Record, at: float, q: Doubles, v: Doubles, t: float
+) -> bool:
+    """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
+    n_c, before = w.n_c, record.event
+    gap_rates(m, at, q, v, w.G, w.gap_t)
+    biases(m, plan, w, at, q, v)
+    for c in range(n_c):
+        w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+    if (w.closed_now > 0 or w.touching) and not plan.constant:
+        respond(m, w)
+    if not hold(m, plan, w, record, WHOLE, t):
+        return False
+    for c in range(n_c):
+        w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0
+    if record.event > before and (record.keeps_events()):
+        keep(w, record, t, 1.0)
+    return True

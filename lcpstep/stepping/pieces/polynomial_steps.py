@@ -1,0 +1,217 @@
+"""Steps of `Located` of order four and of exact motion, as kernels: pieces of motion that are polynomials.
+
+Events are searched for on the polynomial (`scan`): landings, and releases where a contact force vanishes.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs, max, min
+    from lcpstep.stepping.pieces.codes import (
+        CLOSED,
+        CORNER,
+        EPS,
+        FINISHED,
+        GROUND,
+        LCP_FAILED,
+        LEFT,
+        NOBODY,
+        NOT_FINITE,
+        ROUNDING,
+        SAME_TIME,
+    )
+    from lcpstep.stepping.pieces.impulses import strike
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.piece import penetrates
+    from lcpstep.stepping.pieces.polynomial import (
+        NODES,
+        WEIGHTS,
+        Polynomial,
+        acceleration,
+        biases,
+        expand,
+        force_at,
+        on_surface,
+        state_at,
+    )
+    from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
+    from lcpstep.stepping.pieces.scan import NOWHERE, first_landing, first_release
+    from lcpstep.stepping.pieces.smooth import (
+        measure,
+        newton_step,
+        put_on_surface,
+        refactor,
+        respond,
+        settle_state,
+    )
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+    from lcpstep.stepping.pieces.times import at_corner, within
+
+SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
+
+
+class PolynomialSteps(Steps):
+    """Steps of order four, or of exact motion.
+
+    z      the polynomial of the piece at hand
+    opens  whether the contact that ends the piece loses its force there, and does not land
+
+    Parameters
+    ----------
+    m : Model;  plan : Plan;  w : Work;  record : Record
+    """
+
+    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
+        super().__init__(m, plan, w, record)
+        self.z, self.opens = Polynomial(m.n_q, m.n_c), False
+
+    def begin_piece(self, t: float) -> int:
+        """Accelerations, and which contacts are closed."""
+        now = t + self.w.sigma
+        if too_short(self.plan, self.w, now):
+            self.w.sigma = self.w.end
+            return AGAIN
+        length = min(self.w.end - self.w.sigma, self.plan.longest)
+        if load(self.m, self.plan, self.w, self.z, self.record, now, length):
+            return FINISHED
+        return LCP_FAILED if finite(self.w) else NOT_FINITE
+
+    def find(self, t: float) -> int:
+        """The polynomial, and the first event on it."""
+        now, length = t + self.w.sigma, min(self.w.end - self.w.sigma, self.plan.longest)
+        self.found, self.opens, self.tau = NOBODY, False, length
+        if not expand(self.m, self.plan, self.w, self.z, now, length):
+            return NOT_FINITE
+        if self.w.blind > 0.0:
+            self.tau = min(length, self.w.blind)
+        else:
+            self.found, stop = first_release(self.m, self.plan, self.w, self.z, now, length)
+            landing, self.tau = first_landing(self.m, self.plan, self.w, self.z, now, stop)
+            if landing == NOWHERE:
+                return NOT_FINITE
+            if landing != NOBODY and at_corner(self.plan, self.w, now + self.tau):
+                landing, self.tau = NOBODY, stop
+            self.opens = landing == NOBODY and self.found != NOBODY
+            if not self.opens:
+                self.found = landing
+        self.ends = self.found == NOBODY and self.tau == length
+        self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - EPS)
+        return FINISHED
+
+    def follow(self, t: float) -> int:
+        """Go on along the polynomial."""
+        return follow(self.m, self.plan, self.w, self.z, self.record, t, self.tau, self.ends)
+
+    def strike(self, t: float, c: int) -> int:
+        """Contact c opens, or lands, or a corner turns velocities."""
+        if c != CORNER and self.opens:
+            lose_force(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+            return FINISHED
+        return touch(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+
+
+def too_short(plan: Plan, w: Work, now: float) -> bool:
+    """Whether the rest of a smooth interval is so short that positions cannot tell its ends apart."""
+    return w.end - w.sigma <= SAME_TIME * (abs(now) + plan.h)
+
+
+def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> None:
+    """The force of closed contact c has vanished: it opens, or where others are closed they decide together."""
+    if w.closed_now > 1:
+        w.ahead = UNDECIDED
+        idle(w)
+        return
+    release(m, plan, w, record, c, t, 0.0)
+    w.grounded[c] = LEFT
+    if record.keeps_events():
+        keep(w, record, t, 1.0)
+
+
+def follow(
+    m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, tau: float, ends: bool
+) -> int:
+    """Go on to w.sigma + tau along the polynomial."""
+    now = t + w.sigma
+    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    while record.next_time < record.n_times and record.times[record.next_time] < end:
+        state_at(m, plan, w, z, now, max(0.0, record.times[record.next_time] - now))
+        settle_state(m, plan, w, record.times[record.next_time], z.q)
+        record.keep(record.times[record.next_time], 0.0, z.q, z.v, w.impulse)
+        record.next_time += 1
+    w.sigma = w.end if ends else w.sigma + tau
+    if tau == 0.0:
+        return FINISHED
+    if w.closed_now > 0:
+        for k in range(4):
+            if not force_at(m, plan, w, z, now, NODES[k] * tau):
+                return NOT_FINITE
+            for c in range(w.n_c):
+                w.impulse[c] += WEIGHTS[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
+    state_at(m, plan, w, z, now, tau)
+    copy(w.q, z.q, w.n_q)
+    copy(w.v, z.v, w.n_q)
+    for c in range(w.n_c):
+        w.grounded[c] = 0
+    measure(m, plan, w, now + tau)
+    if not on_surface(m, plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
+        if not plan.constant:
+            if not refactor(m, w, now + tau):
+                return NOT_FINITE
+            respond(m, w)
+        put_on_surface(m, plan, w, now + tau)
+        slide(m, w, within(plan, w, now + tau))
+        measure(m, plan, w, now + tau)
+    return FINISHED
+
+
+def slide(m: Model, w: Work, t: float) -> None:
+    """Velocities of closed contacts along the surface, against the drift of the integration."""
+    gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
+    for c in range(w.n_c):
+        w.gap_try[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c] if w.status[c] == CLOSED else 0.0
+    newton_step(w, w.v)
+
+
+def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
+    """Contact c lands at w.sigma: an impact, or a touch without one."""
+    still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
+    if c != CORNER and w.rate[c] >= -still:
+        w.gap[c], w.grounded[c] = 0.0, GROUND
+        if w.rate[c] <= still or w.sigma - w.last[c] <= SLOW * plan.h:
+            stick(w, record, c, t)
+            turn(m, plan, w, c, 0.0, False)
+        w.last[c] = w.sigma
+        idle(w)
+        return FINISHED
+    if not acceleration(m, plan, w, t, w.q, w.v, w.a):
+        return NOT_FINITE
+    gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
+    biases(m, plan, w, t, w.q, w.v)
+    if not plan.constant:
+        if not refactor(m, w, t):
+            return NOT_FINITE
+        respond(m, w)
+    for d in range(w.n_c):
+        w.half[d] = 0.5 * (product(w.G, w.a, d, w.n_q) + w.bias[d])
+    n_s = strike(m, plan, w, record, c, t)
+    if n_s <= 0:
+        idle(w)
+        return LCP_FAILED if n_s < 0 else FINISHED
+    for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
+        d = w.chosen[k]
+        W, error = w.W[d * w.n_c + d], w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d]
+        if W > 0.0:
+            for i in range(w.n_q):
+                w.v[i] += w.MG[d * w.n_q + i] * error / W
+    if record.keeps_events():
+        keep(w, record, t, 1.0)
+    return FINISHED

@@ -1,0 +1,112 @@
+"""What the kernels of `Located` start from: constants of steps of one size, and the state at the start of a span."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import LinearSystem, Scene
+from lcpstep.kernels.model import Model
+from lcpstep.stepping.pieces.codes import ROUNDING
+from lcpstep.stepping.pieces.joints import Joints
+from lcpstep.stepping.pieces.state import Plan, Work
+
+if TYPE_CHECKING:
+    from lcpstep.stepping.located import Located
+
+Array = NDArray[np.float64]
+SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
+# Impacts in one step after which the rest of a chattering sequence, if it ends within the step, is taken as one: the
+# frozen acceleration of order two makes no error by that
+MANY, MANY_EXACTLY = 200, 20_000
+PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstacle
+MARGIN = 2.0**-49  # relative; by which times are moved off a corner
+
+
+def at_rest(m: Model, trapezoidal: bool) -> Model:
+    """The model, from now on in the coordinates in which a moving frame rests, where its steps allow that.
+
+    There the frame puts no force on the system; the obstacles move with it instead, and where they are is known
+    exactly at any time, while the force -(M c'' + C c' + K c) within a step is not. On the cam-follower that is worth
+    a factor of twenty in the error.
+    """
+    m.carried = bool(trapezoidal and m.linear and m.flat and m.frame.given)
+    return m
+
+
+def displaced(scene: Scene, m: Model, t: float) -> tuple[Array, Array]:
+    """How far the kernels' coordinates are from the scene's at time t, and how fast they part."""
+    out = np.zeros((scene.n_q, 3))
+    if m.carried:
+        zero, frame = np.zeros(scene.n_q), cast(LinearSystem, scene.system).frame
+        assert frame is not None
+        frame(t, zero, zero, np.array(scene.p), out)
+    return out[:, 0], out[:, 1]
+
+
+def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
+    """Constants of steps of size h."""
+    a, n_q, n_c = m.arrays, scene.n_q, scene.n_c
+    trapezoidal = m.linear and scene.n_j == 0
+    stiff = bool(trapezoidal and (np.any(a["C"]) or np.any(a["K"])))
+    unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
+    moving = m.motion.given or m.carried
+    constant = bool(trapezoidal and m.flat)
+    A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
+    if trapezoidal:
+        implicit = h if method.order == 2 else 0.0
+        A_inverse[:] = np.linalg.inv(a["M"] + 0.5 * implicit * a["C"] + 0.25 * implicit**2 * a["K"])
+    if constant:
+        AG[:] = (A_inverse[0] @ a["G"].T).T
+        WA[:] = a["G"] @ AG[0].T
+    size = max(np.max(np.abs(x), initial=0.0) for x in (scene.q0, a["offset"], h * np.asarray(scene.v0)))
+    t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
+    if math.isfinite(scene.period):  # a callback may know the time no better than its phase
+        t_scale = max(t_scale, scene.period)
+    return Plan({
+        "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": stiff,
+        "steady": bool(trapezoidal and not stiff and unforced),
+        "plain": bool(trapezoidal and m.flat and not moving), "constant": constant, "small": n_q <= SMALL,
+        "slack": ROUNDING * float(size or 1.0), "per_step": method.max_per_step,
+        "many": MANY if method.order == 2 else MANY_EXACTLY,
+        "exact": method.order == "exact", "longest": longest(scene, m, method),
+        "corners": np.array(scene.corners, dtype=np.float64), "period": scene.period,
+        "margin": MARGIN * t_scale if len(np.asarray(scene.corners)) else 0.0,
+        "A_inverse": A_inverse, "AG": AG, "WA": WA,
+    })  # fmt: skip
+
+
+def longest(scene: Scene, m: Model, method: Located) -> float:
+    """Longest piece on which a Taylor polynomial is exact and gap velocities turn but once in a quarter of it."""
+    if method.order != "exact":
+        return np.inf
+    a = m.arrays
+    stiffness = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["K"])))
+    damping = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["C"])))
+    rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
+    return float(1.0 / rate) if rate > 0.0 else np.inf
+
+
+def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
+    """State at the start of the scene's span, with the work space of a step."""
+    w = Work(scene.n_q, scene.n_c, joints)
+    c, c_t = displaced(scene, m, scene.t_span[0])
+    w.view("q")[:], w.view("v")[:] = np.asarray(scene.q0) + c, np.asarray(scene.v0) + c_t
+    if p.plain and scene.n_c > 0:
+        for name, marks in ranges(m.arrays).items():
+            w.view(name)[:] = marks
+    return w
+
+
+def ranges(a: dict[str, Array]) -> dict[str, Any]:
+    """First and last coordinate that an impulse of each contact changes, first and last contact that feels it."""
+    G = np.abs(a["G"])
+    MG = G @ np.abs(a["M_inverse"])
+    found = {}
+    for what, pattern in (("coordinate", MG + G > 0.0), ("contact", MG @ G.T > 0.0)):
+        found[f"first_{what}"] = pattern.argmax(axis=1)
+        found[f"last_{what}"] = pattern.shape[1] - 1 - pattern[:, ::-1].argmax(axis=1)
+    return found

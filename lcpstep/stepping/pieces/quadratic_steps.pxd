@@ -1,0 +1,33 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport external_force, moves, obstacle
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
+from lcpstep.pointers cimport min
+from lcpstep.stepping.pieces.codes cimport FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
+from lcpstep.stepping.pieces.event cimport event
+from lcpstep.stepping.pieces.jointed cimport turn_with_joints
+from lcpstep.stepping.pieces.loop cimport AGAIN, Steps, finite
+from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish
+from lcpstep.stepping.pieces.race cimport race
+from lcpstep.stepping.pieces.smooth cimport free_acceleration
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.switches cimport idle
+from lcpstep.stepping.pieces.times cimport at_corner, within
+
+
+cdef class QuadraticSteps(Steps):
+    cdef void pass_corner(self, double t) noexcept nogil
+    cdef void look_ahead(self, double t) noexcept nogil
+    cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
+    cdef Py_ssize_t find(self, double t) noexcept nogil
+    cdef Py_ssize_t follow(self, double t) noexcept nogil
+    cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
+
+
+cdef (Py_ssize_t, double) closing(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
+cdef bint take_in_turn(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
+cdef Py_ssize_t room(Plan plan, Work w, Record record) noexcept nogil
+@cython.locals(wanted=bint)
+cdef bint racing(Work w, Record record, double t) noexcept nogil
+cdef void turn_forces(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef void next_forces(Model m, Plan plan, Work w, double t) noexcept nogil

@@ -1,0 +1,134 @@
+"""Steps of `Located` of order two, as kernels: pieces of motion with one acceleration, gaps that are quadratics.
+
+A piece ends where the first gap closes (`piece`), at a corner of the scene, or with the step; there the impulses are
+found (`event`). Impacts of many bodies in free flight are taken in turn (`race`).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force, moves, obstacle
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.pointers import min
+    from lcpstep.stepping.pieces.codes import FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
+    from lcpstep.stepping.pieces.event import event
+    from lcpstep.stepping.pieces.jointed import turn_with_joints
+    from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
+    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
+    from lcpstep.stepping.pieces.race import race
+    from lcpstep.stepping.pieces.smooth import free_acceleration
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import idle
+    from lcpstep.stepping.pieces.times import at_corner, within
+
+
+class QuadraticSteps(Steps):
+    """Steps of order two.
+
+    Parameters
+    ----------
+    m : Model;  plan : Plan;  w : Work;  record : Record
+    """
+
+    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
+        super().__init__(m, plan, w, record)
+        self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
+
+    def pass_corner(self, t: float) -> None:
+        """Forces on the far side of a corner."""
+        turn_forces(self.m, self.plan, self.w, within(self.plan, self.w, t))
+
+    def look_ahead(self, t: float) -> None:
+        """Forces, and accelerations of obstacles, at the end of a smooth interval."""
+        next_forces(self.m, self.plan, self.w, within(self.plan, self.w, t))
+
+    def begin_piece(self, t: float) -> int:
+        """Accelerations and gap quadratics."""
+        if begin_piece(self.m, self.plan, self.w, self.record, t + self.w.sigma):
+            return FINISHED
+        return LCP_FAILED if finite(self.w) else NOT_FINITE
+
+    def find(self, t: float) -> int:
+        """The first gap that closes; AGAIN after impacts of many bodies."""
+        rest = self.w.end - self.w.sigma
+        self.found, self.tau = NOBODY, rest
+        if self.w.blind > 0.0:
+            self.tau = min(rest, self.w.blind)
+        else:
+            self.found, self.tau = closing(self.m, self.plan, self.w, t, rest)
+            if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w, self.record, t):
+                return AGAIN
+        self.ends = self.found == NOBODY and self.tau == rest
+        return FINISHED
+
+    def follow(self, t: float) -> int:
+        """Go on along the quadratics."""
+        return move(self.m, self.plan, self.w, self.record, t, self.tau, self.ends)
+
+    def strike(self, t: float, c: int) -> int:
+        """The impact of contact c, or that of a corner."""
+        return event(self.m, self.plan, self.w, self.record, t, c)
+
+
+def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
+    """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go."""
+    c, tau = first_contact(plan, w, rest, t + w.end)
+    if c != NOBODY and not plan.plain:
+        c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
+    if c != NOBODY and at_corner(plan, w, t + w.sigma + tau):
+        return NOBODY, rest
+    if c == NOBODY and tau < rest:
+        idle(w)
+    return c, tau
+
+
+def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
+    """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
+    if not (plan.plain and plan.steady and racing(w, record, t)):
+        return False
+    done = race(m, plan, w, record, t, w.sigma, w.end, room(plan, w, record))
+    if done > 0:
+        w.sigma = w.q_time[0]
+        w.events += done
+    return done > 0
+
+
+def room(plan: Plan, w: Work, record: Record) -> int:
+    """How many impacts may be taken in turn."""
+    most, left = w.events_left - record.event, plan.per_step - w.events
+    most = (left if left < most else most) + 1
+    left = record.event_capacity - record.event - 4 * w.n_c
+    most = left if left < most else most
+    left = record.row_capacity - record.row - 4
+    return left if left < most else most
+
+
+def racing(w: Work, record: Record, t: float) -> bool:
+    """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
+    wanted = record.next_time < record.n_times and record.times[record.next_time] <= t + w.end
+    return w.n_c > 1 and w.closed_now == 0 and not wanted
+
+
+def turn_forces(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """Forces and accelerations at the base of a piece, at a time just after a corner."""
+    if plan.trapezoidal and not plan.steady:
+        external_force(m, t, w.q, w.v, w.force)
+    elif not plan.trapezoidal:
+        if w.joined:
+            turn_with_joints(w, t)
+        free_acceleration(m, w, t, w.q, w.v, w.free)
+    w.force_evaluations += 1
+
+
+def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """Forces and accelerations of obstacles at the end t of a smooth interval."""
+    if plan.trapezoidal and not plan.steady:
+        external_force(m, t, w.q, w.v, w.next_force)
+        w.force_evaluations += 1
+    if m.flat and moves(m):
+        obstacle(m, t, w.q, w.v)
+        for c in range(w.n_c):
+            w.end_s[c] = m.motion_now[c * 3 + 2]

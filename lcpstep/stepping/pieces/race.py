@@ -1,0 +1,145 @@
+"""Impacts of many bodies within a step, one after another, each at the price of the contacts that it concerns.
+
+Where accelerations are constant, gaps flat and no contact is closed (gases, columns in free fall), an impact changes
+but the velocities of the bodies it strikes and the gaps they share. So every coordinate and every gap keeps the time
+up to which it has been moved on, and the time of its next zero; the least of these is the next impact. All are
+brought to one time at the end, or where an impact needs the general treatment: several at one time and place, the
+end of chattering, a touch. Source: B. Lubachevsky, How to simulate billiards and similar systems, J. Comput. Phys. 94
+(1991).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import LEAD, Record
+    from lcpstep.pointers import abs, inf
+    from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
+    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
+    from lcpstep.stepping.pieces.state import Plan, Work
+
+CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
+SHORT = 1e-7  # and hops as short as this, are left to the general treatment
+
+
+def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, end: float, most: int) -> int:
+    """Impacts in (sigma, end] of the step that began at t, at most so many; how many there were.
+
+    All stand at the time of the last of them, w.q_time[0].
+    """
+    n_c, done, struck, now = w.n_c, 0, -1, sigma
+    for i in range(w.n_q):
+        w.q_time[i] = sigma
+    for c in range(n_c):
+        w.since[c] = sigma
+        w.next_zero[c] = next_zero(w, c, end)
+    while done < most:
+        c = 0
+        for d in range(1, n_c):
+            if w.next_zero[d] < w.next_zero[c]:
+                c = d
+        tau = w.next_zero[c]
+        if not tau <= end or not ordinary(m, plan, w, c, tau):
+            break
+        hit(m, w, c, tau, end)
+        record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
+        w.lcp_calls += 1
+        done, struck, now = done + 1, c, tau
+        if record.keeps_events():
+            keep_impact(w, record, t, tau)
+    if done > 0:
+        gather(w, now, struck)
+    return done
+
+
+def keep_impact(w: Work, record: Record, t: float, tau: float) -> None:
+    """Keep the state at tau; states at one time share a row."""
+    n = w.n_q
+    for i in range(n):
+        s = tau - w.q_time[i]
+        w.q_try[i] = w.q[i] + s * (w.v[i] + 0.5 * s * w.a[i])
+        w.v_try[i] = w.v[i] + s * w.a[i]
+    if record.take_back(t + tau):
+        for d in range(w.n_c):
+            w.impulse[d] += record.rows[record.row * record.row_size + LEAD + 2 * n + d]
+    record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
+
+
+def next_zero(w: Work, c: int, end: float) -> float:
+    """When gap c closes, if that is before the end."""
+    g, u, half = w.gap[c], w.rate[c], w.half[c]
+    if not may_reach_zero(g, u, half, end - w.since[c]):
+        return inf
+    return w.since[c] + first_zero(g, u, half)
+
+
+def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
+    """Whether contact c strikes at tau, alone among its neighbours, and rebounds for longer than a moment."""
+    h, r, s = plan.h, m.restitution[c], tau - w.since[c]
+    u = w.rate[c] + 2.0 * s * w.half[c]
+    if not u < 0.0 or r == 0.0 or (w.last[c] >= 0.0 and tau - w.last[c] <= CLOSE * h):
+        return False
+    if r < 1.0 and w.half[c] < 0.0 and (r * u / w.half[c] < SHORT * h or w.hits[c] >= plan.many):
+        return False
+    for d in range(w.first_contact[c], w.last_contact[c] + 1):
+        if d != c and w.W[d * w.n_c + c] != 0.0:
+            s = tau - w.since[d]
+            g, v = w.gap[d] + s * (w.rate[d] + s * w.half[d]), w.rate[d] + 2.0 * s * w.half[d]
+            if g <= plan.slack and v < 0.0:
+                return False
+    return True
+
+
+def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
+    """The impact of contact c at tau; position and velocity of its bodies agree with its gap to the last digit."""
+    n, n_c, G, MG, W, r = w.n_q, w.n_c, w.G, w.MG, w.W, m.restitution[c]
+    first, last, k = w.first_coordinate[c], w.last_coordinate[c] + 1, c * n
+    u = -w.fall[c] if w.fall[c] > 0.0 else w.rate[c] + 2.0 * (tau - w.since[c]) * w.half[c]
+    p = -(1.0 + r) * u / W[c * n_c + c]
+    g, leaves = m.offset[c], r * u
+    for i in range(first, last):
+        s = tau - w.q_time[i]
+        w.q[i] += s * (w.v[i] + 0.5 * s * w.a[i])
+        v = w.v[i] + s * w.a[i]
+        w.v[i] = v + MG[k + i] * p
+        if abs(w.v[i]) <= ROUNDING * (abs(v) + abs(MG[k + i] * p)):
+            w.v[i] = 0.0
+        w.q_time[i] = tau
+        g += G[k + i] * w.q[i]
+        leaves += G[k + i] * w.v[i]
+    for i in range(first, last):  # rounding of the state must not add up over many impacts
+        w.q[i] -= MG[k + i] * g / W[c * n_c + c]
+        w.v[i] -= MG[k + i] * leaves / W[c * n_c + c]
+    w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
+    w.close_hits[c] = 0
+    w.last[c] = w.since[c] = tau
+    w.before[c], w.p[c] = u, p
+    w.impulse[c] += p
+    w.gap[c], w.rate[c], w.fall[c] = 0.0, -r * u, -r * u
+    w.next_zero[c] = next_zero(w, c, end)
+    for d in range(w.first_contact[c], w.last_contact[c] + 1):
+        if d != c and W[d * n_c + c] != 0.0:
+            s = tau - w.since[d]
+            w.gap[d] += s * (w.rate[d] + s * w.half[d])
+            w.rate[d] += 2.0 * s * w.half[d] + W[d * n_c + c] * p
+            change = -W[d * n_c + c] * leaves / W[c * n_c + c]
+            if abs(change) <= ROUNDING * abs(w.rate[d]):
+                w.rate[d] += change
+            w.since[d], w.fall[d] = tau, 0.0
+            w.next_zero[d] = next_zero(w, d, end)
+
+
+def gather(w: Work, now: float, struck: int) -> None:
+    """Bring all coordinates and gaps to one time."""
+    for i in range(w.n_q):
+        s = now - w.q_time[i]
+        w.q[i] += s * (w.v[i] + 0.5 * s * w.a[i])
+        w.v[i] += s * w.a[i]
+        w.q_time[i] = now
+    for c in range(w.n_c):
+        s = now - w.since[c]
+        w.gap[c] += s * (w.rate[c] + s * w.half[c])
+        w.rate[c] += 2.0 * s * w.half[c]
+        w.grounded[c] = GROUND if c == struck else 0

@@ -1,0 +1,27 @@
+cimport cython
+from lcpstep.kernels.linear cimport grow_factor, solve_definite, solve_factored
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.lcp.kernel cimport solve_small
+from lcpstep.pointers cimport abs, after, max, min
+from lcpstep.stepping.pieces.codes cimport EPS, INERTIA
+from lcpstep.stepping.pieces.state cimport Plan, Work
+
+cdef double SETTLED, EXACT, PULLS
+cdef Py_ssize_t SOLVED, REFINEMENTS
+
+cdef bint solve_chosen(Model m, Plan plan, Work w, double* W, Py_ssize_t place, Py_ssize_t n) noexcept nogil
+cdef bint solve_unrefined(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef bint solve_several(Work w, double* W, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
+cdef bint all_pressed(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef bint right(Work w, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
+cdef void leftover(Work w, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
+cdef Py_ssize_t factor_pressed(Work w, double* W, Py_ssize_t n, bint everybody) noexcept nogil
+@cython.locals(answered=bint)
+cdef bint refine(
+    Work w, double* W, double* inverse, bint factored, Py_ssize_t n, Py_ssize_t n_k, bint solved
+) noexcept nogil
+cdef (double, double) correct(Work w, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
+@cython.locals(pressed=bint)
+cdef bint keep_closed(Work w, double* W, double* MG, Py_ssize_t n) noexcept nogil
+cdef bint presses(Work w, double* W, Py_ssize_t n) noexcept nogil

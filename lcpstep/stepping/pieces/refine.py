@@ -1,0 +1,214 @@
+"""Impulses and forces of several contacts to the last digit: `Located`'s complementarity problems.
+
+The Delassus matrix W = G A^-1 G^T rounds away what a heavy body adds to a light one: solved from W alone, forces lose
+log10(mass ratio) digits. What is left of
+
+    b + G A^-1 (G^T z) = 0        on the contacts with z > 0
+
+is therefore formed from the bodies' own data, forces summed before they are divided by masses, and W gives but the
+correction. That all contacts are pressed is tried first, since it is so in most piles and costs a sixth of the
+solver; and again where W is too rough for the solver. Contacts that depend on others get no correction of their own.
+Source: N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.lcp.status import SOLVED
+
+if not cython.compiled:
+    from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.lcp.kernel import solve_small
+    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.stepping.pieces.codes import EPS, INERTIA
+    from lcpstep.stepping.pieces.state import Plan, Work
+
+REFINEMENTS = 6
+SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
+EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
+PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
+
+
+def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int) -> bool:
+    """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
+
+    w.z comes as a guess. False where there is no answer; the chosen are then noted as the culprits.
+    """
+    w.lcp_calls += 1
+    w.members = n
+    if n == 1:
+        c = w.chosen[0]
+        if W[c * w.n_c + c] > 0.0:
+            w.z[0] = max(0.0, -w.b[0] / W[c * w.n_c + c])
+            return True
+    if plan.joined:
+        return solve_unrefined(w, W, n)
+    if place != INERTIA:
+        return solve_several(w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n)
+    return solve_several(w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n)
+
+
+def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
+    """The same from W alone: with joints W is not G A^-1 G^T."""
+    for i in range(n):
+        for j in range(n):
+            w.problem[i * n + j] = W[w.chosen[i] * w.n_c + w.chosen[j]]
+    return solve_small(w.problem, w.b, w.z, n, w.lcp) == SOLVED
+
+
+def solve_several(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int) -> bool:
+    """The same for any number: the guess if it is still right, or all pressed, else the solver's answer; refined.
+
+    `inverse` is A^-1 or, if `factored`, Cholesky's factor of A.
+    """
+    if right(w, inverse, factored, n):
+        return True
+    if n > 1 and all_pressed(w, W, n):
+        return refine(w, W, inverse, factored, n, n, True)
+    solved = solve_unrefined(w, W, n)
+    if n == 1:
+        return solved
+    if not solved:
+        clear(w.z, n)
+    return refine(w, W, inverse, factored, n, -1, solved)
+
+
+def all_pressed(w: Work, W: Doubles, n: int) -> bool:
+    """Whether W z + b = 0 has an answer with z > 0 for all; that answer, and the factor of W."""
+    if factor_pressed(w, W, n, True) < n:
+        return False
+    for k in range(n):
+        w.z[k] = -w.b[k]
+    solve_factored(w.problem, n, n, w.z)
+    largest = 0.0
+    for k in range(n):
+        largest = max(largest, w.z[k])
+    least = largest
+    for k in range(n):
+        least = min(least, w.z[k])
+    return least > PULLS * largest
+
+
+def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
+    """Whether the guess, positive for all, is the answer: what rests keeps its forces from step to step."""
+    if n == 1:
+        return False
+    size = 0.0
+    for k in range(n):
+        if not w.z[k] > 0.0:
+            return False
+        size = max(size, abs(w.b[k]))
+    leftover(w, inverse, factored, n)
+    worst = 0.0
+    for k in range(n):
+        worst = max(worst, abs(w.residual[k]))
+    return worst <= EXACT * size
+
+
+def leftover(w: Work, inverse: Doubles, factored: bool, n: int) -> None:
+    """b + G A^-1 (G^T z) of the chosen contacts, into w.residual; A^-1 G^T z into w.jolt."""
+    force, jolt, n_q = w.a_try, w.jolt, w.n_q
+    clear(force, n_q)
+    for k in range(n):
+        if w.z[k] != 0.0:
+            c = w.chosen[k]
+            for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
+                force[i] += w.G[c * w.n_q + i] * w.z[k]
+    if factored:
+        copy(jolt, force, n_q)
+        solve_definite(inverse, jolt, n_q)
+    else:
+        clear(jolt, n_q)
+        for j in range(n_q):
+            if force[j] != 0.0:
+                for i in range(n_q):
+                    jolt[i] += inverse[j * n_q + i] * force[j]
+    for k in range(n):
+        c, total = w.chosen[k], 0.0
+        for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
+            total += w.G[c * w.n_q + i] * jolt[i]
+        w.residual[k] = w.b[k] + total
+
+
+def factor_pressed(w: Work, W: Doubles, n: int, everybody: bool) -> int:
+    """Cholesky factor of W for the independent contacts with z > 0, into w.problem; their places into w.place."""
+    n_k = 0
+    for k in range(n):
+        if w.z[k] > 0.0 or everybody:
+            w.held[n_k] = w.chosen[k]
+            if grow_factor(W, w.n_c, w.problem, n, w.held, w.doubt, n_k):
+                w.place[n_k] = k
+                n_k += 1
+    return n_k
+
+
+def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: int, solved: bool) -> bool:
+    """Correct z by what it leaves; False where that is no answer either. n_k: rows of the factor; < 0: none yet."""
+    size = 0.0
+    for k in range(n):
+        size = max(size, abs(w.b[k]))
+    leftover(w, inverse, factored, n)
+    for _ in range(REFINEMENTS):
+        worst = 0.0
+        for k in range(n):
+            if w.z[k] > 0.0 or not solved:
+                worst = max(worst, abs(w.residual[k]))
+        if worst <= EPS * size:
+            break
+        if n_k < 0:
+            n_k = factor_pressed(w, W, n, not solved)
+        largest, change = correct(w, n, n_k)
+        leftover(w, inverse, factored, n)
+        if change <= SETTLED * largest:
+            break
+    answered = solved or presses(w, W, n)
+    for k in range(n):
+        w.z[k] = max(w.z[k], 0.0)
+    return answered
+
+
+def correct(w: Work, n: int, n_k: int) -> tuple[float, float]:
+    """Add to z what the residual asks for; the largest impulse and the largest correction."""
+    for i in range(n_k):
+        w.change[i] = -w.residual[w.place[i]]
+    solve_factored(w.problem, n, n_k, w.change)
+    largest = change = 0.0
+    for i in range(n_k):
+        k = w.place[i]
+        w.z[k] += w.change[i]
+        largest, change = max(largest, abs(w.z[k])), max(change, abs(w.change[i]))
+    return largest, change
+
+
+def keep_closed(w: Work, W: Doubles, MG: Doubles, n: int) -> bool:
+    """Take out of the acceleration what rounding leaves of G a on the pressed contacts; whether there was any."""
+    worst = 0.0
+    for k in range(n):
+        pressed = w.z[k] > 0.0
+        w.residual[k] = product(w.G, w.a, w.chosen[k], w.n_q) if pressed else 0.0
+        worst = max(worst, abs(w.residual[k]))
+    if worst == 0.0:
+        return False
+    n_k = factor_pressed(w, W, n, False)
+    for i in range(n_k):
+        w.change[i] = -w.residual[w.place[i]]
+    solve_factored(w.problem, n, n_k, w.change)
+    for i in range(n_k):
+        for j in range(w.n_q):
+            w.a[j] += MG[w.held[i] * w.n_q + j] * w.change[i]
+    return True
+
+
+def presses(w: Work, W: Doubles, n: int) -> bool:
+    """Whether z of an answer found without the solver pulls nowhere, and leaves no contact closing."""
+    largest = 0.0
+    for k in range(n):
+        largest = max(largest, w.z[k])
+    for k in range(n):
+        c, z = w.chosen[k], w.z[k]
+        if not z >= -PULLS * largest or w.residual[k] < -PULLS * (abs(w.b[k]) + W[c * w.n_c + c] * abs(z)):
+            return False
+    return True

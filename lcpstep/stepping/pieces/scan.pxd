@@ -1,0 +1,34 @@
+cimport cython
+from libc.math cimport isfinite
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, max, min
+from lcpstep.stepping.pieces.codes cimport CLOSED, EPS, LEFT, NOBODY, OPEN
+from lcpstep.stepping.pieces.contact_forces cimport pulls
+from lcpstep.stepping.pieces.polynomial cimport NODES, Polynomial, WEIGHTS, contacts_at, force_at
+from lcpstep.stepping.pieces.state cimport Plan, Work
+
+cdef Py_ssize_t NOWHERE, PARTS, PROBES, ITERATIONS
+cdef double SOON
+cdef (double, double) gap_at(
+    Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c
+) noexcept nogil
+cdef (double, double) hop_at(
+    Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c
+) noexcept nogil
+cdef double landing(
+    Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c, bint hop
+) noexcept nogil
+cdef double lowest(
+    Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c
+) noexcept nogil
+@cython.locals(hop=bint, rests=bint)
+cdef (Py_ssize_t, double) first_landing(
+    Model m, Plan plan, Work w, Polynomial z, double t, double end
+) noexcept nogil
+cdef (Py_ssize_t, double) first_release(
+    Model m, Plan plan, Work w, Polynomial z, double t, double end
+) noexcept nogil
+cdef double vanishing(
+    Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c
+) noexcept nogil

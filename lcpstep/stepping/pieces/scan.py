@@ -1,0 +1,177 @@
+"""Events on a polynomial piece of motion, as kernels: the first gap that closes, the first contact that opens.
+
+The piece is divided into intervals in which each gap velocity changes its sign at most once; so a gap that falls to
+zero and returns within an interval is found at its lowest point. Roots are bracketed before they are polished. A
+hop that began on the surface is followed by the mean of its gap velocity, g / tau, which keeps all digits.
+Source: W. Press et al., Numerical Recipes, sections 9.2 and 9.4.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from math import isfinite
+
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, max, min
+    from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN
+    from lcpstep.stepping.pieces.contact_forces import pulls
+    from lcpstep.stepping.pieces.polynomial import NODES, WEIGHTS, Polynomial, contacts_at, force_at
+    from lcpstep.stepping.pieces.state import Plan, Work
+
+NOWHERE = -2
+PARTS = 4  # intervals of a piece
+PROBES = 4  # of contact forces
+SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
+ITERATIONS = 60
+
+
+def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
+    """One gap and its velocity."""
+    contacts_at(m, plan, w, z, t, tau, w.gap_try, z.rate_now)
+    return w.gap_try[c], z.rate_now[c]
+
+
+def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
+    """Mean of a gap velocity over (0, tau), and its slope."""
+    mean = 0.0
+    for k in range(4):
+        _, u = gap_at(m, plan, w, z, t, NODES[k] * tau, c)
+        mean += WEIGHTS[k] * u
+    _, u = gap_at(m, plan, w, z, t, tau, c)
+    return mean, (u - mean) / tau
+
+
+def landing(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int, hop: bool
+) -> float:
+    """Where gap c falls to zero in (a, b]: positive at a, or on its way up, and not positive at b."""
+    tau = b
+    if hop and w.half[c] < 0.0:
+        tau = min(b, -w.rate[c] / w.half[c])
+    for _ in range(ITERATIONS):
+        if hop:
+            f, slope = hop_at(m, plan, w, z, t, tau, c)
+        else:
+            f, slope = gap_at(m, plan, w, z, t, tau, c)
+        if f > 0.0:
+            a = tau
+        else:
+            b = tau
+        new = tau - f / slope if slope < 0.0 else a
+        if not a < new < b:
+            new = 0.5 * (a + b)
+        if abs(new - tau) <= 2.0 * EPS * tau or b - a <= EPS * b:
+            return min(max(new, a), b)
+        tau = new
+    return tau
+
+
+def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
+    """Where the velocity of gap c passes zero upwards in (a, b): regula falsi after Illinois."""
+    f_a, f_b, side, tau = z.rate_from[c], z.rate_to[c], 0, a
+    for _ in range(ITERATIONS):
+        tau = (a * f_b - b * f_a) / (f_b - f_a)
+        if not a < tau < b:
+            tau = 0.5 * (a + b)
+        _g, f = gap_at(m, plan, w, z, t, tau, c)
+        if f == 0.0 or b - a <= 4.0 * EPS * b:
+            break
+        if f < 0.0:
+            a, f_a = tau, f
+            f_b = 0.5 * f_b if side < 0 else f_b
+            side = -1
+        else:
+            b, f_b = tau, f
+            f_a = 0.5 * f_a if side > 0 else f_a
+            side = 1
+    return tau
+
+
+def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
+    """Which gap closes first in (0, end], and when; NOBODY and the end if none does, NOWHERE if one is not finite."""
+    n_c, found, first = w.n_c, NOBODY, end
+    for c in range(n_c):
+        if w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0:
+            return c, 0.0
+    copy(z.gap_from, w.gap, n_c)
+    copy(z.rate_from, w.rate, n_c)
+    a = 0.0
+    for part in range(1, PARTS + 1):
+        b = end * part / PARTS
+        contacts_at(m, plan, w, z, t, b, z.gap_to, z.rate_to)
+        for c in range(n_c):
+            if not isfinite(z.gap_to[c]):
+                return NOWHERE, b
+            if w.status[c] != OPEN:
+                continue
+            hop = w.gap[c] <= 0.0 and z.gap_from[c] <= plan.slack
+            if hop and z.gap_to[c] <= plan.slack:  # finer than positions tell
+                mean, _ = hop_at(m, plan, w, z, t, b, c)
+                z.gap_to[c] = b * mean
+            low = b
+            if z.gap_to[c] > 0.0:
+                if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
+                    continue
+                low = lowest(m, plan, w, z, t, a, b, c)
+                g, _ = gap_at(m, plan, w, z, t, low, c)
+                if g > 0.0:
+                    continue
+            start = max(a, SOON * end) if w.grounded[c] == LEFT else a
+            rests = hop and start == 0.0 and w.rate[c] <= 0.0
+            tau = 0.0 if rests else landing(m, plan, w, z, t, start, low, c, hop)
+            if tau < first or found == NOBODY:
+                found, first = c, tau
+        if found != NOBODY:
+            return found, first
+        copy(z.gap_from, z.gap_to, n_c)
+        copy(z.rate_from, z.rate_to, n_c)
+        a = b
+    return NOBODY, end
+
+
+def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
+    """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does."""
+    if w.closed_now == 0:
+        return NOBODY, end
+    a, found, first = w.ahead, NOBODY, end
+    for probe in range(1, PROBES + 1):
+        b = end * probe / PROBES
+        force_at(m, plan, w, z, t, b)
+        copy(z.rate_to, w.p, w.n_c)
+        for c in range(w.n_c):
+            if w.status[c] == CLOSED and z.rate_to[c] < 0.0 and pulls(m, w, c):
+                tau = vanishing(m, plan, w, z, t, a, b, c)
+                if tau < first or found == NOBODY:
+                    found, first = c, tau
+        if found != NOBODY:
+            return found, first
+        a = b
+    return NOBODY, end
+
+
+def vanishing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
+    """Where the force of contact c vanishes in (a, b]: regula falsi after Illinois."""
+    force_at(m, plan, w, z, t, a)
+    f_a, f_b, side, tau = w.p[c], z.rate_to[c], 0, b
+    if f_a <= 0.0:
+        return a
+    for _ in range(ITERATIONS):
+        tau = (a * f_b - b * f_a) / (f_b - f_a)
+        if not a < tau < b:
+            tau = 0.5 * (a + b)
+        force_at(m, plan, w, z, t, tau)
+        f = w.p[c]
+        if f == 0.0 or b - a <= 4.0 * EPS * (t + b):
+            break
+        if f > 0.0:
+            a, f_a = tau, f
+            f_b = 0.5 * f_b if side > 0 else f_b
+            side = 1
+        else:
+            b, f_b = tau, f
+            f_a = 0.5 * f_a if side < 0 else f_a
+            side = -1
+    return tau

@@ -1,0 +1,167 @@
+"""Events of `Located` that have no end: one plastic impact over a short stretch of time settles them.
+
+Several coupled contacts may strike, close and open ever faster at one instant: a particle that comes to rest in a
+groove, a body between walls without clearance. What is left of such a sequence is taken as one implicit step of
+Moreau's, of length s,
+
+    0 <= g / s + u + s alpha + W z   complementary to   z >= 0,      v+ = v + s a + M^-1 G^T z,      q+ = q + s v+,
+
+which never adds energy and ends with time gone on; each further one in a step is twice as long. So a step ends after
+a bounded number of events, whatever they are. Source: J. J. Moreau, Unilateral contact and dry friction in finite
+freedom dynamics (1988).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from math import pow
+
+    from lcpstep.kernels.dynamics import external_force, gap_rates
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import max, min
+    from lcpstep.stepping.pieces.codes import (
+        ACCUMULATION,
+        CLOSED,
+        FINISHED,
+        GROUND,
+        IMPACT,
+        INERTIA,
+        LCP_FAILED,
+        NOT_FINITE,
+        ROUNDING,
+    )
+    from lcpstep.stepping.pieces.jointed import answer_impulse, hold_joints, turn_with_joints
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.refine import solve_chosen
+    from lcpstep.stepping.pieces.smooth import (
+        free_acceleration,
+        gap_bias,
+        measure,
+        put_on_surface,
+        refactor,
+        respond,
+    )
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import release, stick
+    from lcpstep.stepping.pieces.times import within
+
+UNTOLD = 1e-4  # of a step: contacts whose hops are shorter are closed anyhow
+
+
+def endless(plan: Plan, w: Work) -> bool:
+    """Whether the events of this step must be settled."""
+    return w.stalled > 0.0 or w.events > plan.per_step
+
+
+def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+    """Settle the motion from w.sigma on, with the accelerations of the piece that begins there."""
+    n, rest = w.n_q, w.end - w.sigma
+    span = min(rest, w.stalled * pow(2.0, w.settled)) if w.events <= plan.per_step else rest
+    now = t + w.sigma
+    if not meet(m, plan, w, now, span):
+        return LCP_FAILED
+    if matters(m, w, span > UNTOLD * plan.h):
+        w.cut += 1
+    for i in range(n):
+        w.v[i] += span * w.free[i]
+    for c in range(w.n_c):
+        p = w.z[c]
+        w.impulse[c] += p
+        if p > 0.0:
+            if w.joined:
+                answer_impulse(w, c, p)
+            for i in range(n):
+                w.v[i] += w.MG[c * w.n_q + i] * p
+    if w.joined:
+        hold_joints(w, span)
+    for i in range(n):
+        w.q[i] += span * w.v[i]
+    w.sigma = w.end if span == rest else w.sigma + span
+    note(m, plan, w, record, now, t + w.sigma, span)
+    w.stalled, w.unchanged = 0.0, False
+    w.settled += 1.0
+    return begin_again(m, plan, w, record, t + w.sigma)
+
+
+def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
+    """The impulses of the stretch, into w.z; gap velocities at its end without them are left in w.b."""
+    n_c = w.n_c
+    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
+    gap_bias(m, w, within(plan, w, t), w.q, w.v)
+    if not plan.constant:
+        if not refactor(m, w, t):
+            return False
+        respond(m, w)
+    for c in range(n_c):
+        w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+        if w.gap[c] <= plan.slack:
+            w.gap[c] = 0.0
+        w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.rate[c]
+        w.b[c] = w.gap[c] / span + w.rate[c] + span * w.alpha[c]
+    return solve_chosen(m, plan, w, w.W, INERTIA, n_c)
+
+
+def matters(m: Model, w: Work, lasting: bool) -> bool:
+    """Whether the stretch is told: it is lasting and there was an impact, or an elastic contact loses energy."""
+    some = False
+    for c in range(w.n_c):
+        elastic = w.before[c] < 0.0 and m.restitution[c] == 1.0
+        some = some or (w.z[c] > 0.0 and (lasting or elastic))
+    return some
+
+
+def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float, span: float) -> None:
+    """What has become of each contact."""
+    n_c = w.n_c
+    for c in range(n_c):
+        w.rate[c] = w.b[c] - w.gap[c] / span
+        for d in range(n_c):
+            w.rate[c] += w.W[c * w.n_c + d] * w.z[d]
+    for c in range(n_c):
+        closed, pressed, touches = w.status[c] == CLOSED, w.z[c] > 0.0, w.gap[c] == 0.0
+        w.turns[c] = w.hops[c] = w.fall[c] = 0.0
+        if pressed and not closed:
+            kind = IMPACT if touches and m.restitution[c] == 0.0 else ACCUMULATION
+            record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
+            if touches:
+                stick(w, record, c, end)
+        elif closed and not pressed and w.rate[c] > ROUNDING * speed_terms(plan, w, c):
+            release(m, plan, w, record, c, end, w.rate[c])
+        if w.status[c] == CLOSED:
+            w.gap[c] = w.rate[c] = 0.0
+        else:
+            w.gap[c] = max(0.0, w.gap[c] + span * w.rate[c])
+            w.grounded[c] = GROUND if w.gap[c] == 0.0 else 0
+
+
+def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+    """State, gaps and forces where the next piece begins; the states asked for in between."""
+    if not plan.plain:
+        if not refactor(m, w, t):
+            return NOT_FINITE
+        put_on_surface(m, plan, w, t)
+        if w.joined:
+            turn_with_joints(w, within(plan, w, t))
+        measure(m, plan, w, t)
+    while record.next_time < record.n_times and record.times[record.next_time] < t:
+        at = record.times[record.next_time]
+        copy(w.v_try, w.v, w.n_q)
+        for i in range(w.n_q):
+            w.q_try[i] = w.q[i] - (t - at) * w.v[i]
+        record.keep(at, 0.0, w.q_try, w.v_try, w.impulse)
+        record.next_time += 1
+    if plan.trapezoidal and not plan.steady:
+        external_force(m, within(plan, w, t), w.q, w.v, w.force)
+        w.force_evaluations += 1
+    elif not plan.trapezoidal:
+        if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+            return NOT_FINITE
+        w.force_evaluations += 1
+    if record.keeps_events():
+        keep(w, record, t, 1.0)
+    return FINISHED

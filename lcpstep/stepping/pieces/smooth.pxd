@@ -1,0 +1,34 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
+from lcpstep.kernels.linear cimport (
+    factorise, grow_factor, positive_definite, solve, solve_definite, solve_factored,
+)
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, after, max, min
+from lcpstep.stepping.pieces.codes cimport CLOSED, REST, WHOLE
+from lcpstep.stepping.pieces.jointed cimport (
+    join_acceleration, meet_joints, put_on_joints, reach_joints, reduce_mobility, settle_velocity, take_joints,
+)
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.times cimport within
+
+cdef Py_ssize_t LANDINGS
+cdef double ON_THE_SURFACE
+
+cdef void invert(Model m, Plan plan, Work w, double rest, Py_ssize_t place) noexcept nogil
+@cython.locals(place=Py_ssize_t)
+cdef Py_ssize_t accelerate(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef bint free_acceleration(Model m, Work w, double t, double* q, double* v, double* out) noexcept nogil
+cdef void mobility(Model m, Work w, Py_ssize_t c) noexcept nogil
+cdef void respond(Model m, Work w) noexcept nogil
+cdef bint refactor(Model m, Work w, double t) noexcept nogil
+cdef void gap_bias(Model m, Work w, double t, double* q, double* v) noexcept nogil
+cdef void measure(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef void shift(Work w, double tau) noexcept nogil
+cdef void put_on_surface(Model m, Plan plan, Work w, double t) noexcept nogil
+@cython.locals(free=bint)
+cdef void settle_state(Model m, Plan plan, Work w, double t, double* q) noexcept nogil
+cdef void newton_step(Work w, double* x) noexcept nogil
+cdef void lift(Model m, Plan plan, Work w, double* x, Py_ssize_t c, double distance) noexcept nogil
+cdef bint advance(Model m, Plan plan, Work w, double t, double tau) noexcept nogil

@@ -1,0 +1,276 @@
+"""The smooth motion of `Located` between two events, as kernels: q + v tau + a tau^2 / 2 with one force a piece.
+
+Linear systems take the mean acceleration of the trapezoidal rule over the rest of the step,
+
+    A a = (F(t) + F(t + rest)) / 2 - C v - K (q + v rest / 2),     A = M + rest/2 C + rest^2/4 K,
+
+others the acceleration at the base, M a = f(t, q, v), and at the end of the piece half the difference to the
+acceleration there (velocity Verlet). Both are of order two. Where the Jacobian changes, closed contacts are put back
+onto the surface, with the normal there (RATTLE). Sources: N. Newmark, A method of computation for structural
+dynamics (1959); H. Andersen, Rattle, J. Comput. Phys. 52 (1983).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
+    from lcpstep.kernels.linear import (
+        factorise,
+        grow_factor,
+        positive_definite,
+        solve,
+        solve_definite,
+        solve_factored,
+    )
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.stepping.pieces.codes import CLOSED, REST, WHOLE
+    from lcpstep.stepping.pieces.jointed import (
+        join_acceleration,
+        meet_joints,
+        put_on_joints,
+        reach_joints,
+        reduce_mobility,
+        settle_velocity,
+        take_joints,
+    )
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import within
+
+LANDINGS = 6  # Newton iterations onto the surface
+ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
+
+
+def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
+    """A^-1 for a piece as long as `rest`, and what contacts need of it, into a place."""
+    n, n_c = w.n_q, w.n_c
+    inverse, AG, WA = (
+        after(plan.A_inverse, place * n * n),
+        after(plan.AG, place * n_c * n),
+        after(plan.WA, place * n_c * n_c),
+    )
+    if n == 1:
+        A = m.M[0] + 0.5 * rest * m.C[0] + 0.25 * rest * rest * m.K[0]
+        inverse[0] = 1.0 / A
+    else:
+        for i in range(n * n):
+            plan.A[i] = m.M[i] + 0.5 * rest * m.C[i] + 0.25 * rest * rest * m.K[i]
+        factorise(plan.A, plan.pivots, n)
+        for j in range(n):
+            for i in range(n):
+                plan.unit[i] = 1.0 if i == j else 0.0
+            solve(plan.A, plan.pivots, plan.unit, n)
+            for i in range(n):
+                inverse[i * n + j] = plan.unit[i]
+    if plan.constant:
+        for c in range(n_c):
+            for i in range(n):
+                AG[c * n + i] = product(inverse, after(m.G, c * n), i, n)
+            for d in range(n_c):
+                WA[d * n_c + c] = product(m.G, after(AG, c * n), d, n)
+
+
+def accelerate(m: Model, plan: Plan, w: Work, t: float) -> int:
+    """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
+    rest = w.end - w.sigma
+    place = WHOLE if rest == plan.made_for or not plan.stiff else REST
+    if not plan.trapezoidal or plan.steady:
+        return place
+    if place == REST:
+        if plan.small:
+            invert(m, plan, w, rest, REST)
+        else:
+            place = WHOLE
+    n = w.n_q
+    for i in range(n):
+        w.a_try[i] = 0.5 * (w.force[i] + w.next_force[i])
+    if plan.stiff:
+        for i in range(n):
+            for j in range(n):
+                w.a_try[i] -= m.C[i * n + j] * w.v[j] + m.K[i * n + j] * (w.q[j] + 0.5 * rest * w.v[j])
+    for i in range(n):
+        w.free[i] = product(after(plan.A_inverse, place * n * n), w.a_try, i, n)
+    return place
+
+
+def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
+    """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M."""
+    if not m.mass.given:
+        total_force(m, t, q, v, w.force)
+        for i in range(w.n_q):
+            out[i] = product(m.M_inverse, w.force, i, w.n_q)
+        if w.joined:
+            join_acceleration(w, t, q, v, out)
+        return True
+    total_force(m, t, q, v, out)
+    mass(m, t, q, v, w.M)
+    if not positive_definite(w.M, w.n_q):
+        return False
+    solve_definite(w.M, out, w.n_q)
+    if w.joined:
+        join_acceleration(w, t, q, v, out)
+    return True
+
+
+def mobility(m: Model, w: Work, c: int) -> None:
+    """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
+    if not m.mass.given:
+        for i in range(w.n_q):
+            w.MG[c * w.n_q + i] = product(m.M_inverse, after(w.G, c * w.n_q), i, w.n_q)
+    else:
+        copy(after(w.MG, c * w.n_q), after(w.G, c * w.n_q), w.n_q)
+        solve_definite(w.M, after(w.MG, c * w.n_q), w.n_q)
+    if w.joined:
+        reduce_mobility(w, c)
+
+
+def respond(m: Model, w: Work) -> None:
+    """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
+    for c in range(w.n_c):
+        mobility(m, w, c)
+        for d in range(w.n_c):
+            w.W[d * w.n_c + c] = product(w.G, after(w.MG, c * w.n_q), d, w.n_q)
+
+
+def refactor(m: Model, w: Work, t: float) -> bool:
+    """Factors of the mass matrix and of the joints at the state w.q."""
+    if m.mass.given:
+        mass(m, t, w.q, w.v, w.M)
+        if not positive_definite(w.M, w.n_q):
+            return False
+    if w.joined:
+        take_joints(w, t)
+    return True
+
+
+def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
+    """Gap accelerations at v' = 0 into w.bias."""
+    bias(m, t, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
+
+
+def measure(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
+    gaps(m, t, w.q, w.v, w.gap)
+    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
+    for c in range(w.n_c):
+        w.rate[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+        if w.status[c] == CLOSED:
+            w.gap[c] = w.rate[c] = 0.0
+
+
+def shift(w: Work, tau: float) -> None:
+    """The state at tau after the base becomes the base: along the quadratics."""
+    for i in range(w.n_q):
+        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+        w.v[i] += tau * w.a[i]
+    for c in range(w.n_c):
+        w.impulse[c] += tau * w.force_now[c]
+        if w.status[c] == CLOSED:
+            w.gap[c] = w.rate[c] = 0.0
+        else:
+            w.gap[c] += tau * (w.rate[c] + tau * w.half[c])
+            w.rate[c] += 2.0 * tau * w.half[c]
+
+
+def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
+    for _ in range(LANDINGS):
+        if w.joined:
+            put_on_joints(w, t, plan.slack, w.q)
+        gaps(m, t, w.q, w.v, w.gap_try)
+        worst = 0.0
+        for c in range(w.n_c):
+            if w.status[c] != CLOSED:
+                w.gap_try[c] = min(w.gap_try[c], 0.0)
+            worst = max(worst, abs(w.gap_try[c]))
+        if worst <= ON_THE_SURFACE * plan.slack:
+            return
+        if not plan.constant:
+            gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
+            respond(m, w)
+        newton_step(w, w.q)
+
+
+def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
+    """Q, a position within a piece, onto closed contacts and joints and out of obstacles; V_TRY onto joints."""
+    free = plan.plain or w.n_c == 0 or (plan.exact and w.closed_now > 0)
+    if free and not plan.joined:
+        return
+    copy(w.q_base, w.q, w.n_q)
+    copy(w.q, q, w.n_q)
+    if w.joined:
+        put_on_joints(w, t, plan.slack, w.q)
+    if refactor(m, w, t):
+        put_on_surface(m, plan, w, t)
+        if w.joined:
+            settle_velocity(w, t)
+    copy(q, w.q, w.n_q)
+    copy(w.q, w.q_base, w.n_q)
+
+
+def newton_step(w: Work, x: Doubles) -> None:
+    """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.gap_try of closed and violated contacts.
+
+    Those that depend on others get no z of their own.
+    """
+    n_c, n_k = w.n_c, 0
+    for c in range(n_c):
+        if w.gap_try[c] != 0.0 or w.status[c] == CLOSED:
+            w.held[n_k] = c
+            if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
+                w.change[n_k] = -w.gap_try[c]
+                n_k += 1
+    solve_factored(w.problem, n_c, n_k, w.change)
+    for k in range(n_k):
+        for i in range(w.n_q):
+            x[i] += w.MG[w.held[k] * w.n_q + i] * w.change[k]
+
+
+def lift(m: Model, plan: Plan, w: Work, x: Doubles, c: int, distance: float) -> None:
+    """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
+    if not plan.constant:
+        mobility(m, w, c)
+    W = product(w.G, after(w.MG, c * w.n_q), c, w.n_q)
+    if W > 0.0:
+        for i in range(w.n_q):
+            x[i] += w.MG[c * w.n_q + i] * distance / W
+
+
+def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
+    """The state at tau after the base becomes the base; False where the mass matrix fails.
+
+    With a Jacobian that changes, the contact forces of the base act over half the piece; `land` gives the rest.
+    """
+    if plan.plain:
+        shift(w, tau)
+        return True
+    n, t_next = w.n_q, t + tau
+    for i in range(n):
+        w.v_try[i] = w.v[i] + tau * w.a[i]
+        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+    for c in range(w.n_c):
+        w.impulse[c] += 0.5 * tau * w.force_now[c]
+    if w.joined:
+        reach_joints(w, t_next, tau, plan.slack)
+    if w.closed_now > 0:
+        if not refactor(m, w, t_next):
+            return False
+        put_on_surface(m, plan, w, t_next)
+    if plan.trapezoidal:
+        for i in range(n):
+            w.v[i] += 0.5 * tau * (w.free[i] + w.a[i])
+    else:
+        end = within(plan, w, t_next)
+        if not free_acceleration(m, w, end, w.q, w.v_try, w.a_try):
+            return False
+        w.force_evaluations += 1
+        for i in range(n):
+            w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
+            w.free[i] = w.a_try[i]
+        if w.joined:
+            meet_joints(w, t_next, tau)
+    measure(m, plan, w, t_next)
+    return True

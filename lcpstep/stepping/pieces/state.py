@@ -1,0 +1,245 @@
+"""What the kernels of `Located` work with: constants of a run, the piece of smooth motion at hand, work space."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.lcp.workspace import Workspace
+    from lcpstep.pointers import Doubles, Indices, after, indices_after
+
+VECTORS = [
+    "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
+    "v_from", "a_from", "q_time", "swing", "v_struck",
+]  # fmt: skip
+NUMBERS = [
+    "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
+    "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
+    "since", "next_zero", "turned", "turns", "hops", "fall",
+]  # fmt: skip
+MARKS = [
+    "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
+    "last_coordinate", "first_contact", "last_contact",
+]  # fmt: skip
+
+
+class Plan:
+    """Constants of steps of one size.
+
+    h
+    made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
+    trapezoidal     a linear system without joints, which moves by the trapezoidal rule
+    joined          there are joints
+    stiff           C or K is not zero
+    steady          the acceleration without contact never changes
+    plain           flat contacts at rest: gaps follow from their own quadratics
+    constant        M and the gap Jacobian are constant
+    small           few coordinates: matrices for the rest of a step are made anew
+    slack           gaps up to here count as zero
+    per_step        events in one step
+    many            impacts of a contact in one step after which hops are taken as one if they end within it
+    exact           pieces are Taylor polynomials; else, where pieces are polynomials, Runge-Kutta
+    longest         piece of motion
+    corners, n_corners, period    (m,) in [0, period)
+    margin          by which times are moved off a corner
+    A_inverse : (2, n_q, n_q)     (M + h/2 C + h^2/4 K)^-1, for WHOLE and REST
+    AG : (2, n_c, n_q)            (A^-1 G^T)^T
+    WA : (2, n_c, n_c)            G A^-1 G^T
+    A : (n_q, n_q);  unit : (n_q,);  pivots : (n_q,)    work space
+
+    Parameters
+    ----------
+    fields : dict   these by name, but n_corners and work space; A_inverse, AG and WA as arrays
+    """
+
+    def __init__(self, fields: dict[str, Any]) -> None:
+        n_q = fields["A_inverse"].shape[1]
+        self.fields = fields
+        self.h, self.made_for = fields["h"], fields["made_for"]
+        self.trapezoidal, self.joined, self.stiff = fields["trapezoidal"], fields["joined"], fields["stiff"]
+        self.steady, self.plain, self.constant = fields["steady"], fields["plain"], fields["constant"]
+        self.small, self.exact = fields["small"], fields["exact"]
+        self.slack, self.longest, self.margin = fields["slack"], fields["longest"], fields["margin"]
+        self.per_step, self.many = fields["per_step"], fields["many"]
+        self.period, self.n_corners = fields["period"], len(fields["corners"])
+        self.kept = np.zeros((n_q + 1) * n_q), np.zeros(n_q, dtype=np.intp)
+        self.corners, self.A_inverse = doubles(fields["corners"]), doubles(fields["A_inverse"])
+        self.AG, self.WA = doubles(fields["AG"]), doubles(fields["WA"])
+        self.A, self.pivots = doubles(self.kept[0]), indices(self.kept[1])
+        self.unit = after(self.A, n_q * n_q)
+
+
+class Work:
+    """The piece of motion that began at the last event or step, and work space.
+
+    Over the piece q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2.
+
+    Vectors, a number per coordinate:
+    q, v            state at the base of the piece
+    free            acceleration without contact forces
+    a               acceleration with them
+    force, next_force    F(t) of linear systems at the base, and at the end of the smooth interval
+    q_base, q_try, v_try, a_try
+    jolt            change by the impulses or forces of several contacts
+    q_from, v_from, a_from    state, acceleration at the base of a piece within which states are kept
+    q_time          time since the start of the step up to which a coordinate has been moved on
+    swing           largest sum of the terms of a velocity at the impacts of this step
+    v_struck        velocity just before the event after which the loop stopped
+
+    A number per contact:
+    gap, rate       g, u
+    half            half the gap acceleration
+    alpha           gap acceleration without contact forces
+    bend            what the mean acceleration lacks for the position, of moving flat obstacles
+    bias            gap acceleration at v' = 0
+    gap_try, gap_t, gap_t_try
+    end_s           s'' of the obstacles at the end of the smooth interval
+    last            time of the last impact since the start of the step
+    force_now       contact force
+    older, older_time    the last positive contact force, and when
+    impulse         since the last kept state; those of the n_j joints follow
+    p               impulses of the event at hand
+    b, z            of the complementarity problem at hand, and its solution
+    residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
+    before          gap velocity just before a corner
+    impulse_from    impulses at the base of a piece within which states are kept
+    since, next_zero     time since the start of the step to which gap and gap velocity belong, and of the next zero
+    turned, turns   time since the start of the step at which a contact last struck, closed or opened, and how often
+                    it has done so with hardly any time between,
+    hops            or with little time between, beside contacts that are closed, and hardly moving
+    fall            speed at which a gap that falls freely from its last impact will close; 0: something else acts
+
+    A whole number per contact:
+    status          OPEN or CLOSED
+    grounded        0, GROUND or LEFT
+    hits            impacts in this step
+    close_hits      the latest of them that came at hardly any distance
+    plastic         restitution of the event at hand is zero
+    chosen          contacts of the problem at hand
+    held, place     those of them that carry an impulse or a force, and their places in the list
+    first_coordinate, last_coordinate    range of the coordinates that an impulse changes, if constant,
+    first_contact, last_contact          and of the gaps
+
+    Matrices, row by row:
+    G, G_try, MG : (n_c, n_q)   gap Jacobian, one to try, (M^-1 G^T)^T
+    W : (n_c, n_c)              G M^-1 G^T
+    M : (n_q, n_q)              factor of a mass matrix that changes
+    problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
+    joints          those of the scene, where `joined`
+
+    The loop's numbers:
+    sigma           time since the start of the step
+    end             of the smooth interval in the step
+    low, high       the interval of time without corners
+    events          in this step
+    under_way       whether a step is
+    closed_now      how many contacts are closed
+    unchanged       whether the gaps have the accelerations of the piece before
+    made_with       the place of the matrices that the piece was made with
+    touching        whether an open contact may touch at rest
+    stalled         the stretch of time that events without end are settled over (0: there are none),
+    settled         and how often that has been done in this step
+    ahead           the time from the base of a piece at which its contact forces were decided
+
+    What steps by a tolerance ask for:
+    pausing         to stop after an event
+    blind           how far a single piece goes in which events are not looked for (0: they are)
+    goal            the time at the end of the step
+
+    Counters:
+    steps, lcp_calls, force_evaluations
+    events_left     events still allowed
+    cut             stretches of motion cut short by one plastic impact
+    members         contacts of the last problem of several
+    idle            rounds of the loop that found no event
+
+    Parameters
+    ----------
+    n_q, n_c : int   coordinates, contacts
+    joints : Joints or None
+    """
+
+    def __init__(self, n_q: int, n_c: int, joints: Any) -> None:
+        n_j = 0 if joints is None else joints.n_j
+        self.n_q, self.n_c, self.n_j, self.joints, self.joined = n_q, n_c, n_j, joints, joints is not None
+        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 1) * n_c + n_j)
+        self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
+        self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
+        self.places = np.zeros(n_c + 1, dtype=np.intp)
+        self.lcp, self.pivots = Workspace(n_c), indices(self.places)
+        self.place_vectors(doubles(self.numbers))
+        self.place_numbers(after(doubles(self.numbers), len(VECTORS) * n_q))
+        self.place_marks(indices(self.marks))
+        self.place_matrices(doubles(self.matrices))
+        self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
+        self.ahead = self.blind = self.goal = 0.0
+        self.under_way = self.unchanged = self.touching = self.pausing = False
+        self.events = self.closed_now = self.made_with = 0
+        self.steps = self.lcp_calls = self.force_evaluations = self.events_left = 0
+        self.cut = self.members = self.idle = 0
+        for c in range(n_c):
+            self.last_coordinate[c], self.last_contact[c] = n_q - 1, n_c - 1
+
+    def view(self, name: str) -> Any:
+        """The vector, the numbers or the marks of this name, as an array that Python reads and writes."""
+        if name in MARKS:
+            return self.marks[MARKS.index(name) * self.n_c :][: self.n_c]
+        if name in VECTORS:
+            return self.numbers[VECTORS.index(name) * self.n_q :][: self.n_q]
+        n = len(VECTORS) * self.n_q
+        if name == "impulse":
+            return self.numbers[n + len(NUMBERS) * self.n_c :]
+        return self.numbers[n + NUMBERS.index(name) * self.n_c :][: self.n_c]
+
+    def place_vectors(self, x: Doubles) -> None:
+        """Numbers per coordinate, from x on, in the order of VECTORS."""
+        n = self.n_q
+        self.q, self.v = x, after(x, n)
+        self.free, self.a = after(x, 2 * n), after(x, 3 * n)
+        self.force, self.next_force = after(x, 4 * n), after(x, 5 * n)
+        self.q_base, self.q_try = after(x, 6 * n), after(x, 7 * n)
+        self.v_try, self.a_try = after(x, 8 * n), after(x, 9 * n)
+        self.jolt, self.q_from = after(x, 10 * n), after(x, 11 * n)
+        self.v_from, self.a_from = after(x, 12 * n), after(x, 13 * n)
+        self.q_time, self.swing = after(x, 14 * n), after(x, 15 * n)
+        self.v_struck = after(x, 16 * n)
+
+    def place_numbers(self, x: Doubles) -> None:
+        """Numbers per contact, from x on, in the order of NUMBERS, and impulses."""
+        n = self.n_c
+        self.gap, self.rate = x, after(x, n)
+        self.half, self.alpha = after(x, 2 * n), after(x, 3 * n)
+        self.bend, self.bias = after(x, 4 * n), after(x, 5 * n)
+        self.gap_try, self.gap_t = after(x, 6 * n), after(x, 7 * n)
+        self.gap_t_try, self.end_s = after(x, 8 * n), after(x, 9 * n)
+        self.last, self.force_now = after(x, 10 * n), after(x, 11 * n)
+        self.older, self.older_time = after(x, 12 * n), after(x, 13 * n)
+        self.p, self.b = after(x, 14 * n), after(x, 15 * n)
+        self.z, self.residual = after(x, 16 * n), after(x, 17 * n)
+        self.change, self.doubt = after(x, 18 * n), after(x, 19 * n)
+        self.before, self.impulse_from = after(x, 20 * n), after(x, 21 * n)
+        self.since, self.next_zero = after(x, 22 * n), after(x, 23 * n)
+        self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
+        self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
+        self.impulse = after(x, 28 * n)
+
+    def place_marks(self, x: Indices) -> None:
+        """Whole numbers per contact, in the order of MARKS."""
+        n = self.n_c
+        self.status, self.grounded = x, indices_after(x, n)
+        self.hits, self.close_hits = indices_after(x, 2 * n), indices_after(x, 3 * n)
+        self.plastic, self.chosen = indices_after(x, 4 * n), indices_after(x, 5 * n)
+        self.held, self.place = indices_after(x, 6 * n), indices_after(x, 7 * n)
+        self.first_coordinate, self.last_coordinate = indices_after(x, 8 * n), indices_after(x, 9 * n)
+        self.first_contact, self.last_contact = indices_after(x, 10 * n), indices_after(x, 11 * n)
+
+    def place_matrices(self, x: Doubles) -> None:
+        """Matrices, from x on."""
+        n, n_c = self.n_q, self.n_c
+        self.G, self.G_try, self.MG = x, after(x, n_c * n), after(x, 2 * n_c * n)
+        self.M, self.W = after(x, 3 * n_c * n), after(x, (3 * n_c + n) * n)
+        self.problem = after(x, (3 * n_c + n) * n + n_c * n_c)

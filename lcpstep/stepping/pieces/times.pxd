@@ -1,0 +1,15 @@
+from lcpstep.pointers cimport abs, max, min
+from lcpstep.stepping.pieces.codes cimport EPS, LATE
+from lcpstep.stepping.pieces.state cimport Plan, Work
+
+
+cdef inline double within(Plan plan, Work w, double t) noexcept nogil:
+    return min(max(t, w.low + plan.margin), w.high - plan.margin)
+
+
+cdef inline bint at_corner(Plan plan, Work w, double t) noexcept nogil:
+    return not plan.plain and t >= w.high - 2.0 * plan.margin
+
+
+cdef inline double just_after(Plan plan, double t) noexcept nogil:
+    return t + LATE * plan.h + 4.0 * EPS * abs(t)

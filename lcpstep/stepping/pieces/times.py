@@ -1,0 +1,22 @@
+"""Times of `Located` to rounding, as kernels that the compiler merges into others (see the `.pxd` file)."""
+
+from __future__ import annotations
+
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import EPS, LATE
+from lcpstep.stepping.pieces.state import Plan, Work
+
+
+def within(plan: Plan, w: Work, t: float) -> float:
+    """A time moved off the corners, where forces jump, into the smooth interval at hand."""
+    return float(min(max(t, w.low + plan.margin), w.high - plan.margin))
+
+
+def at_corner(plan: Plan, w: Work, t: float) -> bool:
+    """Whether a time is that of the next corner, to rounding; then its impacts are those of the corner."""
+    return bool(not plan.plain and t >= w.high - 2.0 * plan.margin)
+
+
+def just_after(plan: Plan, t: float) -> float:
+    """Up to where times asked for are the end t of a step, but for rounding."""
+    return float(t + LATE * plan.h + 4.0 * EPS * abs(t))

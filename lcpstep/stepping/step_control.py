@@ -1,0 +1,220 @@
+"""Steps chosen by an error estimate: one step of h is compared with two of h/2, which are kept.
+
+A step is accepted where its error, relative to 1 + the size of the motion, takes no more than its share h / span of
+the tolerance. So errors of the whole motion are proportional to the tolerance, up to what the motion itself
+magnifies. Steps with events, and those that hold a jump of the forces, are few, and their errors fall no faster than
+h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller.
+
+Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are made once, an end of the span that is
+met exactly, and a bisection for whatever asks for short steps. A method that stops at an event goes on from there to
+the next multiple. The first step is short and steps grow by doubling, so that no oscillation of the forces is stepped
+over whole: both runs would sample it at equal phases, and agree. The loop and its decisions are here; a method's own
+class (`moreau_by_tolerance`, `located_by_tolerance`) takes the steps and measures their errors. Source: E. Hairer,
+S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), section II.4.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.stepping.adaptive import NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
+
+if not cython.compiled:
+    from math import ldexp
+
+    from lcpstep.kernels.record import COLUMNS, TIME, Record
+    from lcpstep.pointers import abs, inf, max, min
+
+ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
+LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
+FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
+
+
+class Control:
+    """Where the run is, and what it allows.
+
+    position, level      start of the step, in finest steps; level of the step
+    end, finest          of the span, in finest steps; finest level
+    tried, until         attempts so far, and their number at the next look at the outside world
+    start, stop, span    of time [s]
+    h_max, tolerance     longest step [s]; error allowed over the span
+    enough               share of the error allowed, below which twice the step is tried
+    size_q, size_v       of the motion so far
+    last                 error of the attempt before, if that failed at the same place
+    into                 how far beyond `position` an event has cut the step [s]
+
+    What an attempt has found:
+
+    apart_q, apart_v     errors of positions and velocities
+    far_q, far_v         sizes of those that it led to
+    happened             whether there was an event, or what counts as one
+    failed               whether a run could not be taken
+    full                 there was no room for its events, though there may be when the buffers are empty
+    cut                  the time since its base at which it stopped, infinite where it went to the next multiple
+
+    Parameters
+    ----------
+    span : (start, end);  h : longest step;  tolerance : float;  order : of the method
+    """
+
+    def __init__(self, span: tuple[float, float], h: float, tolerance: float, order: int) -> None:
+        start, end = span
+        self.position, self.tried, self.until = 0, 0, 0
+        self.h_max, self.end, self.finest, self.level = sizes(span, h)
+        self.start, self.stop, self.span = start, end, end - start
+        self.tolerance, self.enough = tolerance, PLENTY * 0.5**order
+        self.size_q = self.size_v = self.into = 0.0
+        self.last = inf
+        self.begin_attempt()
+
+    def store(self) -> None:
+        """Of a method: keep the state at the start of a step."""
+
+    def restore(self) -> None:
+        """Of a method: go back there; work that was done stays counted."""
+
+    def accept(self) -> None:
+        """Of a method: the step that has been taken stands."""
+
+    def ready(self) -> int:
+        """Of a method: 0, or why no step can be attempted now, PAUSED or WANTED."""
+        return REACHED
+
+    def attempt(self) -> int:
+        """Of a method: one step, and two halves of it; what was found into the fields, 0 or why it failed."""
+        return REACHED
+
+    def steps(self) -> int:
+        """Steps until the end of the span, full buffers, or one that cannot be taken; says why it returned.
+
+        It also returns where a run has failed: an interrupt that a callback heard is to be passed on.
+        """
+        while self.tried < self.until:
+            if self.over():
+                return REACHED
+            code = self.ready()
+            if code != REACHED:
+                return code
+            self.tried += 1
+            self.store()
+            self.begin_attempt()
+            code = self.attempt()
+            if self.full:
+                self.restore()
+                return PAUSED
+            verdict = self.judge()
+            if verdict == ACCEPTED:
+                self.accept()
+            else:
+                self.restore()
+            if verdict == GIVEN_UP:
+                return TOO_SMALL if code == REACHED else code
+            if self.failed:
+                return WANTED
+        return PAUSED
+
+    def begin_attempt(self) -> None:
+        """Nothing is known of it yet."""
+        self.apart_q = self.apart_v = self.far_q = self.far_v = 0.0
+        self.happened = self.failed = self.full = False
+        self.cut = inf
+
+    def step_size(self, level: int) -> float:
+        """Step of a level [s]."""
+        return ldexp(self.h_max, -level)
+
+    def length(self, level: int) -> int:
+        """The same, in finest steps."""
+        one = 1
+        return one << (self.finest - level)
+
+    def base(self) -> float:
+        """The multiple of the step from which times are counted until the next one is reached [s]."""
+        return self.time_of(self.position)
+
+    def now(self) -> float:
+        """Time at which the step begins [s]."""
+        return self.base() + self.into
+
+    def goal(self) -> float:
+        """Time at which it ends unless an event cuts it [s]."""
+        return self.time_of(self.position + self.length(self.level))
+
+    def time_of(self, position: int) -> float:
+        """Time of a number of finest steps; the end of the span to the bit [s]."""
+        if position >= self.end:
+            return self.stop
+        return min(self.stop, self.start + self.h_max * ldexp(position, -self.finest))
+
+    def over(self) -> bool:
+        """Whether the end of the span is reached."""
+        return self.position >= self.end
+
+    def resolved(self, size: float) -> float:
+        """Error that a step with events may make, of positions (size_q) or velocities (size_v)."""
+        return LEAST_SHARE * self.tolerance * (1.0 + size)
+
+    def judge(self) -> int:
+        """Whether the step attempted is accepted; sets the next one's place and level."""
+        level, h = self.level, self.step_size(self.level)
+        size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
+        noise = min(NOISE, LEAST_SHARE * self.tolerance)
+        error = max(self.apart_q / (1.0 + size_q), self.apart_v / (1.0 + size_v)) - noise
+        allowed = h / self.span
+        if self.happened or FLAT * error > self.last:
+            allowed = max(allowed, LEAST_SHARE)
+        allowed *= self.tolerance
+        if self.tolerance < NOISE:  # no step is that good
+            return GIVEN_UP
+        if self.failed or not error <= allowed:
+            self.last = inf if self.failed else error
+            if level >= self.finest:
+                return GIVEN_UP
+            self.level = level + 1
+            self.go_on(0.0)
+            return AGAIN
+        self.size_q, self.size_v, self.last = size_q, size_v, inf
+        if self.go_on(self.cut):
+            return ACCEPTED
+        if level > 0 and self.position % self.length(level - 1) == 0 and error <= self.enough * allowed:
+            self.level = level - 1
+        return ACCEPTED
+
+    def go_on(self, time: float) -> bool:
+        """Go on to a time since the base, at most to the next multiple of the step; whether it lies still ahead."""
+        h = self.step_size(self.level)
+        rounding = NOISE * (abs(self.now()) + h)
+        self.into = max(self.into, min(time, h))
+        if self.into < h - rounding:
+            return True
+        self.position += self.length(self.level)
+        self.into = self.into - h if self.into - h > rounding else 0.0
+        return False
+
+    def advance(self) -> int:
+        """`steps`, called from Python."""
+        with cython.nogil:
+            return self.steps()
+
+    def prepare(self) -> None:
+        """Of a method: make what `ready` has found wanting."""
+
+    @property
+    def time(self) -> float:
+        """Time at which the step begins [s]."""
+        return self.now()
+
+    @property
+    def step(self) -> float:
+        """Its size [s]."""
+        return self.step_size(self.level)
+
+
+def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
+    """What a step has kept and noted at `late` or after, from a row and an event on, belongs to its end t."""
+    for k in range(row, r.row):
+        if r.rows[k * r.row_size + TIME] >= late:
+            r.rows[k * r.row_size + TIME] = t
+    for k in range(event, r.event):
+        if r.events[k * COLUMNS] >= late:
+            r.events[k * COLUMNS] = t

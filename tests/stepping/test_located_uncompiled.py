@@ -1,0 +1,44 @@
+"""Steps with located impacts where nothing is built: the kernels as plain Python move everything alike."""
+
+from pathlib import Path
+
+import lcpstep
+from tests.processes import python
+from tests.uncompiled import copy_without_what_is_built
+
+# Impacts and forces of several contacts, more events in a step than may be, joints, a mass that changes
+MOTIONS = """
+import hashlib
+import numpy as np
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import Located, simulate
+from lcpstep.stepping.pieces import loop
+
+print(loop.__file__)
+angles = np.array([0.1, 0.2, 0.3])
+planes = np.stack([-np.sin(angles), np.cos(angles)], axis=1)
+groove = Scene(
+    LinearSystem(M=np.eye(2), force=[1.0, -10.0]), [0.0, 0.1], [0.3, -1.0], (0.0, 0.6),
+    contacts=LinearContacts(G=np.vstack([planes, planes * [-1.0, 1.0]]), restitution=0.5),
+)
+for scene, n in (
+    (groove, 20), (scenes.pendulum_stop(form="rod", t_end=1.0), 30), (scenes.double_pendulum(t_end=0.5), 20),
+    (scenes.stack(t_end=0.3), 20), (scenes.bowl(t_end=0.5), 20),
+):
+    m = simulate(scene, Located(scene.t_span[1] / n, max_per_step=3))
+    numbers = b"".join(x.tobytes() for x in (m.t, m.q, m.v, m.impulse, m.joint_impulse))
+    print(scene.name, len(m.impacts), m.message, hashlib.sha256(numbers).hexdigest())
+"""
+
+
+def test_kernels_of_located_move_alike_where_they_are_not_built(tmp_path):
+    copy_without_what_is_built(tmp_path)
+    built, plain = (
+        python(MOTIONS, cwd=folder, PYTHONPATH=str(folder), NUMBA_DISABLE_JIT="1").splitlines()
+        for folder in (Path(lcpstep.__file__).parents[1], tmp_path)
+    )
+    assert plain[0].endswith(".py")
+    assert not built[0].endswith(".py")
+    assert plain[1:] == built[1:]
+    assert len(plain) == 6
+    assert "plastic impact" in plain[1]
