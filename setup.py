@@ -19,6 +19,9 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import ready  # noqa: E402
+
 HEADERS = {
     "lcpstep.pointers",
     "lcpstep.arrays",
@@ -89,7 +92,16 @@ def extension(header: Path) -> Extension:
 def extensions() -> list[Extension]:
     """All compiled modules."""
     found = [extension(header) for header in sorted(HERE.glob("lcpstep/**/*.pxd"))]
-    return [e for e in found if e.name not in HEADERS]
+    return [e for e in found if e.name not in HEADERS] + [functions_of_ready_scenes()]
+
+
+def functions_of_ready_scenes() -> Extension:
+    """The module of C functions that `ready` writes."""
+    file, text = HERE / "build" / "ready" / "ready.pyx", ready.source(HERE)
+    if not file.exists() or file.read_text() != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    return Extension("lcpstep.kernels.ready", [str(file.relative_to(HERE))], extra_compile_args=OPTIONS)
 
 
 if __name__ == "__main__":

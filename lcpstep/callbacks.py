@@ -20,7 +20,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from lcpstep import compiled
+from lcpstep import built, compiled
 from lcpstep.faults import Callback, name_of
 
 SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
@@ -63,7 +63,7 @@ def address(f: Callback, ndim: int) -> int:
 
 def plain_address(f: Callback, ndim: int) -> int:
     """The same of a C function of plain pointers; see `lcpstep.kernels.function` for its signature."""
-    return int(_made(f, SECOND_ORDER, ndim).plain_address)
+    return built.address(f) or int(_made(f, SECOND_ORDER, ndim).plain_address)
 
 
 def plain_first_order_address(f: Callback) -> int:

@@ -1,38 +1,80 @@
-"""What Python and C read differently, in the sources of kernels."""
+"""Functions of ready scenes built ahead of time: the same numbers as compiled when they are used, and no numba."""
 
-import ast
+from types import FunctionType
 
+import numpy as np
 import pytest
 
-from tests.uncompiled import BUILT
+from lagrangian import profiles, scenes
+from lagrangian.scenes import pendulum
+from lcpstep import built, callbacks
+from lcpstep.compiled import jit_disabled
+from lcpstep.kernels.function import Function
+from lcpstep.kernels.model import shapes
+from tests.processes import python
+
+SCENES = [name for name, entry in scenes.CATALOGUE.items() if entry.make().n_q < 10]
 
 
-def whole(node, integers):
-    """Whether an expression is an integer at a glance: a literal, or an argument said to be one."""
-    if isinstance(node, ast.Constant):
-        return isinstance(node.value, int)
-    return isinstance(node, ast.Name) and node.id in integers
+def functions(scene):
+    """Name, function, shape and number of arguments of what a scene is made of."""
+    n_q, n_c, n_j = scene.n_q, scene.n_c, scene.n_j
+    for part, n in ((scene.system, n_c), (scene.contacts, n_c), (scene.joints, n_j)):
+        for name, f in (vars(part) if part is not None else {}).items():
+            if isinstance(f, FunctionType) and name in shapes(n_q, n):
+                yield f, shapes(n_q, n)[name]
 
 
-def arguments(tree):
-    """Names of the arguments that are integers, of all functions of a file."""
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    given = [argument for f in functions for argument in f.args.args if argument.annotation is not None]
-    return {argument.arg for argument in given if ast.unparse(argument.annotation) == "int"}
+@pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+@pytest.mark.parametrize("name", SCENES)
+def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(name, monkeypatch):
+    scene = scenes.CATALOGUE[name].make()
+    p, n, rng = np.array(scene.p), scene.n_q, np.random.default_rng(0)
+    for f, shape in functions(scene):
+        address = built.address(f)
+        if address == 0:
+            continue
+        monkeypatch.setattr(callbacks.built, "address", lambda f: 0)
+        compiled = Function(callbacks.plain_address(f, len(shape)), p, n, n, shape)
+        monkeypatch.undo()
+        times = rng.uniform(0.0, 3.0, 50)
+        for _ in range(5):
+            out = np.zeros((2, len(times), *shape))
+            q, v = rng.normal(size=(2, n))
+            Function(address, p, n, n, shape).sample(times, q, v, out[0])
+            compiled.sample(times, q, v, out[1])
+            np.testing.assert_array_equal(*out)
 
 
-def divisions(source):
-    """Lines on which an integer is divided by an integer: 1 / 16 is 0 in C."""
-    tree = ast.parse(source)
-    integers = arguments(tree)
-    found = [node for node in ast.walk(tree) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)]
-    return [d.lineno for d in found if whole(d.left, integers) and whole(d.right, integers)]
+def test_functions_of_the_ready_scenes_are_built():
+    assert built.address(profiles.rotating_cam)
+    assert built.address(pendulum.pendulum_force)
+    assert len(built.FUNCTIONS) > 25
 
 
-@pytest.mark.parametrize("name", sorted(BUILT))
-def test_no_kernel_divides_integers(name):
-    assert divisions(BUILT[name].read_text()) == []
+def test_a_function_that_has_changed_is_not_taken_for_the_one_that_was_built(monkeypatch):
+    def other(t, q, v, p, out):
+        out[0] = -p[0]
+
+    other.__module__, other.__name__ = pendulum.__name__, "pendulum_force"
+    assert not built.address(other)
+    monkeypatch.setattr(profiles, "HEAD", 6)
+    assert not built.address(profiles.rotating_cam)
 
 
-def test_a_division_of_integers_is_found():
-    assert divisions("EARLY = 1 / 16\n\ndef f(n: int, m: int, x: float):\n    return n / m + x / n") == [1, 4]
+def test_only_what_was_given_is_read():
+    """A cam of a hundred arcs that has the numbers of four: what it would read beyond them is not a number."""
+    p = profiles.CamProfile((profiles.Arc(np.pi, 0.0, 0.0, 1.0),)).pack(1.0, 0.0)
+    p[4], p[5] = 100.0, -1.0
+    f = Function(built.address(profiles.rotating_cam), p, 1, 1, (1, 3))
+    out = np.zeros((1, 1, 3))
+    f.sample(np.array([0.5]), np.zeros(1), np.zeros(1), out)
+    assert np.isnan(out).any()
+
+
+def test_a_run_of_a_ready_scene_needs_no_numba():
+    program = (
+        "import sys; from lagrangian import scenes; from lcpstep import EventDriven, simulate; "
+        "run = simulate(scenes.cam_follower(), EventDriven()); print(len(run.impacts), 'numba' in sys.modules)"
+    )
+    assert python(program).split()[-1] == "False"

@@ -109,7 +109,8 @@ def basins(
     study = _Study(scene, method, grid, targets, phase, longest)
     inputs = study.inputs(known)
     label, x = np.full(n_q * n_v, UNKNOWN), grid.centres(np.arange(n_q * n_v))
-    rest, landed = np.arange(n_q * n_v), np.zeros((n_q * n_v, 0), dtype=np.int32)
+    rest = np.arange(n_q * n_v)
+    landed: Any = np.zeros((n_q * n_v, 0), dtype=np.int32)
 
     def stage(name: str, work: Callable[..., Any], least: int) -> Arrays:
         size = max(least, -(-len(rest) // PARTS))
