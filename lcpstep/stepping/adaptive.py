@@ -42,7 +42,7 @@ def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
 
 
 def run(control: Any, numbers: int, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
-    """The whole span; 0, or why it could not be reached. `arrive` is called where the loop's buffers are to be emptied.
+    """The whole span; 0, or why it could not be reached. `arrive` is called where buffers are to be emptied.
 
     control : a `step_control.Control`;  numbers : that a step computes with
     """

@@ -19,8 +19,7 @@ from lcpstep.stepping.step_control import Control
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import COLUMNS, LEAD, Record
+    from lcpstep.kernels.record import COLUMNS, LEAD
     from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan, whole
     from lcpstep.stepping.hidden_forces import hidden, late
@@ -190,7 +189,7 @@ class Attempts(Control):
         """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
         if self.plan.n_corners == 0:
             return self.h
-        low, corner = find_corners(self.plan, self.now())
+        _low, corner = find_corners(self.plan, self.now())
         return corner - self.from_time if corner < self.to_time - self.plan.margin else self.h
 
     def part(self, start: float, end: float, last: float, even: bool, until: float, halved: int) -> int:

@@ -194,8 +194,7 @@ class Control:
     def advance(self) -> int:
         """`steps`, called from Python."""
         with cython.nogil:
-            code = self.steps()
-        return code
+            return self.steps()
 
     def prepare(self) -> None:
         """Of a method: make what `ready` has found wanting."""
