@@ -6,6 +6,7 @@ warning, and the whole run takes the same kernels in plain Python.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
@@ -141,43 +142,52 @@ def with_addresses(scene: Scene, **parts: dict[str, Any]) -> tuple[list[dict[str
 
 def kernel_model(scene: Scene) -> kernels.Model:
     """The scene's model as kernels built ahead of time take it."""
-    return _kernel_model(scene, "contacts", _contacts(scene, scene.contacts))
+    return _kernel_models(scene, contacts=_contacts(scene, scene.contacts))[0]
 
 
 def kernel_models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
     """Models of the contacts, joints and tangents of a scene, any of them empty."""
-    friction = scene.contacts is not None and scene.contacts.friction is not None
-    tangents = _tangents(scene) if friction else _contacts(scene, None)
-    return (
-        kernel_model(scene),
-        _kernel_model(scene, "joints", _joints(scene)),
-        _kernel_model(scene, "friction", tangents),
-    )
+    parts = {"contacts": _contacts(scene, scene.contacts)}
+    if scene.n_j > 0:
+        parts["joints"] = _joints(scene)
+    if scene.contacts is not None and scene.contacts.friction is not None:
+        parts["friction"] = _tangents(scene)
+    made = dict(zip(parts, _kernel_models(scene, **parts), strict=True))
+    nothing = _empty(scene.n_q)
+    return made["contacts"], made.get("joints", nothing), made.get("friction", nothing)
+
+
+@functools.cache
+def _empty(n_q: int) -> kernels.Model:
+    """A model that has neither forces nor rows."""
+    system = LinearSystem(np.eye(n_q))
+    scene = Scene(system=system, q0=np.zeros(n_q), v0=np.zeros(n_q), t_span=(0.0, 1.0))
+    return kernel_model(scene)
 
 
 def kernel_joint_model(scene: Scene) -> kernels.Model:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    return _kernel_model(scene, "joints", _joints(scene))
+    return _kernel_models(scene, joints=_joints(scene))[0]
 
 
 def kernel_tangent_model(scene: Scene) -> kernels.Model:
     """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    return _kernel_model(scene, "friction", _tangents(scene))
+    return _kernel_models(scene, friction=_tangents(scene))[0]
 
 
-def _kernel_model(scene: Scene, part: str, rows: dict[str, Any]) -> kernels.Model:
-    """A model whose functions are C functions: compiled, or around Python."""
-    own = _system(scene)
+def _kernel_models(scene: Scene, **constraints: dict[str, Any]) -> list[kernels.Model]:
+    """A model for each kind of constraints, its functions C functions: compiled, or around Python."""
     called_back: list[CalledBack] = []
-    for name, fields in (("system", own), (part, rows)):
-        given = {field: f for field, f in fields.items() if callable(f)}
-        made = {} if compiled.jit_disabled() else _compile(scene, name, given, callbacks.plain_address)
-        for field, f in given.items():
-            if field not in made:
+    own = _system(scene)
+    for part, fields in (("system", own), *constraints.items()):
+        given = {name: f for name, f in fields.items() if callable(f)}
+        made = {} if compiled.jit_disabled() else _compile(scene, part, given, callbacks.plain_address)
+        for name, f in given.items():
+            if name not in made:
                 called_back.append(CalledBack(f))
-                made[field] = called_back[-1].address
+                made[name] = called_back[-1].address
         fields |= made
-    return kernels.Model(own | rows | {"called_back": called_back})
+    return [kernels.Model(own | rows | {"called_back": called_back}) for rows in constraints.values()]
 
 
 def _compile(

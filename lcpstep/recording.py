@@ -154,28 +154,30 @@ class Recorder:
         self.record = kernels.Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, b.rows, b.events, b.dense
         )
-        self._parts = {"rows": [b.rows[:0]], "events": [b.events[:0]], "dense": [b.dense[:0]]}
+        self._states: list[tuple[Array, ...]] = []  # as `kernels.Record.states` gives them
+        self._parts = {"events": [b.events[:0]], "dense": [b.dense[:0]]}
 
     def empty(self, rows: int, events: int) -> None:
         """Take over the first rows and events of the buffers."""
-        self._parts["rows"].append(self.buffers.rows[:rows].copy())
+        self.record.row = rows
+        self._states.append(self.record.states())
         self._parts["dense"].append(self.buffers.dense[:rows].copy())
         self._parts["events"].append(self.buffers.events[:events].copy())
+        self.record.row = self.record.event = 0
 
     def take(self) -> int:
         """Take over what kernels built ahead of time have written; how many events that were."""
-        record = self.record
-        events = int(record.event)
-        self.empty(record.row, events)
-        record.row = record.event = 0
+        events = int(self.record.event)
+        self.empty(self.record.row, events)
         return events
 
     def states(self) -> States:
         """All states kept so far."""
-        rows, n = np.concatenate(self._parts["rows"]), self.n_q
-        q, v, impulse = np.split(rows[:, LEAD:], [n, 2 * n], axis=1)
-        t, mode, length = rows[:, TIME], rows[:, MODE], rows[:, LENGTH]
-        return States(*(np.ascontiguousarray(x) for x in (t, q, v, impulse, mode, length)))
+        parts = self._states or [self.record.states()]
+        t, mode, length, q, v, impulse = (
+            part[0] if len(part) == 1 else np.concatenate(part) for part in zip(*parts, strict=True)
+        )
+        return States(t, q, v, impulse, mode, length)
 
     def dense(self) -> Array:
         """Dense output of the steps after the kept states."""

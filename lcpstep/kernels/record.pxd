@@ -23,6 +23,9 @@ cdef class Record:
     ) noexcept nogil
     cdef bint full(self, Py_ssize_t more) noexcept nogil
     cdef bint wants(self, double stop, bint last) noexcept nogil
+    cdef void split(
+        self, double* t, double* mode, double* length, double* q, double* v, double* impulse
+    ) noexcept nogil
     cdef bint is_due(self, Py_ssize_t step) noexcept nogil
     cdef bint keeps_events(self) noexcept nogil
     cdef bint take_back(self, double t) noexcept nogil

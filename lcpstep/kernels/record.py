@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import cython
+import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
@@ -83,6 +84,27 @@ class Record:
             return False
         t = self.times[self.next_time]
         return t < stop or (t == stop and last)
+
+    def split(
+        self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
+    ) -> None:
+        """The rows, each quantity into an array of its own."""
+        n, n_c = self.n_q, self.n_c
+        for k in range(self.row):
+            row = after(self.rows, k * self.row_size)
+            t[k], mode[k], length[k] = row[TIME], row[MODE], row[LENGTH]
+            for i in range(n):
+                q[k * n + i], v[k * n + i] = row[LEAD + i], row[LEAD + n + i]
+            for i in range(n_c):
+                impulse[k * n_c + i] = row[LEAD + 2 * n + i]
+
+    def states(self) -> tuple[Any, ...]:
+        """Times, modes, durations, positions, velocities and impulses of the rows, as arrays."""
+        rows = self.row
+        t, mode, length = np.empty(rows), np.empty(rows), np.empty(rows)
+        q, v, impulse = np.empty((rows, self.n_q)), np.empty((rows, self.n_q)), np.empty((rows, self.n_c))
+        self.split(doubles(t), doubles(mode), doubles(length), doubles(q), doubles(v), doubles(impulse))
+        return t, mode, length, q, v, impulse
 
     def is_due(self, step: int) -> bool:
         """Whether the state after so many steps is to be kept."""

@@ -3,10 +3,7 @@
 moreau, theta            Moreau's theta-method: method and step; `newton` for nonlinear systems, `constrained`,
 `joints`, `friction` and `projection` for what a scene has besides contacts, `sparse`
 for large ones
-located, located_loop    impacts at their own times: method and loop; `located_piece` for the motion between two
-events (`smooth`, `contact_forces`), `located_event` for an impact (`impulses`,
-`refine`), `race` for many, `switches` and `settle` for those without end,
-`magnitudes`, `located_joints`; `polynomial_loop` for order 4 and "exact"
-adaptive                 steps by a tolerance: `adaptive_moreau`, `adaptive_located`; `adaptive_forces`,
-                         `adaptive_switches`: what forces hide
+located, pieces          impacts at their own times: method, and the kernels of its steps
+step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance`; `hidden_forces`,
+                         `hidden_switches`: what forces hide
 """

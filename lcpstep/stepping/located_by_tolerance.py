@@ -19,8 +19,7 @@ from lcpstep.stepping.step_control import Control
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import COLUMNS, LEAD, Record
+    from lcpstep.kernels.record import COLUMNS, LEAD
     from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan, whole
     from lcpstep.stepping.hidden_forces import hidden, late
@@ -190,7 +189,7 @@ class Attempts(Control):
         """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
         if self.plan.n_corners == 0:
             return self.h
-        low, corner = find_corners(self.plan, self.now())
+        _low, corner = find_corners(self.plan, self.now())
         return corner - self.from_time if corner < self.to_time - self.plan.margin else self.h
 
     def part(self, start: float, end: float, last: float, even: bool, until: float, halved: int) -> int:
@@ -318,7 +317,11 @@ class Attempts(Control):
     def store(self) -> None:
         """Keep the state at the start of a step, and the last row."""
         self.copy_state(self.saved, self.w)
-        self.saved_row, self.saved_event, self.saved_time = self.record.row, self.record.event, self.record.next_time
+        self.saved_row, self.saved_event, self.saved_time = (
+            self.record.row,
+            self.record.event,
+            self.record.next_time,
+        )
         if self.record.row > 0:
             copy(self.row, self.record.last_row(), self.record.row_size)
         else:
@@ -328,7 +331,11 @@ class Attempts(Control):
         """Go back to the start of the step; work that was done stays counted."""
         self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
         self.copy_state(self.w, self.saved)
-        self.record.row, self.record.event, self.record.next_time = self.saved_row, self.saved_event, self.saved_time
+        self.record.row, self.record.event, self.record.next_time = (
+            self.saved_row,
+            self.saved_event,
+            self.saved_time,
+        )
         if self.record.row > 0:
             copy(self.record.last_row(), self.row, self.record.row_size)
 
@@ -348,5 +355,3 @@ class Attempts(Control):
         to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
         to.steps, to.lcp_calls, to.force_evaluations = w.steps, w.lcp_calls, w.force_evaluations
         to.events_left, to.cut, to.members, to.idle = w.events_left, w.cut, w.members, w.idle
-
-

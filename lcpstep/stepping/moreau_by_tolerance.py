@@ -28,7 +28,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
-    from lcpstep.pointers import abs, after, indices_after, inf, max, min
+    from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
     from lcpstep.stepping.theta_method.moving import Rows, State
@@ -154,7 +154,8 @@ class Attempts(Control):
         row, event = self.record.row, self.record.event
         self.before(slow)
         self.place(self.level if part == 0 else self.level + 1, h)
-        code = run(self.m, self.plan, self.s, self.rows, self.record, start, self.s.steps, self.s.steps + 1, False, False)
+        k = self.s.steps
+        code = run(self.m, self.plan, self.s, self.rows, self.record, start, k, k + 1, False, False)
         if code != FINISHED:
             return code
         self.after_part(h, slow)
@@ -212,7 +213,9 @@ class Attempts(Control):
                 curve = 0.5 * bend * h * (self.s.v[i] - v)
                 self.between_q[i] = q + x * (self.s.q[i] - q) - x * (1.0 - x) * curve
                 self.between_v[i] = v + x * (self.s.v[i] - v)
-            self.record.keep(self.times[self.record.next_time], 0.0, self.between_q, self.between_v, self.s.impulse)
+            self.record.keep(
+                self.times[self.record.next_time], 0.0, self.between_q, self.between_v, self.s.impulse
+            )
             self.record.next_time = self.record.next_time + 1
 
     def store(self) -> None:
@@ -224,7 +227,8 @@ class Attempts(Control):
         copy(self.u, self.s.u, self.s.n_c)
         copy_indices(self.closed, self.s.closed, self.s.n_c)
         copy(self.impulse, self.s.impulse, self.rows.n)
-        self.steps_before, self.row, self.event, self.asked = self.s.steps, self.record.row, self.record.event, self.record.next_time
+        self.steps_before = self.s.steps
+        self.row, self.event, self.asked = self.record.row, self.record.event, self.record.next_time
 
     def restore(self) -> None:
         """Go back there; work that was done stays counted, and whether anything happened known."""

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 PORTION = 65536  # steps between two looks at the outside world, at most
+STATES = 8192  # kept in these, at most: what a processor has at hand while it is written and read
 
 
 class Run:
@@ -48,13 +49,15 @@ class Run:
         self.constant = all(m.flat for m in (self.model, joints, tangents)) and self.model.linear
         self.constant = self.constant and not method.projected
         self.state = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
+        portion = min(PORTION, STATES * kept.every) if kept.every > 0 else PORTION
         # A portion keeps at most its steps, the given times, and the first and last state.
-        self.recorder = Recorder(scene.n_q, self.rows.n, kept, PORTION + len(kept.times) + 2)
+        room = STATES if kept.every > 0 else PORTION
+        self.recorder = Recorder(scene.n_q, self.rows.n, kept, room + len(kept.times) + 2)
         sizes = scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0)
         size = max(float(np.max(np.abs(x), initial=0.0)) for x in sizes)
         self.slack = RESTING * (size or 1.0)
         self.events = 0
-        self.pace = Pace(PORTION, scene.n_q + self.rows.n)
+        self.pace = Pace(portion, scene.n_q + self.rows.n)
         self.stretches = list(divided(scene.t_span, method.h))
         self.t0, self.first = scene.t_span[0], 0
         self.plan = self.plan_for(self.stretches[0][0])

@@ -31,6 +31,7 @@ cdef class Control:
     cdef double resolved(self, double size) noexcept nogil
     cdef Py_ssize_t judge(self) noexcept nogil
     cdef bint go_on(self, double time) noexcept nogil
+    cpdef Py_ssize_t advance(self)
 
 
 cdef void stamp(Record r, Py_ssize_t row, Py_ssize_t event, double late, double t) noexcept nogil

@@ -9,7 +9,7 @@ Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are 
 met exactly, and a bisection for whatever asks for short steps. A method that stops at an event goes on from there to
 the next multiple. The first step is short and steps grow by doubling, so that no oscillation of the forces is stepped
 over whole: both runs would sample it at equal phases, and agree. The loop and its decisions are here; a method's own
-class (`adaptive_moreau`, `adaptive_located`) takes the steps and measures their errors. Source: E. Hairer,
+class (`moreau_by_tolerance`, `located_by_tolerance`) takes the steps and measures their errors. Source: E. Hairer,
 S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), section II.4.
 """
 
@@ -87,7 +87,7 @@ class Control:
     def steps(self) -> int:
         """Steps until the end of the span, full buffers, or one that cannot be taken; says why it returned.
 
-        It also returns where a run has failed, so that whoever looks at the exceptions of callbacks does so.
+        It also returns where a run has failed: an interrupt that a callback heard is to be passed on.
         """
         while self.tried < self.until:
             if self.over():
@@ -110,7 +110,7 @@ class Control:
             if verdict == GIVEN_UP:
                 return TOO_SMALL if code == REACHED else code
             if self.failed:
-                return PAUSED
+                return WANTED
         return PAUSED
 
     def begin_attempt(self) -> None:
@@ -194,8 +194,7 @@ class Control:
     def advance(self) -> int:
         """`steps`, called from Python."""
         with cython.nogil:
-            code = self.steps()
-        return code
+            return self.steps()
 
     def prepare(self) -> None:
         """Of a method: make what `ready` has found wanting."""

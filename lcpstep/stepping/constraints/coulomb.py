@@ -41,7 +41,8 @@ SOLVED = 0
 class ContactProblem:
     """The contacts of a step, the joints eliminated, and where their complementarity problem is written.
 
-    mobility, rate, impulse    of m = n_a contacts and n_f tangents: (m, m), (m,), (m,); normals first
+    mobility, rate, impulse    of m = n_a contacts and n_f tangents: (m, m), (m,), (m,); normals first;
+                               the rates of joints follow until they are eliminated
     mu : (n_c,)
     ids      rows that take part; the first are the contacts'
     carrier  place in `ids` of the normal of each tangent
@@ -57,7 +58,7 @@ class ContactProblem:
     def __init__(self, mu: Any, frictional: bool, n: int, warm: bool) -> None:
         n_c = len(mu)
         unknowns = 4 * n_c if frictional else 0
-        numbers = {"mobility": 4 * n_c * n_c, "rate": 2 * n_c, "impulse": 2 * n_c, "W": unknowns * unknowns}
+        numbers = {"mobility": 4 * n_c * n_c, "rate": n, "impulse": 2 * n_c, "W": unknowns * unknowns}
         self.arrays = {name: np.zeros(size) for name, size in numbers.items()} | {"mu": mu}
         self.arrays |= {"b": np.zeros(unknowns), "z": np.zeros(unknowns)}
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)

@@ -33,8 +33,7 @@ cdef void rotate(double* B, double* V, Py_ssize_t p, Py_ssize_t q, Py_ssize_t n)
 cdef void solve_joints(Elimination e, double* out) noexcept nogil
 cdef void apply_inverse(Elimination e) noexcept nogil
 cdef void eliminate(
-    Elimination e, double* W, Py_ssize_t stride, double* b, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* R,
-    double* reduced,
+    Elimination e, double* W, Py_ssize_t stride, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* R, double* rate
 ) noexcept nogil
 cdef void joint_impulses(Elimination e, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p) noexcept nogil
 cdef void distribute(

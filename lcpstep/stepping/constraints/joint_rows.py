@@ -162,31 +162,22 @@ def apply_inverse(e: Elimination) -> None:
 
 
 def eliminate(
-    e: Elimination,
-    W: Doubles,
-    stride: int,
-    b: Doubles,
-    ids: Indices,
-    n_a: int,
-    n_k: int,
-    R: Doubles,
-    reduced: Doubles,
+    e: Elimination, W: Doubles, stride: int, ids: Indices, n_a: int, n_k: int, R: Doubles, rate: Doubles
 ) -> None:
-    """Problem of the contacts alone, R and `reduced`: rows ids[:n_a] of W and b without the joints ids[n_a:n_k].
+    """Problem of the contacts ids[:n_a] alone, from the W and the rates of all, without the joints ids[n_a:n_k].
 
-    R = W - W_J S^-1 W_J^T row by row in one dimension; Z keeps what `joint_impulses` needs.
+    R = W - W_J S^-1 W_J^T, n_a numbers a row; the rates change in place; Z keeps what `joint_impulses` needs.
     """
     n_j = n_k - n_a
     if n_j > 0:
         factorise_joints(e, W, stride, ids[n_a])
         for k in range(n_a + 1):
             for j in range(n_j):
-                e.y[j] = W[ids[n_a + j] * stride + ids[k]] if k < n_a else b[ids[n_a + j]]
+                e.y[j] = W[ids[n_a + j] * stride + ids[k]] if k < n_a else rate[n_a + j]
             solve_joints(e, after(e.Z, k * n_j))
     for i in range(n_a):
-        reduced[i] = b[ids[i]]
         for j in range(n_j):
-            reduced[i] -= W[ids[i] * stride + ids[n_a + j]] * e.Z[n_a * n_j + j]
+            rate[i] -= W[ids[i] * stride + ids[n_a + j]] * e.Z[n_a * n_j + j]
         for k in range(n_a):
             total = W[ids[i] * stride + ids[k]]
             for j in range(n_j):

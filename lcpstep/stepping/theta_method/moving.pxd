@@ -52,7 +52,6 @@ cdef class Rows:
     cdef double* H_t
     cdef double* T_t
     cdef double* J_t
-    cdef double* b
     cdef double* p
     cdef double* sliding
     cdef double* tangent_restitution

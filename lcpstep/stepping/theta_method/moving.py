@@ -71,7 +71,7 @@ class Rows:
     H_t : (n,)             likewise T_t, J_t
     J_start : (n_j, n_q)   at the start of the step
     D : (n_j, n_q)         directions of the joints' forces
-    b, p : (n,)            rates without impulses, with restitution; impulses
+    p : (n,)               impulses
     sliding : (n_t,)       sliding velocities at the start of the step
     tangent_restitution : (n_c,)
     failed : (n_j,)        1 for joints that contradict others
@@ -104,15 +104,14 @@ class Rows:
         self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
-        self.numbers = np.zeros((n + 2 * n_j) * n_q + 2 * n + n_t)
+        self.numbers = np.zeros((n + 2 * n_j) * n_q + n + n_t)
         self.H = doubles(self.numbers)
         self.T, self.J = after(self.H, n_c * n_q), after(self.H, (n_c + n_t) * n_q)
         self.J_start = after(self.H, n * n_q)
         self.D = after(self.J_start, n_j * n_q)
         self.H_t = after(self.D, n_j * n_q)
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
-        self.b = after(self.H_t, n)
-        self.sliding = after(self.b, n)
+        self.sliding = after(self.H_t, n)
         self.elimination = Elimination(n_j, n_c)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)

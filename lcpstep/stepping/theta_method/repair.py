@@ -81,10 +81,10 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
     n_k = n_a + c.n_j
     for k in range(n_k):
         i = c.problem.ids[k]
-        c.b[i] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
+        c.problem.rate[k] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
         divide_by_mass(m.linear, m.M_inverse, c.M, after(c.H, i * s.n_q), after(c.Y, i * s.n_q), s.n_q)
     mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
-    eliminate(c.elimination, c.S, c.n, c.b, c.problem.ids, n_a, n_k, c.problem.mobility, c.problem.rate)
+    eliminate(c.elimination, c.S, c.n, c.problem.ids, n_a, n_k, c.problem.mobility, c.problem.rate)
     if n_a > 0 and not solve_contacts(c.problem, n_a, 0):
         return False
     distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a, n_k, c.push, c.n)

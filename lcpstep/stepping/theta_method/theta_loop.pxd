@@ -3,10 +3,11 @@ from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle,
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, finite, product
-from lcpstep.pointers cimport min, whole
+from lcpstep.pointers cimport min
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
-from lcpstep.stepping.theta_method.theta_step cimport constant_rows, take_step
+from lcpstep.stepping.theta_method.row_impulses cimport constant_rows
+from lcpstep.stepping.theta_method.theta_step cimport take_step
 
 cdef Py_ssize_t FINISHED, LOG_FULL, NOT_FINITE
 cdef double LATE
@@ -17,7 +18,6 @@ cdef Py_ssize_t run(
     Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external,
     bint solved,
 ) noexcept nogil
-cdef Py_ssize_t quiet_until(Record record, double h, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
 cdef void coast(
     Model m, Plan plan, State s, Record record, double t0, Py_ssize_t first, Py_ssize_t last
 ) noexcept nogil

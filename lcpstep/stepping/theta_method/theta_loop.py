@@ -14,10 +14,11 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, finite, product
-    from lcpstep.pointers import min, whole
+    from lcpstep.pointers import min
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
-    from lcpstep.stepping.theta_method.theta_step import constant_rows, take_step
+    from lcpstep.stepping.theta_method.row_impulses import constant_rows
+    from lcpstep.stepping.theta_method.theta_step import take_step
 
 LATE = 1e-9  # of a step: what rounding may take from the last one's end
 
@@ -58,7 +59,7 @@ def run(
         if record.full(2 * s.n_c):
             return LOG_FULL
         if single and s.closed[0] == 0 and not solved:
-            coast(m, plan, s, record, t0, first, quiet_until(record, plan.h, t0, first, last))
+            coast(m, plan, s, record, t0, first, record.untimed_until(plan.h, t0, first, last))
             if not (finite(s.g, 1) and finite(s.u, 1)):
                 return NOT_FINITE
             if s.steps >= last:
@@ -76,14 +77,6 @@ def run(
         if record.is_due(s.steps) or (record.on_events and record.event > events):
             record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
-
-
-def quiet_until(record: Record, h: float, t0: float, first: int, last: int) -> int:
-    """The step, at most `last`, up to which none holds a time at which a state is asked for."""
-    if record.next_time < record.n_times:
-        before = first + whole((record.times[record.next_time] - t0) / h) - 1
-        return before if before < last else last
-    return last
 
 
 def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int, last: int) -> None:

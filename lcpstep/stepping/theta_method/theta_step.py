@@ -26,9 +26,7 @@ from lcpstep.stepping.theta_method.codes import (
     FINISHED,
     IMPACT,
     JOINTS_FAILED,
-    LCP_FAILED,
     MAX_ITERATIONS,
-    NEED_LCP,
     NEWTON_FAILED,
     NOT_FINITE,
     RELEASE,
@@ -37,31 +35,14 @@ from lcpstep.stepping.theta_method.codes import (
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
-    from lcpstep.kernels.linear import solve
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import clear, copy, finite, product
-    from lcpstep.pointers import Doubles, after
-    from lcpstep.stepping.constraints.coulomb import solve_contacts
-    from lcpstep.stepping.constraints.directions import (
-        apply,
-        average,
-        joints_hold,
-        mobilities,
-        position,
-        rates,
-        restitute,
-        strikes,
-        take_part,
-        usable,
-    )
-    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.repair import project
-
-REFRESH = 5  # iterations with one A, see `implicit`
+    from lcpstep.stepping.theta_method.row_impulses import apply, apply_once, impulses, joints_hold, take_part
 
 
 def take_step(
@@ -127,7 +108,9 @@ def step(
     m: Model, plan: Plan, s: State, c: Rows, n_a: int, t: float, t_next: float, external: bool, solved: bool
 ) -> int:
     """One step with n_a active contacts into next_q, next_v, and the impulses."""
-    n_f = take_part(c.problem.ids, c.problem.carrier, c.problem.mu, n_a, c.n_c, c.n_t, c.n_j)
+    n_f = 0
+    if c.n > c.n_c:
+        n_f = take_part(c.problem.ids, c.problem.carrier, c.problem.mu, n_a, c.n_c, c.n_t, c.n_j)
     n_k = n_a + n_f + c.n_j
     if n_a > 0:
         predicted_rates(m, plan, s, c, t_next)
@@ -135,7 +118,8 @@ def step(
         tangent_rates(s, c, t, t_next)
     if c.n_j > 0:
         gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
-    clear(c.p, c.n)
+    if n_k == 0:
+        clear(c.p, c.n)
     if not solved:
         copy(s.next_v, s.v, s.n_q)
         s.iteration = 0
@@ -143,7 +127,7 @@ def step(
         free_velocity(m, plan, s, t_next)
     while True:
         if c.n_j > 0:
-            position(plan.h, plan.theta, s.q, s.v, s.next_v, s.next_q, s.n_q)
+            position(plan, s)
         if not m.linear and not linearise(m, plan, s, t, t_next):
             return NOT_FINITE
         if not finite(s.v_free, s.n_q):
@@ -153,19 +137,28 @@ def step(
             if code != FINISHED:
                 return code
             solved = False
-        converged = apply(s.v, s.v_free, plan.X, c.p, c.problem.ids, n_f, n_k, s.next_v, s.n_q)
-        if converged or (m.linear and not c.turning):
+        if n_f == 0 and m.linear and not c.turning:
+            apply_once(plan, s, c, n_k)
+            break
+        if apply(plan, s, c, n_f, n_k) or (m.linear and not c.turning):
             break
         s.iteration += 1
         if s.iteration >= MAX_ITERATIONS:
             return NEWTON_FAILED
-    position(plan.h, plan.theta, s.q, s.v, s.next_v, s.next_q, s.n_q)
+    position(plan, s)
     if c.n_j == 0:
         return FINISHED
     hold = joints_hold(
         c.J, c.J_t, c.J_start, c.n_j, s.v, s.v_free, s.next_v, s.n_q, plan.X, c.p, c.n, c.turning, c.failed
     )
     return FINISHED if hold else JOINTS_FAILED
+
+
+def position(plan: Plan, s: State) -> None:
+    """Q + h [theta v+ + (1 - theta) v]."""
+    h, theta = plan.h, plan.theta
+    for i in range(s.n_q):
+        s.next_q[i] = s.q[i] + h * (theta * s.next_v[i] + (1.0 - theta) * s.v[i])
 
 
 def predicted_rates(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> None:
@@ -198,84 +191,6 @@ def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
                 - plan.A_v[k] * s.v[j]
             )
         s.v_free[i] = total
-
-
-def impulses(
-    m: Model,
-    plan: Plan,
-    s: State,
-    c: Rows,
-    n_a: int,
-    n_f: int,
-    t_next: float,
-    external: bool,
-    solved: bool,
-) -> int:
-    """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
-    n_k = n_a + n_f + c.n_j
-    if c.n_j > 0:
-        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
-    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
-        respond(m.linear, plan, s, c, n_k)
-    rates(c.H, c.H_t, s.v_free, c.problem.ids, n_k, n_a + n_f if n_f > 0 else 0, c.b, s.n_q)
-    if not usable(c.b, plan.W, c.problem.ids, n_k, c.n):
-        return NOT_FINITE
-    impact = n_f > 0 and strikes(s.u, s.v, c.H, c.problem.ids, n_a, c.b, s.n_q)
-    restitute(s.u, m.restitution, c.problem.ids, n_a, c.b)
-    for f in range(n_f if impact else 0):
-        i = c.problem.ids[c.problem.carrier[f]]
-        c.b[c.problem.ids[n_a + f]] += c.tangent_restitution[i] * c.sliding[i]
-    eliminate(
-        c.elimination,
-        plan.W,
-        c.n,
-        c.b,
-        c.problem.ids,
-        n_a + n_f,
-        n_k,
-        c.problem.mobility,
-        c.problem.rate,
-    )
-    if n_a > 0:
-        if external and not solved:
-            return NEED_LCP
-        s.problems += 1
-        if not solved and not solve_contacts(c.problem, n_a, n_f):
-            return LCP_FAILED
-    distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a + n_f, n_k, c.p, c.n)
-    return FINISHED
-
-
-def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
-    """A^-1 times the directions of the rows that take part, and their mobilities."""
-    n, first_joint = s.n_q, c.n_c + c.n_t
-    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
-    for k in range(n_k):
-        i = c.problem.ids[k]
-        row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
-        compliance(linear, plan, s, row, after(plan.X, i * n))
-    mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
-
-
-def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -> None:
-    """Out <- A^-1 row."""
-    if linear:
-        for i in range(s.n_q):
-            out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
-    else:
-        copy(out, row, s.n_q)
-        solve(s.A, s.pivots, out, s.n_q)
-
-
-def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
-    """X and W of a linear scene in which no row ever changes."""
-    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
-    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
-    gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)
-    for i in range(c.n):
-        compliance(True, plan, s, after(c.H, i * s.n_q), after(plan.X, i * s.n_q))
-        c.problem.ids[i] = i
-    mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
 
 
 def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> None:

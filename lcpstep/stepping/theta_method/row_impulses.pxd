@@ -1,0 +1,36 @@
+cimport cython
+from lcpstep.kernels.dynamics cimport gap_rates
+from lcpstep.kernels.linear cimport solve
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, finite, largest, product
+from lcpstep.pointers cimport abs, after, max
+from lcpstep.stepping.constraints.coulomb cimport solve_contacts
+from lcpstep.stepping.constraints.directions cimport mobilities
+from lcpstep.stepping.constraints.joint_rows cimport distribute, eliminate
+from lcpstep.stepping.theta_method.moving cimport Rows, State
+from lcpstep.stepping.theta_method.plan cimport Plan
+
+cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE, REFRESH
+cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH, CONTRADICTION
+
+@cython.locals(impact=bint)
+cdef Py_ssize_t impulses(
+    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
+) noexcept nogil
+cdef Py_ssize_t take_part(
+    Py_ssize_t* ids, Py_ssize_t* carrier, double* mu, Py_ssize_t n_a, Py_ssize_t n_c, Py_ssize_t n_t, Py_ssize_t n_j
+) noexcept nogil
+cdef void round_off(Rows c, double* v, Py_ssize_t n_k, Py_ssize_t n_q) noexcept nogil
+cdef bint usable(double* W, Py_ssize_t* ids, Py_ssize_t n_k, Py_ssize_t n) noexcept nogil
+cdef bint strikes(State s, Rows c, Py_ssize_t n_a) noexcept nogil
+cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
+cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
+cdef void compliance(bint linear, Plan plan, State s, double* row, double* out) noexcept nogil
+cdef void constant_rows(Model m, Plan plan, State s, Rows c, double t) noexcept nogil
+cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_f, Py_ssize_t n_k) noexcept nogil
+cdef void apply_once(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
+@cython.locals(hold=bint)
+cdef bint joints_hold(
+    double* J, double* J_t, double* J_start, Py_ssize_t n_j, double* v, double* v_free, double* v_next,
+    Py_ssize_t n_q, double* X, double* p, Py_ssize_t n, double turning, Py_ssize_t* failed,
+) noexcept nogil

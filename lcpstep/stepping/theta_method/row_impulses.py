@@ -1,0 +1,215 @@
+"""The rows of a step and their impulses, for a given velocity without contact.
+
+A row is a direction h of the velocities with its rate u = h v + h_t and its impulse; `ids` lists the rows that take
+part in a step, the normals of the active contacts first, then tangents, then joints. Matrices of all n rows lie row
+by row: H and X have n_q columns, W has n. Law and source: `theta_step`.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.linear import solve
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, finite, largest, product
+    from lcpstep.pointers import Doubles, Indices, abs, after, max
+    from lcpstep.stepping.constraints.coulomb import solve_contacts
+    from lcpstep.stepping.constraints.directions import mobilities
+    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+
+CONVERGED = 1e-12  # change of the velocity, relative to it
+CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
+ROUNDING = 1e-13  # of these terms: what is left of it is no motion
+NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
+CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
+REFRESH = 5  # iterations with one A, see `implicit`
+
+
+def impulses(
+    m: Model,
+    plan: Plan,
+    s: State,
+    c: Rows,
+    n_a: int,
+    n_f: int,
+    t_next: float,
+    external: bool,
+    solved: bool,
+) -> int:
+    """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
+    n_k, ids, rate = n_a + n_f + c.n_j, c.problem.ids, c.problem.rate
+    if c.n_j > 0:
+        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
+    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
+        respond(m.linear, plan, s, c, n_k)
+    for k in range(n_k):
+        rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
+    impact = False
+    if n_f > 0:
+        round_off(c, s.v_free, n_a + n_f, s.n_q)
+        impact = strikes(s, c, n_a)
+    for k in range(n_a):
+        rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
+    for f in range(n_f if impact else 0):
+        i = ids[c.problem.carrier[f]]
+        rate[n_a + f] += c.tangent_restitution[i] * c.sliding[i]
+    if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
+        return NOT_FINITE
+    eliminate(c.elimination, plan.W, c.n, ids, n_a + n_f, n_k, c.problem.mobility, rate)
+    if n_a > 0:
+        if external and not solved:
+            return NEED_LCP
+        s.problems += 1
+        if not solved and not solve_contacts(c.problem, n_a, n_f):
+            return LCP_FAILED
+    distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
+    return FINISHED
+
+
+def take_part(ids: Indices, carrier: Indices, mu: Doubles, n_a: int, n_c: int, n_t: int, n_j: int) -> int:
+    """List after the normals of active contacts the tangents of the n_f frictional ones, and all joints; n_f."""
+    n_f = 0
+    if n_t > 0:
+        for k in range(n_a):
+            if mu[ids[k]] > 0.0:
+                carrier[n_f] = k
+                ids[n_a + n_f] = n_c + ids[k]
+                n_f += 1
+    for j in range(n_j):
+        ids[n_a + n_f + j] = n_c + n_t + j
+    return n_f
+
+
+def round_off(c: Rows, v: Doubles, n_k: int, n_q: int) -> None:
+    """Rates of contacts and tangents that are nothing but rounding are zero.
+
+    For a frictional contact that stays closed has no approach: whether it jams must not hang on a rounding's sign.
+    """
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        terms = abs(c.H_t[i])
+        for j in range(n_q):
+            terms += abs(c.H[i * n_q + j] * v[j])
+        if not abs(c.problem.rate[k]) > NO_APPROACH * terms:
+            c.problem.rate[k] = 0.0
+
+
+def usable(W: Doubles, ids: Indices, n_k: int, n: int) -> bool:
+    """Whether the mobilities are finite."""
+    total = 0.0
+    for k in range(n_k):
+        for m in range(n_k):
+            total += W[ids[k] * n + ids[m]] - W[ids[k] * n + ids[m]]
+    return total == 0.0
+
+
+def strikes(s: State, c: Rows, n_a: int) -> bool:
+    """Whether a contact closes faster than the forces of one step could move it; rates are without restitution."""
+    size_v = largest(s.v, 0.0, s.n_q)
+    for k in range(n_a):
+        i = c.problem.ids[k]
+        size = largest(after(c.H, i * s.n_q), 0.0, s.n_q)
+        if s.u[i] < -(abs(c.problem.rate[k] - s.u[i]) + ROUNDING * size * size_v):
+            return True
+    return False
+
+
+def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
+    """A^-1 times the directions of the rows that take part, and their mobilities."""
+    n, first_joint = s.n_q, c.n_c + c.n_t
+    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
+        compliance(linear, plan, s, row, after(plan.X, i * n))
+    mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
+
+
+def average(J: Doubles, J_start: Doubles, theta: float, D: Doubles, size: int) -> None:
+    """Directions of the joints' forces."""
+    for i in range(size):
+        D[i] = theta * J[i] + (1.0 - theta) * J_start[i]
+
+
+def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -> None:
+    """Out <- A^-1 row."""
+    if linear:
+        for i in range(s.n_q):
+            out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
+    else:
+        copy(out, row, s.n_q)
+        solve(s.A, s.pivots, out, s.n_q)
+
+
+def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
+    """X and W of a linear scene in which no row ever changes."""
+    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
+    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
+    gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)
+    for i in range(c.n):
+        compliance(True, plan, s, after(c.H, i * s.n_q), after(plan.X, i * s.n_q))
+        c.problem.ids[i] = i
+    mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
+
+
+def apply(plan: Plan, s: State, c: Rows, n_f: int, n_k: int) -> bool:
+    """next_v = v_free + X^T p; whether that has hardly changed it.
+
+    Where friction acts, a velocity that is nothing but rounding is zero: what sticks is at rest.
+    """
+    n_q, ids, X, p = s.n_q, c.problem.ids, plan.X, c.p
+    change = size = 0.0
+    for i in range(n_q):
+        total, terms = s.v_free[i], abs(s.v_free[i])
+        for k in range(n_k):
+            term = X[ids[k] * n_q + i] * p[ids[k]]
+            total += term
+            terms += abs(term)
+        if n_f > 0 and abs(total) <= ROUNDING * terms:
+            total = 0.0
+        change = max(change, abs(total - s.next_v[i]))
+        size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
+        s.next_v[i] = total
+    return change <= CONVERGED * size
+
+
+def apply_once(plan: Plan, s: State, c: Rows, n_k: int) -> None:
+    """The same without friction, where nothing is iterated for."""
+    n_q, ids, X, p = s.n_q, c.problem.ids, plan.X, c.p
+    for i in range(n_q):
+        total = s.v_free[i]
+        for k in range(n_k):
+            total += X[ids[k] * n_q + i] * p[ids[k]]
+        s.next_v[i] = total
+
+
+def joints_hold(
+    J: Doubles, J_t: Doubles, J_start: Doubles, n_j: int, v: Doubles, v_free: Doubles, v_next: Doubles, n_q: int,
+    X: Doubles, p: Doubles, n: int, turning: float, failed: Indices,
+) -> bool:  # fmt: skip
+    """Whether the joints' rates are zero after the step; marks those for which they are not.
+
+    Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted. What
+    the impulses p of all n rows change a velocity by, X^T p, counts to its size: with unequal masses it is much more
+    than the rest.
+    """
+    hold = True
+    for j in range(n_j):
+        rate, size, turned = J_t[j], abs(J_t[j]), 0.0
+        for i in range(n_q):
+            row = J[j * n_q + i]
+            rate += row * v_next[i]
+            speed = max(max(abs(v_next[i]), abs(v[i])), abs(v_free[i]))
+            for k in range(n):
+                speed = max(speed, abs(X[k * n_q + i] * p[k]))
+            size += abs(row) * speed
+            turned += abs(row - J_start[j * n_q + i]) * speed
+        failed[j] = 0 if abs(rate) <= CONTRADICTION * size + turning * turned else 1
+        hold = hold and failed[j] == 0
+    return hold
