@@ -20,7 +20,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from lcpstep import built, compiled
+from lcpstep import built, fingerprint
 from lcpstep.faults import Callback, name_of
 
 SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
@@ -36,7 +36,7 @@ COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
 class UncompiledCallback(UserWarning):
-    """A user's function that numba cannot compile; the run takes plain Python, some hundred times slower."""
+    """A user's function that numba cannot compile; it runs in plain Python, some hundred times slower."""
 
 
 class NotCompiled(Exception):
@@ -54,21 +54,21 @@ FAILED: dict[Any, NotCompiled] = {}  # what cannot be made
 
 
 def address(f: Callback, ndim: int) -> int:
-    """Address of callback f(t, q, v, p, out) in machine code, for an `out` of ndim dimensions.
+    """Address of callback f(t, q, v, p, out) as a C function, for an `out` of ndim dimensions.
 
-    Raises NotCompiled where it cannot be compiled.
+    Its signature is that of `lcpstep.kernels.function`. Raises NotCompiled where it cannot be compiled.
     """
-    return int(_made(f, SECOND_ORDER, ndim).address)
+    return built.address(f) or int(_made(f, SECOND_ORDER, ndim).address)
 
 
-def plain_address(f: Callback, ndim: int) -> int:
-    """The same of a C function of plain pointers; see `lcpstep.kernels.function` for its signature."""
-    return built.address(f) or int(_made(f, SECOND_ORDER, ndim).plain_address)
+def first_order_address(f: Callback) -> int:
+    """The same of a function f(t, x, p, out) of a first-order system."""
+    return int(_made(f, FIRST_ORDER, 1).address)
 
 
-def plain_first_order_address(f: Callback) -> int:
-    """Address of a function f(t, x, p, out) of a first-order system as a C function of plain pointers, too."""
-    return int(_made(f, FIRST_ORDER, 1).plain_address)
+def disabled() -> bool:
+    """Whether the environment asks for plain Python (`NUMBA_DISABLE_JIT=1`)."""
+    return os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
 
 
 def warn(what: str, f: Callback, why: NotCompiled) -> None:
@@ -87,9 +87,9 @@ def _made(f: Callback, takes: int, ndim: int) -> Any:
     kind = takes, ndim, function.__code__, *map(_kind, _read(function))
     if kind in FAILED:
         raise FAILED[kind]
-    depends = compiled._dependencies(function)
+    depends = fingerprint.dependencies(function)
     # Where nobody can tell whether a value has changed, the function itself must be the same
-    key = takes, ndim, depends, function if compiled.UNKNOWN in depends else None
+    key = takes, ndim, depends, function if fingerprint.UNKNOWN in depends else None
     if key not in MADE:
         try:
             MADE[key] = _machine_code(function, takes, ndim)
@@ -151,11 +151,11 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
     """C function of f."""
     from lcpstep.guarded import signature
 
-    for g in compiled._reached(f):
-        unchecked = UNCHECKED & {name for code in compiled._codes(g.__code__) for name in code.co_names}
+    for g in fingerprint.reached(f):
+        unchecked = UNCHECKED & {name for code in fingerprint.codes(g.__code__) for name in code.co_names}
         if unchecked:
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
-        if any(g in compiled._reached(callee) for _, callee in compiled._callees(g)):
+        if any(g in fingerprint.reached(callee) for _, callee in fingerprint.callees(g)):
             raise _unfit(g, f"{g.__name__} calls itself")
     try:
         return _compiled(f, signature(takes - 2, ndim), nrt=False)
@@ -169,22 +169,26 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
 def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     """C function of f, with numba's counting of references where f makes arrays or lists; that takes longer."""
     from lcpstep.guarded import Guarded, Wrapped, array
+    from lcpstep.kept import Kept
 
     options = OPTIONS | {"_nrt": nrt}
-    parts = Wrapped.create_cfunc_wrapper, Wrapped.add_plain, array
-    wrapper = " ".join(compiled._code_text(cast(FunctionType, part)) for part in parts)
+    parts = Wrapped.create_cfunc_wrapper, array
+    wrapper = " ".join(fingerprint.code_text(cast(FunctionType, part)) for part in parts)
     copy = _twin(f, nrt, f"callback {options} {wrapper}")
     c_function = Guarded(copy, arguments, options)
-    if not any(isinstance(x, FunctionType) or hasattr(x, "py_func") for _, x in compiled._cells(f)):
-        compiled._keep_on_disk(c_function, f, copy, "callback")
+    inner = any(isinstance(x, FunctionType) or hasattr(x, "py_func") for _, x in fingerprint.cells(f))
+    if not inner and fingerprint.UNKNOWN not in fingerprint.dependencies(
+        f
+    ):  # what it reads cannot change unseen
+        c_function._cache = Kept(copy)
     c_function.compile()
     return c_function
 
 
 def _twin(f: FunctionType, nrt: bool, variant: str) -> FunctionType:
     """A copy of f whose callees are compiled, with a name of its own."""
-    twins = {g: _callee(g, nrt, compiled._dependencies(g)) for _, g in compiled._callees(f)}
-    return compiled.with_twins(f, twins, f"{variant} {compiled._dependencies(f)}")
+    twins = {g: _callee(g, nrt, fingerprint.dependencies(g)) for _, g in fingerprint.callees(f)}
+    return fingerprint.with_twins(f, twins, f"{variant} {fingerprint.dependencies(f)}")
 
 
 @functools.cache
@@ -197,8 +201,8 @@ def _callee(f: FunctionType, nrt: bool, dependencies: str) -> Any:
 
 def _read(f: FunctionType) -> list[Any]:
     """What f reads from around it."""
-    names = compiled._global_names(f)
-    return [f.__globals__.get(name) for name in names] + [x for _, x in compiled._cells(f)]
+    names = fingerprint.global_names(f)
+    return [f.__globals__.get(name) for name in names] + [x for _, x in fingerprint.cells(f)]
 
 
 def _kind(x: Any) -> Any:

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, LinearSystem, Scene
 from lcpstep.kernels import states
-from lcpstep.model import kernel_model, kernel_tangent_model
+from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse import Equations
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -220,7 +220,7 @@ def _forces(e: Equations, t: Array, q: Array, v: Array) -> Array:
 
 def _system_rates(scene: Scene, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
     """Kinetic energy, and the power v^T f of all forces but those of contacts, of a general system."""
-    return states.power(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v)))
+    return states.power(model(scene), *map(np.ascontiguousarray, (t, q, v)))
 
 
 def _obstacles(m: Trajectory) -> tuple[Array, Any]:
@@ -278,7 +278,7 @@ def _own_rates(
                 contacts.motion(t[k], q[k], v[k], np.array(scene.p), s)
                 out[k] = -s[:, 1]
         return out + (G @ v.T).T if moved else out
-    m = (kernel_tangent_model if tangents else kernel_model)(scene)
+    m = (tangent_model if tangents else model)(scene)
     return states.own_rates(
         m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved
     )

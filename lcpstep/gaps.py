@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
 from lcpstep.kernels import states
-from lcpstep.model import kernel_joint_model, kernel_model
+from lcpstep.model import joint_model, model
 
 Array = NDArray[np.float64]
 PORTION = 1 << 20  # gaps at a time
@@ -30,7 +30,7 @@ def lowest_and_highest(
     if isinstance(constraints, LinearContacts) and (constraints.motion is None or constraints.sparse):
         _flat(constraints, np.array(scene.p), t, q, v, low, high)
     else:
-        m = (kernel_joint_model if joints else kernel_model)(scene)
+        m = (joint_model if joints else model)(scene)
         return states.extremes(m, *(np.ascontiguousarray(x, dtype=float) for x in (t, q, v)))
     return low, high
 

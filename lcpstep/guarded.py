@@ -1,5 +1,7 @@
 """Numba's side of `callbacks`: a C function around a user's function, which lets no exception through in silence.
 
+Its signature is that of `lcpstep.kernels.function`: plain pointers, and how many numbers they point to.
+
 Numba's own wrapper prints the exception, and `out` keeps what stood in it. This one fills `out` with
 not-a-numbers and notes name, t, q and v by a call into Python. The user's function is merged into the wrapper: that
 saves more than its indices cost to check. This module is imported when the first callback is compiled or loaded.
@@ -30,7 +32,6 @@ from lcpstep.faults import Fault, note
 
 ALL_ONES = 0xFF  # the bytes of a not-a-number
 NOTE = "lcpstep_note"  # the symbol under which machine code finds `_note`
-PLAIN = "_plain"  # what the name of a C function of plain pointers ends in
 ITEM = 8  # bytes of a number
 NUMBERS, SIZE = ctypes.POINTER(ctypes.c_double), ctypes.c_ssize_t
 
@@ -57,34 +58,11 @@ class Wrapped(Lower):
         context, described, convention = self.context, self.fndesc, self.context.call_conv
         module = context.create_module("callback")
         inner = convention.get_function_type(described.restype, described.argtypes)
-        kinds = [context.get_value_type(kind) for kind in described.argtypes]
-        outer = ir.FunctionType(context.get_value_type(described.restype), kinds)
-        wrapper = ir.Function(module, outer, described.llvm_cfunc_wrapper_name)
-        builder = ir.IRBuilder(wrapper.append_basic_block("entry"))
-        callee = ir.Function(module, inner, described.llvm_func_name)
-        status, value = convention.call_function(
-            builder, callee, described.restype, described.argtypes, wrapper.args, attrs=("alwaysinline",)
-        )
-        with builder.if_then(status.is_error, likely=False):
-            arrays = zip(described.argtypes[1:], wrapper.args[1:], strict=True)
-            q, *others, out = (make_array(kind)(context, builder, x) for kind, x in arrays)
-            cgutils.memset(builder, out.data, builder.mul(out.nitems, out.itemsize), ALL_ONES)
-            v, n_v = (others[0].data, others[0].nitems) if len(others) > 1 else (q.data, q.nitems.type(0))
-            name = context.insert_const_string(module, self.func_ir.func_id.func.__name__)
-            given = name, wrapper.args[0], q.data, q.nitems, v, n_v
-            noted = ir.FunctionType(ir.VoidType(), [x.type for x in given])
-            builder.call(cgutils.get_or_insert_function(module, noted, NOTE), given)
-        builder.ret(value)
-        self.add_plain(module, callee)
-        self.library.add_ir_module(module)
-
-    def add_plain(self, module: Any, callee: Any) -> None:
-        """The same as a C function of plain pointers; see `lcpstep.kernels.function` for its signature."""
-        context, described, convention = self.context, self.fndesc, self.context.call_conv
         kinds = described.argtypes[1:]
         pointer, word = ir.DoubleType().as_pointer(), context.get_value_type(types.intp)
         outer = ir.FunctionType(ir.VoidType(), [ir.DoubleType(), *[pointer] * 4, word.as_pointer()])
-        wrapper = ir.Function(module, outer, described.llvm_cfunc_wrapper_name + PLAIN)
+        wrapper = ir.Function(module, outer, described.llvm_cfunc_wrapper_name)
+        callee = ir.Function(module, inner, described.llvm_func_name)
         builder = ir.IRBuilder(wrapper.append_basic_block("entry"))
         t, q, v, p, out, sizes = wrapper.args
         size = [builder.load(cgutils.gep_inbounds(builder, sizes, i)) for i in range(5)]
@@ -103,6 +81,7 @@ class Wrapped(Lower):
             noted = ir.FunctionType(ir.VoidType(), [x.type for x in given])
             builder.call(cgutils.get_or_insert_function(module, noted, NOTE), given)
         builder.ret_void()
+        self.library.add_ir_module(module)
 
 
 def array(context: Any, builder: Any, kind: Any, data: Any, shape: list[Any]) -> Any:
@@ -144,8 +123,6 @@ class Guarded(CFunc):
     def __init__(self, f: Any, arguments: tuple[Any, ...], options: dict[str, Any]) -> None:
         super().__init__(f, (arguments, types.void), {}, options, pipeline_class=Compiler)
 
-    plain_address = 0  # of the C function of plain pointers
-
     def compile(self: Any) -> None:
         """Machine code from the cache or afresh; what `print` needs of the interpreter is tied to it."""
         context = self._targetdescr.target_context
@@ -157,8 +134,5 @@ class Guarded(CFunc):
             self.result = result  # keeps that alive
             self._wrapper_address = result.library.get_pointer_to_function(
                 result.fndesc.llvm_cfunc_wrapper_name
-            )
-            self.plain_address = result.library.get_pointer_to_function(
-                result.fndesc.llvm_cfunc_wrapper_name + PLAIN
             )
             result.library.codegen.set_env(context.get_env_name(result.fndesc), result.environment)

@@ -1,14 +1,14 @@
-"""Machine code kept on disk, so that a kernel is compiled once per machine.
+"""Machine code of users' functions kept on disk, so that each is compiled once per machine.
 
 An entry is a file: a checksum, and what numba makes of a compiled function. Its name carries all that the machine
-code depends on (`compiled`), the types of its arguments, the processor and the versions of what compiled it; so no
+code depends on (`fingerprint`), the types of its arguments, the processor and the versions of what compiled it; so no
 entry is ever out of date, and whoever may read one may use it. An entry that is damaged is noticed by its checksum,
 before any of it is run or unpickled, and made again. Where no folder takes an entry, machine code lasts as long as
 the process, which is said once.
 
 The folders, in the order in which they are tried: `NUMBA_CACHE_DIR` where that is set, otherwise `__pycache__` beside
 the source and the user's cache folder; then one in the system's folder for temporary files that only this user may
-enter. This module is imported when the first kernel is compiled or loaded.
+enter. This module is imported when the first function is compiled or loaded.
 """
 
 from __future__ import annotations
@@ -53,11 +53,10 @@ class Kept:
     Parameters
     ----------
     f : function to be compiled, its qualified name carrying the fingerprint of all that it depends on
-    kind : what is made of it, "kernel" or "callback"
     """
 
-    def __init__(self, f: FunctionType, kind: str) -> None:
-        self.f, self.kind = f, kind
+    def __init__(self, f: FunctionType) -> None:
+        self.f = f
         self.source = Path(f.__code__.co_filename)
 
     @property
@@ -74,8 +73,6 @@ class Kept:
             payload = read(folder / name, owners)
             if payload is not None:
                 return CompileResult._rebuild(target, *payload)
-        if self.kind == "kernel":
-            LOG.warning("compiling %s; this takes a while, once per machine", self.title)
         return None
 
     def save_overload(self, signature: Any, result: Any) -> None:
@@ -90,7 +87,7 @@ class Kept:
 
     def entry(self, signature: Any, codegen: Any) -> str:
         """Name of the file for these types of arguments."""
-        depends = (self.kind, self.f.__module__, self.f.__qualname__, str(signature), codegen.magic_tuple())
+        depends = (self.f.__module__, self.f.__qualname__, str(signature), codegen.magic_tuple())
         digest = hashlib.sha256(f"{depends} {toolchain()}".encode()).hexdigest()[:DIGITS]
         name = "".join(c if c.isalnum() or c in "._" else "" for c in self.title)
         return f"{name[-LONGEST:]}-{digest}{ENDING}"
@@ -166,16 +163,14 @@ def read(file: Path, owners: set[int]) -> Any:
 @cache
 def toolchain() -> str:
     """What turns a function into machine code, as a text that changes with it."""
-    own = [
-        Path(__file__).with_name(f"{name}.py").read_bytes() for name in ("compiled", "addresses", "linking")
-    ]
+    own = [Path(__file__).with_name(f"{name}.py").read_bytes() for name in ("fingerprint", "guarded")]
     versions = [sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__]
     settings = {k: v for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in HARMLESS}
     return f"{versions} {sorted(settings.items())} {hashlib.sha256(b''.join(own)).hexdigest()}"
 
 
 def tell_once(what: str, failures: list[str]) -> None:
-    """Say that the usual folders take nothing; once per process, and not for every kernel."""
+    """Say that the usual folders take nothing; once per process, and not for every function."""
     if not TOLD:
         TOLD.append(what)
         LOG.warning("machine code cannot be kept where it belongs: %s (%s)", what, "; ".join(failures))

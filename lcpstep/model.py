@@ -1,14 +1,14 @@
-"""A scene as kernels see it: numbers, arrays and the addresses of the user's functions.
+"""From a scene to the model that kernels see: numbers, arrays and the addresses of the user's functions.
 
-`model(scene)` compiles the scene's callbacks. Where numba cannot compile one, all are kept as they are, with a
-warning, and the whole run takes the same kernels in plain Python.
+`model(scene)` compiles the scene's callbacks. One that numba cannot compile stays in Python, with a warning, and is
+called back from the kernels: the run is slower by that function alone.
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +17,11 @@ from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scen
 from lagrangian.checks import Callback
 from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
-from lcpstep import callbacks, compiled
+from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
-from lcpstep.compiled import by_address
 from lcpstep.errors import LcpStepError
-from lcpstep.faults import fault, plain
+from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.uncompiled import CalledBack
 
@@ -53,106 +52,19 @@ def dense(name: str, matrix: Any) -> Array:
     return np.ascontiguousarray(matrix.toarray())
 
 
-@by_address
-class Model(NamedTuple):
-    """Everything a kernel needs to evaluate a scene's equations; see `lagrangian` for the symbols."""
-
-    linear: bool  # M v' + C v + K q = F(t); otherwise M(t, q) v' = force(t, q, v)
-    M: Array
-    M_inverse: Array
-    C: Array
-    K: Array
-    constant: Array
-    cosine: Array
-    sine: Array
-    omega: float
-    force: Any
-    frame: Any
-    carried: bool  # kernels see q + c, in which the frame rests and obstacles move with it instead
-    mass: Any
-    force_q: Any
-    force_v: Any
-    flat: bool  # g = G q + offset - s(t); otherwise gap(t, q)
-    G: Array
-    offset: Array
-    restitution: Array
-    motion: Any
-    gap: Any
-    jacobian: Any
-    gap_t: Any
-    bias: Any
-    p: Array
-    frame_now: Array  # (n_q, 3), work space: c, c', c''
-    motion_now: Array  # (n_c, 3), work space: s, s', s''
-
-
-def model(scene: Scene) -> tuple[Model, bool]:
-    """The scene's model, and whether every callback of it could be compiled."""
-    (m,), fast = _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))
-    return m, fast
-
-
-def plain_model(scene: Scene) -> Model:
-    """The scene's model with its callbacks as they are, for a few evaluations of its equations in plain Python."""
-    return Model(**(_system(scene) | _contacts(scene, scene.contacts)))
-
-
-def joint_model(scene: Scene) -> tuple[Model, bool]:
-    """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    (m,), fast = _models(scene, _system(scene), joints=_joints(scene))
-    return m, fast
-
-
-def tangent_model(scene: Scene) -> tuple[Model, bool]:
-    """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    (m,), fast = _models(scene, _system(scene), friction=_tangents(scene))
-    return m, fast
-
-
-def models(scene: Scene) -> tuple[tuple[Model, Model, Model], bool]:
-    """Models of the contacts, joints and tangents of a scene, any of them empty; whether all could be compiled."""
-    friction = scene.contacts is not None and scene.contacts.friction is not None
-    (normal, joint, tangent), fast = _models(
-        scene,
-        _system(scene),
-        contacts=_contacts(scene, scene.contacts),
-        joints=_joints(scene),
-        friction=_tangents(scene) if friction else _contacts(scene, None),
-    )
-    return (normal, joint, tangent), fast
-
-
-def _models(scene: Scene, own: dict[str, Any], **constraints: dict[str, Any]) -> tuple[list[Model], bool]:
-    """A model for each kind of constraints; where one callback of any cannot be compiled, all are plain."""
-    (system, *rows), fast = with_addresses(scene, system=own, **constraints)
-    return [Model(**(system | row)) for row in rows], fast
-
-
-def with_addresses(scene: Scene, **parts: dict[str, Any]) -> tuple[list[dict[str, Any]], bool]:
-    """Fields with compiled callbacks in the place of plain ones; all are plain where one cannot be compiled."""
-    given = {part: {name: f for name, f in fields.items() if callable(f)} for part, fields in parts.items()}
-    made: dict[str, dict[str, Any]] = {part: {} for part in parts}
-    if not compiled.jit_disabled():
-        made = {part: _compile(scene, part, fs) for part, fs in given.items()}
-    fast = all(len(made[part]) == len(fs) for part, fs in given.items())
-    if not fast:
-        made = {part: {name: plain(f) for name, f in fs.items()} for part, fs in given.items()}
-    return [fields | made[part] for part, fields in parts.items()], fast
-
-
-def kernel_model(scene: Scene) -> kernels.Model:
+def model(scene: Scene) -> kernels.Model:
     """The scene's model as kernels built ahead of time take it."""
-    return _kernel_models(scene, contacts=_contacts(scene, scene.contacts))[0]
+    return _models(scene, contacts=_contacts(scene, scene.contacts))[0]
 
 
-def kernel_models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
+def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
     """Models of the contacts, joints and tangents of a scene, any of them empty."""
     parts = {"contacts": _contacts(scene, scene.contacts)}
     if scene.n_j > 0:
         parts["joints"] = _joints(scene)
     if scene.contacts is not None and scene.contacts.friction is not None:
         parts["friction"] = _tangents(scene)
-    made = dict(zip(parts, _kernel_models(scene, **parts), strict=True))
+    made = dict(zip(parts, _models(scene, **parts), strict=True))
     nothing = _empty(scene.n_q)
     return made["contacts"], made.get("joints", nothing), made.get("friction", nothing)
 
@@ -162,45 +74,47 @@ def _empty(n_q: int) -> kernels.Model:
     """A model that has neither forces nor rows."""
     system = LinearSystem(np.eye(n_q))
     scene = Scene(system=system, q0=np.zeros(n_q), v0=np.zeros(n_q), t_span=(0.0, 1.0))
-    return kernel_model(scene)
+    return model(scene)
 
 
-def kernel_joint_model(scene: Scene) -> kernels.Model:
+def joint_model(scene: Scene) -> kernels.Model:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    return _kernel_models(scene, joints=_joints(scene))[0]
+    return _models(scene, joints=_joints(scene))[0]
 
 
-def kernel_tangent_model(scene: Scene) -> kernels.Model:
+def tangent_model(scene: Scene) -> kernels.Model:
     """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    return _kernel_models(scene, friction=_tangents(scene))[0]
+    return _models(scene, friction=_tangents(scene))[0]
 
 
-def _kernel_models(scene: Scene, **constraints: dict[str, Any]) -> list[kernels.Model]:
+def _models(scene: Scene, **constraints: dict[str, Any]) -> list[kernels.Model]:
     """A model for each kind of constraints, its functions C functions: compiled, or around Python."""
-    called_back: list[CalledBack] = []
     own = _system(scene)
-    for part, fields in (("system", own), *constraints.items()):
+    functions, called_back = c_functions(scene, system=own, **constraints)
+    own |= functions["system"] | {"called_back": called_back}
+    return [kernels.Model(own | rows | functions[part]) for part, rows in constraints.items()]
+
+
+def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[str, int]], list[CalledBack]]:
+    """Addresses of C functions for the callbacks among the fields of each part; what must be kept as long."""
+    called_back: list[CalledBack] = []
+    made: dict[str, dict[str, int]] = {}
+    for part, fields in parts.items():
         given = {name: f for name, f in fields.items() if callable(f)}
-        made = {} if compiled.jit_disabled() else _compile(scene, part, given, callbacks.plain_address)
+        made[part] = {} if callbacks.disabled() else _compile(scene, part, given)
         for name, f in given.items():
-            if name not in made:
+            if name not in made[part]:
                 called_back.append(CalledBack(f))
-                made[name] = called_back[-1].address
-        fields |= made
-    return [kernels.Model(own | rows | {"called_back": called_back}) for rows in constraints.values()]
+                made[part][name] = called_back[-1].address
+    return made, called_back
 
 
-def _compile(
-    scene: Scene,
-    part: str,
-    given: dict[str, Callback],
-    address: Callable[[Callback, int], int] = callbacks.address,
-) -> dict[str, int]:
+def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, int]:
     addresses = {}
     for name, f in given.items():
         ndim = 1 if name in ("force", "gap", "gap_t", "bias") else 2
         try:
-            addresses[name] = address(f, ndim)
+            addresses[name] = callbacks.address(f, ndim)
         except NotCompiled as why:
             said = TANGENT.get(name, name) if part == "friction" else name
             prefix = "" if part in ("system", "contacts") else f"{part}."
@@ -243,7 +157,7 @@ def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:
     n_q, n_c = scene.n_q, scene.n_c
     shapes = {"force": (n_q,), "frame": (n_q, 3), "mass": (n_q, n_q), "motion": (n_c, 3)}
     shapes |= {"gap": (n_c,), "jacobian": (n_c, n_q), "gap_t": (n_c,), "bias": (n_c,)}
-    fields, found = plain_model(scene)._asdict(), []
+    fields, found = _system(scene) | _contacts(scene, scene.contacts), []
     for name, shape in shapes.items():
         if callable(f := fields[name]):
             first, again = np.zeros((2, *shape))

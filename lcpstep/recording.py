@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.compiled import by_address
-from lcpstep.kernels import record as kernels
+from lcpstep.kernels.record import Record
 from lcpstep.trajectory import IMPACT_DTYPE
 
 Array = NDArray[np.float64]
@@ -62,45 +61,6 @@ class Kept:
         return self.every == 1
 
 
-@by_address
-class Record(NamedTuple):
-    """Where kept states and events go, as kernels see it."""
-
-    every: int  # keep every so many steps; 0: none
-    on_events: bool
-    times: Any  # keep the states at these times
-    rows: Any  # (rows, LEAD + 2 n_q + n_c): time, mode, duration, q, v, impulses since the row before
-    events: Any  # (events, 6): time, contact, gap velocity before and after, impulse, kind
-    dense: Any  # (rows, 7, 2 n_q) dense output of the step after each row, or (rows, 1, n_q) its acceleration
-
-
-def write_row(row: Any, t: float, mode: float, q: Any, v: Any, impulse: Any) -> None:
-    """Kernel: one kept state; the impulses summed up to it start anew."""
-    n = len(q)
-    row[TIME], row[MODE], row[LENGTH] = t, mode, 0.0
-    for i in range(n):
-        row[LEAD + i], row[LEAD + n + i] = q[i], v[i]
-    for c in range(len(impulse)):
-        row[LEAD + 2 * n + c] = impulse[c]
-        impulse[c] = 0.0
-
-
-def quiet_until(record: Any, step: int, next_time: int, h: float, t0: float, first: int, last: int) -> int:
-    """Kernel: the step, at most `last`, up to which none keeps a state; step `first` begins at t0."""
-    end = last
-    if record.every > 0:
-        end = min(end, step + record.every - 1 - step % record.every)
-    if next_time < len(record.times):
-        end = min(end, first + int((record.times[next_time] - t0) / h) - 1)
-    return end
-
-
-def write_event(event: Any, t: float, contact: int, before: float, after: float, p: float, kind: int) -> None:
-    """Kernel: one line of the impact log."""
-    event[0], event[1], event[5] = t, contact, kind
-    event[2], event[3], event[4] = before, after, p
-
-
 def in_order(events: Array, end: float) -> Array:
     """Events in the order of time, within the span; those of one time in the order in which they were noted.
 
@@ -129,7 +89,10 @@ class States(NamedTuple):
 
 
 class Recorder:
-    """Buffers of one run, and what they held when they were emptied."""
+    """Buffers of one run, and what they held when they were emptied.
+
+    record    what kernels write into `rows`, `lines` of the log and `curves` (dense output) through
+    """
 
     def __init__(
         self,
@@ -141,32 +104,26 @@ class Recorder:
         dense_shape: tuple[int, int] | None = None,
     ) -> None:
         self.n_q = n_q
-        self.buffers = Record(
-            every=kept.every,
-            on_events=kept.on_events,
-            times=kept.times,
-            # Not filled with zeros, which would take longer than a short run: what is read has been written.
-            rows=np.empty((rows, LEAD + 2 * n_q + n_c)),
-            events=np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ()))),
-            dense=np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q)))),
+        # Not filled with zeros, which would take longer than a short run: what is read has been written.
+        self.rows = np.empty((rows, LEAD + 2 * n_q + n_c))
+        self.lines = np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ())))
+        self.curves = np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q))))
+        self.record = Record(
+            n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves
         )
-        b = self.buffers
-        self.record = kernels.Record(
-            n_q, n_c, kept.every, kept.on_events, kept.times, b.rows, b.events, b.dense
-        )
-        self._states: list[tuple[Array, ...]] = []  # as `kernels.Record.states` gives them
-        self._parts = {"events": [b.events[:0]], "dense": [b.dense[:0]]}
+        self._states: list[tuple[Array, ...]] = []  # as `Record.states` gives them
+        self._parts = {"events": [self.lines[:0]], "dense": [self.curves[:0]]}
 
     def empty(self, rows: int, events: int) -> None:
         """Take over the first rows and events of the buffers."""
         self.record.row = rows
         self._states.append(self.record.states())
-        self._parts["dense"].append(self.buffers.dense[:rows].copy())
-        self._parts["events"].append(self.buffers.events[:events].copy())
+        self._parts["dense"].append(self.curves[:rows].copy())
+        self._parts["events"].append(self.lines[:events].copy())
         self.record.row = self.record.event = 0
 
     def take(self) -> int:
-        """Take over what kernels built ahead of time have written; how many events that were."""
+        """Take over what kernels have written; how many events that were."""
         events = int(self.record.event)
         self.empty(self.record.row, events)
         return events

@@ -35,7 +35,7 @@ def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(nam
         if address == 0:
             continue
         monkeypatch.setattr(callbacks.built, "address", lambda f: 0)
-        compiled = Function(callbacks.plain_address(f, len(shape)), p, n, n, shape)
+        compiled = Function(callbacks.address(f, len(shape)), p, n, n, shape)
         monkeypatch.undo()
         times = rng.uniform(0.0, 3.0, 50)
         for _ in range(5):

@@ -24,7 +24,7 @@ from lagrangian import Scene
 from lcpstep.analysis.graphs import Graph, hausdorff
 from lcpstep.analysis.matching import Matching, match_impacts
 from lcpstep.kernels import states
-from lcpstep.model import kernel_model
+from lcpstep.model import model
 
 Array = NDArray[np.float64]
 LOOKS = 2000  # instants looked at in any case, however coarse the grids
@@ -234,15 +234,13 @@ MEASURES = (
 
 def energies(scene: Scene, t: Array, q: Array, v: Array) -> Array:
     """Kinetic energy, and the potential of constant stiffness and constant forces, of states (n, n_q) [J]."""
-    return np.asarray(states.energy(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v))))
+    return np.asarray(states.energy(model(scene), *map(np.ascontiguousarray, (t, q, v))))
 
 
 def least_gap(scene: Scene, t: Array, q: Array, v: Array) -> float:
     """The smallest gap of all contacts over states (n, n_q); infinite for a scene without contacts."""
     return float(
-        np.min(
-            states.extremes(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v)))[0], initial=math.inf
-        )
+        np.min(states.extremes(model(scene), *map(np.ascontiguousarray, (t, q, v)))[0], initial=math.inf)
     )
 
 

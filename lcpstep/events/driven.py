@@ -11,7 +11,7 @@ from lcpstep.events.flight.run import ClosedForm
 from lcpstep.events.general.run import General
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.model import kernel_model, require
+from lcpstep.model import model, require
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
 
@@ -75,7 +75,7 @@ class EventDriven:
         """The motion of a scene; see `lcpstep.simulate`."""
         require(scene, "EventDriven", joints=True, friction=False)
         if scene.n_c <= 1 and scene.n_j == 0:
-            closed = kernel_model(scene)
+            closed = model(scene)
             o = oscillator_of(closed)
             if o is not None:
                 return ClosedForm(self, scene, kept, closed, o).finish(progress)

@@ -88,17 +88,20 @@ class Run(ABC):
 
     def empty(self) -> None:
         """Move the buffers' contents to the recorder, but for the last row, whose step may still be to come."""
-        record, buffers = self.recorder.record, self.recorder.buffers
+        record = self.recorder.record
         last = max(record.row - 1, 0)
         self.recorder.empty(last, record.event)
-        for kept in (buffers.rows, buffers.dense):  # or has been made, where the run ends at an event
+        for kept in (
+            self.recorder.rows,
+            self.recorder.curves,
+        ):  # or has been made, where the run ends at an event
             kept[:1] = kept[last : last + 1]
         record.row, record.event = min(record.row, 1), 0
 
     def trajectory(self, status: Status, message: str) -> Trajectory:
         """Everything computed so far."""
         record, n_c = self.recorder.record, self.scene.n_c
-        nothing = record.row == 0 or self.now > self.recorder.buffers.rows[record.row - 1, TIME]
+        nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
         if len(self.kept.times) == 0 and nothing:
             self.keep_now()
         self.recorder.take()

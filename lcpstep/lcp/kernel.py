@@ -11,16 +11,11 @@ answer is judged before it is called one, and a problem of a few unknowns is enu
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import cython
-import numpy as np
 
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles
     from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge, proves_infeasible
     from lcpstep.lcp.lemke import lemke
@@ -222,26 +217,3 @@ def choose_negative(b: Doubles, n: int, work: Workspace) -> bool:
         work.chosen[i] = 1 if b[i] < 0.0 else 0
         some = some or b[i] < 0.0
     return some
-
-
-def solve(W: Any, b: Any, z: Any, work: Workspace) -> int:
-    """`solve_small`, called from Python."""
-    return solve_small(doubles(W), doubles(b), doubles(z), len(b), work)
-
-
-def solver(by_address: bool) -> int | Callable[..., int]:
-    """What `compiled.call_solver` calls: the address of `solve_small`, or `solve` for plain Python."""
-    if not by_address:
-        return solve
-    if cython.compiled:
-        return cython.cast(cython.size_t, solve_small)
-    else:  # noqa: RET505  (the compiler leaves out what comes here)
-        from lcpstep.lcp.uncompiled import address_of
-
-        return address_of(solve_small)
-
-
-def room(n: int, by_address: bool) -> Any:
-    """Work space for n unknowns, as `compiled.call_solver` takes it."""
-    work = Workspace(n if n > 0 else 1)
-    return np.asarray(work) if by_address else work

@@ -5,7 +5,7 @@ cdef Py_ssize_t VECTORS, LISTS
 
 
 cdef class Workspace:
-    cdef object numbers, lists, own
+    cdef object numbers, lists
     cdef double* columns
     cdef double* inverse
     cdef double* factor

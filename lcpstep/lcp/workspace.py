@@ -6,8 +6,6 @@ numbers a row, whatever the largest n; indices of variables are numbered as in `
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 import numpy as np
 
@@ -53,7 +51,6 @@ class Workspace:
     def __init__(self, n: int) -> None:
         self.numbers = np.zeros((n + 1) * n + 2 * n * n + VECTORS * (n + 1))
         self.lists = np.zeros(LISTS * (2 * n + 1), dtype=np.intp)
-        self.own = np.array([id(self)], dtype=np.intp)
         self.residual = self.best_residual = self.smallest = 0.0
         self.ray_dz_0 = self.ray_z_0 = 0.0
         self.iterations = 0
@@ -88,8 +85,3 @@ class Workspace:
         self.chosen = indices_after(self.active, m)
         self.nonbasic = indices_after(self.chosen, m)
         self.place = indices_after(self.nonbasic, m)
-
-    @property
-    def __array_interface__(self) -> dict[str, Any]:
-        """Where it lies, as an array of one number that keeps it alive: what kernels of numba's are handed."""
-        return self.own.__array_interface__

@@ -23,7 +23,7 @@ from lcpstep.maps.tangent import along_logs
 from lcpstep.maps.task import INSIDE as INSIDE
 from lcpstep.maps.task import UNREACHED as UNREACHED
 from lcpstep.maps.task import Task
-from lcpstep.model import kernel_model
+from lcpstep.model import model
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 
@@ -36,7 +36,7 @@ class Follower:
 
     def __init__(self, scene: Scene, method: EventDriven) -> None:
         self.scene, self.method = scene, method
-        self.model = kernel_model(scene)
+        self.model = model(scene)
         self.oscillator = oscillator_of(self.model)
 
     @property

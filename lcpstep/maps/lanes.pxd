@@ -5,6 +5,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.maps.answers cimport Answers
 from lcpstep.pointers cimport max, min
+from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef double OPEN, STRUCK
 
@@ -25,6 +26,7 @@ cdef class Lanes:
     cdef double* nobody
     cdef double* force
     cdef double* closed
+    cpdef void take(self, Plan plan)
 
 
 cpdef object advance(Model m, Lanes lanes, Answers a, double t0, double side, Py_ssize_t first, Py_ssize_t begin, Py_ssize_t last, Py_ssize_t k)

@@ -19,6 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.maps.answers import Answers
     from lcpstep.pointers import max, min
+    from lcpstep.stepping.theta_method.plan import Plan
 
 OPEN, STRUCK = 0.0, 1.0  # and 2: closed for several steps
 
@@ -30,7 +31,7 @@ class Lanes:
     p, before           impulse of the step, gap velocity at its start
     slack               a predicted gap this small is closed
     closed              OPEN, STRUCK in the last step, or 2: closed for several
-    h, theta, A_f, A_q, A_v, A_g, W     of the step, see `lcpstep.stepping.moreau.plan`
+    h, theta, A_f, A_q, A_v, A_g, W     of the step, see `lcpstep.stepping.theta_method.plan`
     nobody, force : (1,)    a state for functions that depend on time alone; what they give
 
     Parameters
@@ -51,11 +52,11 @@ class Lanes:
         self.closed = doubles(self.marks)
         self.nobody, self.force = doubles(self.space[:1]), doubles(self.space[1:])
 
-    def take(self, plan: Any) -> None:
+    def take(self, plan: Plan) -> None:
         """Steps as the plan says."""
         self.h, self.theta = plan.h, plan.theta
-        self.A_f, self.A_q, self.A_v = plan.A_f[0, 0], plan.A_q[0, 0], plan.A_v[0, 0]
-        self.A_g, self.W = plan.A_g[0, 0], plan.W[0, 0]
+        self.A_f, self.A_q, self.A_v = plan.A_f[0], plan.A_q[0], plan.A_v[0]
+        self.A_g, self.W = plan.X[0], plan.W[0]
 
 
 def advance(

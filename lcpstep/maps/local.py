@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.kernels.point import Point
-from lcpstep.model import kernel_model, plain_model
+from lcpstep.model import model, plain_model
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ class Local:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.model = scene, plain_model(scene)
-        self.point = Point(kernel_model(scene))
+        self.point = Point(model(scene))
         self.restitution = float(self.model.restitution[0])
 
     def acceleration(self, t: float, q: Array, v: Array) -> Array:

@@ -12,12 +12,13 @@ from lcpstep.faults import cause
 from lcpstep.maps.answers import Answers
 from lcpstep.maps.lanes import Lanes, advance
 from lcpstep.maps.task import INSIDE, Task
-from lcpstep.model import kernel_model, plain_model
+from lcpstep.model import models
 from lcpstep.pace import Pace
-from lcpstep.stepping.moreau import Moreau, plan
+from lcpstep.stepping.moreau import Moreau
+from lcpstep.stepping.moreau_run import plan, rows
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided
-from lcpstep.stepping.theta import Plan
+from lcpstep.stepping.theta_method.plan import Plan
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
@@ -30,7 +31,8 @@ class Lockstep:
 
     def __init__(self, scene: Scene, method: Moreau) -> None:
         self.scene, self.method = scene, method
-        self.model = kernel_model(scene)
+        self.model, joints, tangents = models(scene)
+        self.rows = rows(scene, joints, tangents, projected=False)
 
     @property
     def usable(self) -> bool:
@@ -91,6 +93,5 @@ class Lockstep:
 
     def stretches(self, t_start: float, t_end: float) -> Iterator[tuple[Plan, float, int, int]]:
         """The steps of a span, as `Moreau` takes them: whole ones, and a shorter last one where they do not fit."""
-        m = plain_model(self.scene)
         for h, t0, first, last in divided((t_start, t_end), self.method.h):
-            yield plan(m, h, self.method.theta, 0.0), t0, first, last
+            yield plan(self.model, self.rows, h, self.method.theta, 0.0, constant=True), t0, first, last

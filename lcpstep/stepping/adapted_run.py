@@ -5,10 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import cast
 
-import numpy as np
-
-from lcpstep.model import Model
-from lcpstep.stepping import adaptive, interpolation, theta
+from lcpstep.stepping import adaptive, interpolation
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.moreau_run import Array, Run
 from lcpstep.trajectory import Status
@@ -45,15 +42,3 @@ class AdaptedRun(Run):
         x, now = self.state.arrays, self.now
         where = f"at t = {now:.9g} s, q = {x['q'].tolist()}, v = {x['v'].tolist()}"
         return adaptive.too_small(self.method, self.scene, now, x["q"], x["v"], where)
-
-
-def plan(m: Model, h: float, theta_: float, slack: float) -> theta.Plan:
-    """What steps of size h multiply with, for the kernels of `maps.lockstep`."""
-    n_q, n_c = m.G.shape[1], m.G.shape[0]
-    A = m.M + h * theta_ * m.C + (h * theta_) ** 2 * m.K
-    inverse = np.asarray(np.linalg.inv(A) if m.linear else np.zeros((n_q, n_q)), dtype=np.float64)
-    A_g = inverse @ m.G.T
-    return theta.Plan(
-        h=h, theta=theta_, A_q=h * inverse @ m.K, A_v=inverse @ (h * m.C + h * h * theta_ * m.K), A_f=h * inverse,
-        A_g=np.ascontiguousarray(A_g).reshape(n_q, n_c), W=m.G @ A_g, slack=slack,
-    )  # fmt: skip

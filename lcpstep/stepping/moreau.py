@@ -14,8 +14,6 @@ from lcpstep.lcp import check_method
 from lcpstep.recording import Kept
 from lcpstep.stepping import sparse
 from lcpstep.stepping.adapted_run import AdaptedRun
-from lcpstep.stepping.adapted_run import plan as plan
-from lcpstep.stepping.features import frictional
 from lcpstep.stepping.moreau_run import Run
 from lcpstep.stepping.steps import check_steps
 from lcpstep.trajectory import Trajectory

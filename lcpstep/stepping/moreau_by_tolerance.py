@@ -21,6 +21,7 @@ import numpy as np
 
 from lcpstep.stepping.adaptive import LEVELS, PAUSED, REACHED, WANTED
 from lcpstep.stepping.step_control import Control
+from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL
 
 if not cython.compiled:
@@ -35,7 +36,6 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.theta_loop import run
 
-LATE = 1e-9  # of a step: what rounding may take from the last one's end
 ROWS = 4  # that a step may keep besides the times asked for
 SAVED = 9  # vectors of n_q numbers
 

@@ -18,7 +18,7 @@ from lcpstep.faults import cause
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
 from lcpstep.lcp import solve_lcp
-from lcpstep.model import culprit, kernel_models
+from lcpstep.model import culprit, models
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import interpolation
@@ -44,7 +44,7 @@ class Run:
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model, joints, tangents = kernel_models(scene)
+        self.model, joints, tangents = models(scene)
         self.rows = rows(scene, joints, tangents, method.projected)
         self.constant = all(m.flat for m in (self.model, joints, tangents)) and self.model.linear
         self.constant = self.constant and not method.projected

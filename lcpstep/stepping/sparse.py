@@ -1,4 +1,4 @@
-"""The Moreau theta-method for large sparse linear systems: the steps of `theta`, on whole vectors.
+"""The Moreau theta-method for large sparse linear systems: the steps of `theta_method`, on whole vectors.
 
 The step is solved for the change of the velocity, x = v+ - v, and the impulses p of the active contacts:
 
@@ -22,15 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
-from lcpstep.compiled import call, compiled
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.faults import cause
+from lcpstep.kernels.function import Function
 from lcpstep.lcp.saddle import Point, Problem, Saddle
-from lcpstep.model import culprit, with_addresses
+from lcpstep.model import c_functions, culprit
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, divided, unresolved
-from lcpstep.stepping.theta import LATE
+from lcpstep.stepping.steps import LATE, RESTING, divided, unresolved
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
 if TYPE_CHECKING:
@@ -51,11 +51,6 @@ def is_sparse(scene: Scene) -> bool:
     return system.sparse or (contacts is not None and contacts.sparse)
 
 
-def evaluate(f: Any, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
-    """Kernel: a callback, or the address of one, from Python."""
-    call(f, t, q, v, p, out)
-
-
 class Equations:
     """The scene's sparse matrices, forces and gaps."""
 
@@ -67,8 +62,8 @@ class Equations:
             contacts is None or isinstance(contacts, LinearContacts)
         ):
             raise TypeError(f"scene: expected a linear system and flat contacts, got {scene.name!r}")
-        given: Any = (system.M, system.C, system.K)
-        self.M, self.C, self.K = (csr_array(x) for x in given)
+        matrices: Any = (system.M, system.C, system.K)
+        self.M, self.C, self.K = (csr_array(x) for x in matrices)
         G: Any = np.zeros((0, n_q)) if contacts is None else contacts.G
         self.G = csr_array(G)
         self.offset = np.zeros(0) if contacts is None else np.array(contacts.offset)
@@ -78,14 +73,19 @@ class Equations:
         self.terms = (self.harmonic or Harmonic()).terms(n_q)
         motion = None if contacts is None else contacts.motion
         named = {"force": system.force, "frame": system.frame, "motion": motion}
-        (fields,), fast = with_addresses(scene, system={name: f for name, f in named.items() if callable(f)})
-        self.callbacks, self.evaluate = fields, compiled(evaluate) if fast and fields else evaluate
+        given = {name: f for name, f in named.items() if callable(f)}
+        addresses, self.kept = c_functions(scene, system=given)
+        shapes = {"force": (n_q,), "frame": (n_q, 3), "motion": (len(self.offset), 3)}
+        self.callbacks = {
+            name: Function(address, self.p, n_q, n_q, shapes[name])
+            for name, address in addresses["system"].items()
+        }
 
     def value(self, name: str, t: float, q: Array, v: Array, shape: tuple[int, ...]) -> Array:
         """Value of a callback."""
-        out = np.full(shape, np.nan)
-        self.evaluate(self.callbacks[name], t, q, v, self.p, out)
-        return out
+        out = np.full((1, *shape), np.nan)
+        self.callbacks[name].sample(np.array([t]), np.ascontiguousarray(q), np.ascontiguousarray(v), out)
+        return out[0]
 
     def force(self, t: float, q: Array, v: Array) -> Array:
         """F(t), the forces of a moving frame included."""
@@ -169,15 +169,11 @@ class Run:
                     break
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        except SimulationError:
-            raise
-        except Exception as error:  # a callback in plain Python
-            result = self.trajectory(Status.NOT_FINITE)
-            raise SimulationError(result.message, result) from error
         progress(self.t)
+        error = cause() if status == Status.NOT_FINITE else None
         result = self.trajectory(status)
         if status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result)
+            raise SimulationError(result.message, result) from error
         return result
 
     def begin(self) -> None:
@@ -243,7 +239,7 @@ class Run:
         kinds[~pressed & (self.closed == 2)] = Kind.RELEASE
         self.closed = np.where(pressed, np.minimum(2, self.closed + 1), 0)
         noted = np.flatnonzero(kinds >= 0)
-        lines = self.recorder.buffers.events
+        lines = self.recorder.lines
         if self.events + len(noted) > len(lines):
             self.empty()
         at = slice(self.events, self.events + len(noted))
@@ -265,7 +261,7 @@ class Run:
 
     def keep(self, t: float, q: Array, v: Array) -> None:
         """Keep a state; the impulses summed up to it start anew."""
-        rows, n = self.recorder.buffers.rows, len(q)
+        rows, n = self.recorder.rows, len(q)
         if self.rows == len(rows):
             self.empty()
         row = rows[self.rows]

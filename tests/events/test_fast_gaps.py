@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, simulate
 from lcpstep.events.scan import PER_FORCING, scan_interval
-from lcpstep.model import kernel_model
+from lcpstep.model import model
 
 GRAVITY, RESTITUTION = 9.81, 0.5
 
@@ -82,13 +82,13 @@ def test_a_gap_that_turns_fast_along_the_motion_is_seen():
 
 def test_a_cam_is_not_looked_at_more_finely_than_its_period_asks_for():
     cam = scenes.cam_follower(rpm=660.0, t_end=1.0)
-    assert scan_interval(cam, kernel_model(cam), 0.0) == cam.period / PER_FORCING
+    assert scan_interval(cam, model(cam), 0.0) == cam.period / PER_FORCING
 
 
 def test_a_gear_of_many_teeth_in_a_period_is_looked_at_more_finely():
     floor = LinearContacts(1.0, motion=shaken)
     gear = Scene(LinearSystem(1.0), 1.0, 0.0, (0.0, 9.0), floor, p=[1e-3, 200.0 * math.pi], period=1.0)
-    assert scan_interval(gear, kernel_model(gear), 0.0) == pytest.approx(0.01 / PER_FORCING, rel=1e-2)
+    assert scan_interval(gear, model(gear), 0.0) == pytest.approx(0.01 / PER_FORCING, rel=1e-2)
 
 
 def shaken_gap(t, q, v, p, out):

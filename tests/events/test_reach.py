@@ -9,7 +9,7 @@ from lagrangian import LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, simulate
 from lcpstep.events.flight.reach import reach
-from lcpstep.model import kernel_model
+from lcpstep.model import model
 
 PULSE = (0.61, 0.6102)  # of the period: between these a tooth rises and sinks
 
@@ -40,7 +40,7 @@ def above(motion, height=0.4):
 @pytest.mark.parametrize("rpm", [125.0, 700.0])
 def test_the_cam_stays_below_its_reach(rpm, coordinates):
     scene = cam_follower(rpm=rpm, coordinates=coordinates)
-    seen = reach(scene, kernel_model(scene))
+    seen = reach(scene, model(scene))
     f = scene.system.frame or scene.contacts.motion
     now = np.zeros((20_000, 1, 3))
     for t, out in zip(np.linspace(0.0, scene.period, len(now)), now, strict=True):
@@ -53,7 +53,7 @@ def test_the_cam_stays_below_its_reach(rpm, coordinates):
 
 def test_a_tooth_between_near_corners_is_seen_and_struck():
     scene = above(tooth)
-    assert reach(scene, kernel_model(scene)).clear > 0.4
+    assert reach(scene, model(scene)).clear > 0.4
     # It meets the mass in the middle of its flight, which would touch the floor at 0.631 s only
     first = simulate(scene, EventDriven()).impacts[0]
     assert PULSE[0] < first.time < PULSE[1]
@@ -63,7 +63,7 @@ def test_a_tooth_between_near_corners_is_seen_and_struck():
 
 def test_an_obstacle_that_does_not_repeat_has_no_reach():
     scene = above(rising)
-    assert reach(scene, kernel_model(scene)).clear == np.inf
+    assert reach(scene, model(scene)).clear == np.inf
 
 
 def test_states_within_a_leap_are_those_of_the_free_motion():

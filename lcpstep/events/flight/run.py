@@ -20,7 +20,7 @@ from lcpstep.events.flight.reach import reach
 from lcpstep.events.running import PORTION, Between, Run, without_impulses
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.model import Model
-from lcpstep.model import kernel_model
+from lcpstep.model import model
 from lcpstep.recording import Kept, Recorder, States
 
 Array = NDArray[np.float64]
@@ -111,7 +111,7 @@ class Flights(Between):
 
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
-        m = self.model = self.model or kernel_model(self.scene)
+        m = self.model = self.model or model(self.scene)
         q, v = np.zeros((2, len(times), 1))
         evaluate(flight_of(self.scene, m, oscillator_of(m), self.given), self.s, times, row, q, v)
         return q, v

@@ -20,7 +20,7 @@ from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.status import DONE
-from lcpstep.model import kernel_joint_model, kernel_model
+from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
 
@@ -47,8 +47,8 @@ def quadrature() -> tuple[Array, Array]:
 
 def start(scene: Scene, method: Any) -> Mechanism:
     """The state at the start of the span; `method` has rtol and atol."""
-    m = kernel_model(scene)
-    joints = kernel_joint_model(scene) if scene.n_j > 0 else m
+    m = model(scene)
+    joints = joint_model(scene) if scene.n_j > 0 else m
     constant, scan = is_constant(m, joints), scan_interval(scene, m, 0.0)
     smooth = Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol)
     smooth.state[: scene.n_q], smooth.state[scene.n_q :] = scene.q0, scene.v0

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
-from lcpstep import callbacks, compiled
+from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, PLAIN
@@ -76,9 +76,9 @@ def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, flo
 
 def _c_function(scene: HybridScene, f: Any) -> tuple[int, CalledBack | None]:
     """Address of a C function: machine code, or what must be kept around what stays in Python."""
-    if not compiled.jit_disabled():
+    if not callbacks.disabled():
         try:
-            return callbacks.plain_first_order_address(f), None
+            return callbacks.first_order_address(f), None
         except NotCompiled as why:
             callbacks.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
     called_back = CalledBack(f, first_order=True)

@@ -13,7 +13,7 @@ from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.gaps import no_way_out
-from lcpstep.model import culprit, kernel_joint_model, kernel_model
+from lcpstep.model import culprit, joint_model, model
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping.interpolation import Bent
@@ -47,8 +47,8 @@ class Run:
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
         self.method, self.scene, self.kept = method, scene, kept
-        self.model = at_rest(kernel_model(scene), method.order == 2 and scene.n_j == 0)
-        joints = Joints(self.model, kernel_joint_model(scene)) if scene.n_j > 0 else None
+        self.model = at_rest(model(scene), method.order == 2 and scene.n_j == 0)
+        joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
         self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)

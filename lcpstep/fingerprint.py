@@ -1,0 +1,137 @@
+"""All that the machine code of a user's function depends on, as a text; and copies of functions that are named by it.
+
+Machine code is kept on disk and linked by name. A name that carries the code of the function and of those that it
+calls, and the values that it reads, is never taken for another.
+"""
+
+from __future__ import annotations
+
+import dis
+import functools
+import hashlib
+from collections.abc import Iterator, Mapping
+from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+FINGERPRINT = 12  # digits of it in a name
+UNKNOWN = "<unknown>"  # a value of which nobody can tell whether it has changed
+
+
+def with_twins(f: FunctionType, twins: Mapping[FunctionType, Any], variant: str) -> FunctionType:
+    """A copy of f that names compiled twins in the place of plain functions.
+
+    Its name carries a fingerprint of all that its machine code depends on, and of which variant this is, for machine
+    code is linked and kept on disk by name: two variants must never share one.
+    """
+    named = {name: twins[g] for name, g in callees(f)}
+    around = zip(f.__code__.co_freevars, f.__closure__ or (), strict=True)
+    closure = tuple(CellType(named[name]) if name in named else cell for name, cell in around)
+    copy = FunctionType(f.__code__, {**f.__globals__, **named}, f.__name__, f.__defaults__, closure)
+    copy.__kwdefaults__ = f.__kwdefaults__
+    fingerprint = hashlib.sha256(f"{dependencies(f)} {variant}".encode()).hexdigest()[:FINGERPRINT]
+    copy.__module__, copy.__qualname__ = f.__module__, f"{f.__qualname__}_{fingerprint}"
+    return copy
+
+
+def callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
+    """Functions that f names, whether as globals or in the function around it; those with twins already as well."""
+    named = [(name, f.__globals__.get(name)) for name in global_names(f)]
+    for name, g in [*named, *cells(f)]:
+        g = getattr(g, "py_func", g)
+        if isinstance(g, FunctionType):
+            yield name, g
+
+
+def cells(f: FunctionType) -> Iterator[tuple[str, Any]]:
+    """Variables of the function around f that f reads."""
+    for name, cell in zip(f.__code__.co_freevars, f.__closure__ or (), strict=True):
+        yield name, cell.cell_contents
+
+
+@functools.cache
+def global_names(f: FunctionType) -> list[str]:
+    """Globals that f reads; its attribute names, which `co_names` mixes with these, left out."""
+    return sorted({name for name in names_read(f) if "." not in name})
+
+
+@functools.cache
+def names_read(f: FunctionType) -> list[str]:
+    """Globals that f and functions inside it read, and attributes of these that are read at once: "np", "np.pi"."""
+    names: set[str] = set()
+    for code in codes(f.__code__):
+        chain = ""
+        for i in dis.get_instructions(code):
+            if i.opname == "LOAD_GLOBAL":
+                chain = i.argval
+            elif i.opname in ("LOAD_ATTR", "LOAD_METHOD") and chain:
+                chain += f".{i.argval}"
+            else:
+                chain = ""
+            names.update([chain] if chain else [])
+    return sorted(names)
+
+
+def codes(code: CodeType) -> Iterator[CodeType]:
+    """The code of a function and of those defined inside it."""
+    yield code
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from codes(inner)
+
+
+def dependencies(f: FunctionType) -> str:
+    """All that the machine code of f depends on, as a text: the code of f and its callees, and what they read."""
+    return "\n".join(sorted(map(code_text, reached(f))))
+
+
+def reached(f: FunctionType) -> frozenset[FunctionType]:
+    """F, its callees, theirs, and so on."""
+    seen: set[FunctionType] = set()
+    todo = [f]
+    while todo:
+        g = todo.pop()
+        if g not in seen:
+            seen.add(g)
+            todo += [callee for _, callee in callees(g)]
+    return frozenset(seen)
+
+
+def code_text(f: FunctionType) -> str:
+    read = [f"{name}={value_text(value)}" for name, value in [*values_read(f), *cells(f)]]
+    defaults = [value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
+    codes = []
+    for code in codes(f.__code__):
+        literals = [c for c in code.co_consts if not isinstance(c, CodeType)]
+        codes.append(f"{code.co_code.hex()} {code.co_names} {literals}")
+    return f"{f.__module__}.{f.__qualname__} {codes} {defaults} {read}"
+
+
+def values_read(f: FunctionType) -> Iterator[tuple[str, Any]]:
+    """What f reads by name: globals, and attributes of modules and classes, which numba freezes as well."""
+    for name in names_read(f):
+        first, *attributes = name.split(".")
+        if first not in f.__globals__:
+            continue
+        value = f.__globals__[first]
+        for attribute in attributes:
+            frozen = isinstance(value, (ModuleType, type)) and hasattr(value, attribute)
+            value = getattr(value, attribute) if frozen else None
+        if not attributes or not value_text(value).startswith(UNKNOWN):
+            yield name, value
+
+
+def value_text(value: Any) -> str:
+    """What numba freezes into machine code, as a text that is the same exactly if the value is."""
+    if isinstance(value, np.ndarray) and value.dtype != object:
+        return f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, tuple):
+        return str([value_text(item) for item in value])
+    if isinstance(value, (bool, int, float, complex, str, np.generic, type(None))):
+        return repr(value)
+    if isinstance(value, (ModuleType, type, FunctionType, BuiltinFunctionType, np.ufunc)):
+        return value.__name__
+    if isinstance(getattr(value, "py_func", None), FunctionType):
+        return dependencies(value.py_func)
+    return f"{UNKNOWN} {id(value)}"
