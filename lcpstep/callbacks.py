@@ -175,7 +175,7 @@ def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     parts = Wrapped.create_cfunc_wrapper, array
     wrapper = " ".join(fingerprint.code_text(cast(FunctionType, part)) for part in parts)
     copy = _twin(f, nrt, f"callback {options} {wrapper}")
-    c_function = Guarded(copy, arguments, options)
+    c_function: Any = Guarded(copy, arguments, options)
     inner = any(isinstance(x, FunctionType) or hasattr(x, "py_func") for _, x in fingerprint.cells(f))
     if not inner and fingerprint.UNKNOWN not in fingerprint.dependencies(
         f

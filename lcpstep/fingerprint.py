@@ -99,13 +99,14 @@ def reached(f: FunctionType) -> frozenset[FunctionType]:
 
 
 def code_text(f: FunctionType) -> str:
+    """What one function is: its code, defaults and what it reads, as a text."""
     read = [f"{name}={value_text(value)}" for name, value in [*values_read(f), *cells(f)]]
     defaults = [value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
-    codes = []
+    texts = []
     for code in codes(f.__code__):
         literals = [c for c in code.co_consts if not isinstance(c, CodeType)]
-        codes.append(f"{code.co_code.hex()} {code.co_names} {literals}")
-    return f"{f.__module__}.{f.__qualname__} {codes} {defaults} {read}"
+        texts.append(f"{code.co_code.hex()} {code.co_names} {literals}")
+    return f"{f.__module__}.{f.__qualname__} {texts} {defaults} {read}"
 
 
 def values_read(f: FunctionType) -> Iterator[tuple[str, Any]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.kernels.point import Point
-from lcpstep.model import model, plain_model
+from lcpstep.model import model
 
 Array = NDArray[np.float64]
 
@@ -20,9 +20,9 @@ class Local:
     """Evaluates a scene's equations; see the head of the file."""
 
     def __init__(self, scene: Scene) -> None:
-        self.scene, self.model = scene, plain_model(scene)
-        self.point = Point(model(scene))
-        self.restitution = float(self.model.restitution[0])
+        self.scene, self.model = scene, model(scene)
+        self.point = Point(self.model)
+        self.restitution = float(self.model.arrays["restitution"][0])
 
     def acceleration(self, t: float, q: Array, v: Array) -> Array:
         """M^-1 f, the acceleration without contact, (n_q,)."""

@@ -67,7 +67,8 @@ class Moreau:
 
     def beyond_contacts(self, scene: Scene) -> bool:
         """Whether the scene's steps have more in them than frictionless contacts."""
-        return scene.n_j > 0 or frictional(scene) or self.projected
+        frictional = scene.contacts is not None and scene.contacts.friction is not None
+        return scene.n_j > 0 or frictional or self.projected
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
