@@ -1,1 +1,1 @@
-"""Systems with several contacts or joints: complementarity problems at impacts and in lasting contact."""
+"""Systems with any number of contacts and joints: complementarity problems at impacts and in lasting contact."""

@@ -1,4 +1,4 @@
-"""Which of several contacts closes, or opens, first, as kernels.
+"""Which contact closes, or opens, first, as kernels.
 
 Gaps are looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to
 change its sign at most once, that change splits the gap velocity into monotone parts, whose changes of sign split the

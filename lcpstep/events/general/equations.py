@@ -1,4 +1,4 @@
-"""Several contacts and joints at one state, as kernels: gaps, Jacobians, biases and the Delassus matrix.
+"""Contacts and joints at one state, as kernels: gaps, Jacobians, biases and the Delassus matrix.
 
 With the rows R of joints (first) and contacts (after them), the rate of row i is R_i v + rate_i and its acceleration
 R_i a + bias_i; D = R M^-1 R^T is the Delassus matrix. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
@@ -19,7 +19,7 @@ if not cython.compiled:
 
 
 def measure(s: Mechanism, t: float) -> bool:
-    """Everything at the state Q, V and time t: gaps, speeds, R, D, free acceleration; False where M is singular."""
+    """Everything at the state q, v and time t: gaps, speeds, R, D, free acceleration; False where M is singular."""
     q, v, a = s.q, s.v, s.a_free
     n_j, n_c = s.n_j, s.n_c
     side = s.inside(t)

@@ -148,7 +148,7 @@ def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:
 
 
 def project(s: Mechanism, t: float) -> None:
-    """Put Q, V onto the rows held, against the drift of the integration: gaps and rates zero."""
+    """Put q, v onto the rows held, against the drift of the integration: gaps and rates zero."""
     k, n_j, n = s.n_held, s.n_j, s.n_q
     q, v = s.q, s.v
     for level in range(3):  # positions twice, velocities once

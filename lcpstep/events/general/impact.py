@@ -122,7 +122,7 @@ def separates(s: Mechanism) -> bool:
 def apply(s: Mechanism) -> None:
     """Apply the impulses `change` on the rows held.
 
-    Under constant acceleration the contacts' speeds are carried along, not computed from V, so that small ones keep
+    Under constant acceleration the contacts' speeds are carried along, not computed from v, so that small ones keep
     their digits.
     """
     n_j, n_c, v = s.n_j, s.n_c, s.v

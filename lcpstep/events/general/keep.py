@@ -51,7 +51,7 @@ def keep_event(s: Mechanism, record: Record, t: float) -> None:
 
 
 def keep(s: Mechanism, record: Record, t: float) -> None:
-    """Keep the state Q, V at time t, and the impulses of contacts and joints since the one before."""
+    """Keep the state q, v at time t, and the impulses of contacts and joints since the one before."""
     for c in range(s.n_c):
         if s.contact.owed[c] < 0.0:
             pay(s, c, t)

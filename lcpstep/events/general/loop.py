@@ -1,4 +1,4 @@
-"""The event-driven loop for several contacts and joints, as kernels.
+"""The event-driven loop for any number of contacts and joints, as kernels.
 
 Between events the closed contacts and the joints are held on acceleration level; an event is a contact that closes
 (an impact, of all contacts closed at that time) or a multiplier that turns negative (a release, after which the

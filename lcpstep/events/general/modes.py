@@ -1,4 +1,4 @@
-"""What happens at an event of several contacts, as kernels: impacts, and which contacts stay closed or open.
+"""What happens at an event, as kernels: impacts, and which contacts stay closed or open.
 
 After an impact, or a corner, the contact forces are sought (`settle`); after a release those that `step.look_ahead`
 has found are taken over (`obey`). See `impact`, `forces` and `chatter`.
@@ -32,7 +32,7 @@ ROUNDS = 100_000  # problems of impacts at one instant
 
 
 def jump(s: Mechanism, record: Record, tally: Tally) -> int:
-    """Impacts at the state Q, V until no contact that is closed approaches."""
+    """Impacts at the state q, v until no contact that is closed approaches."""
     before = tally.stalled
     for c in range(s.n_c):
         s.contact.terms[c] = 0.0

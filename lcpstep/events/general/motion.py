@@ -13,13 +13,13 @@ if not cython.compiled:
 
 
 def rebase(s: Mechanism, t: float) -> None:
-    """Begin a new piece at time t with the state Q, V."""
+    """Begin a new piece at time t with the state q, v."""
     copy(s.q0, s.q, 2 * s.n_q)
     s.start_at(t)
 
 
 def state_at(s: Mechanism, tau: float) -> None:
-    """Q, V at the time tau after the base."""
+    """State q, v at the time tau after the base."""
     if s.constant:
         a = s.a
         for j in range(s.n_q):
@@ -32,7 +32,7 @@ def state_at(s: Mechanism, tau: float) -> None:
 
 
 def lift(s: Mechanism, c: int) -> None:
-    """Put Q onto the surface of contact c, which it misses by no more than the tolerance: hops start from there."""
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance: hops start from there."""
     i = s.n_j + c
     for j in range(s.n_q):
         s.q[j] -= s.MR[i * s.n_q + j] * s.contact.gap[c] / s.D[i * s.n_r + i]

@@ -81,7 +81,7 @@ def accumulation(u: float, alpha: float, r: float) -> float:
 
 
 def synchronise(s: Mechanism) -> None:
-    """Gaps and speeds of contacts just disturbed anew from Q, V, where they are large enough to lose no digits so.
+    """Gaps and speeds of contacts just disturbed anew from q, v, where they are large enough to lose no digits so.
 
     Carried along over many impacts they would collect rounding, and impulses with them.
     """
@@ -98,7 +98,7 @@ def synchronise(s: Mechanism) -> None:
 
 
 def polish(s: Mechanism) -> None:
-    """Take from Q, V what rounding has left of the gaps and speeds that are zero."""
+    """Take from q, v what rounding has left of the gaps and speeds that are zero."""
     k, n_j = s.n_held, s.n_j
     for turn in range(4):
         x = s.q if turn < 2 else s.v

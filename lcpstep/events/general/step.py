@@ -1,4 +1,4 @@
-"""A Runge-Kutta step of several contacts and joints, up to the first event within it, as kernels."""
+"""A Runge-Kutta step of a system with contacts and joints, up to the first event within it, as kernels."""
 
 from __future__ import annotations
 
