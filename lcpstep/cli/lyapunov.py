@@ -35,10 +35,18 @@ def add(commands: Any) -> None:
     p.add_argument(
         "--from", dest="start", type=float, nargs="+", metavar="X", help="state; default: the scene's own"
     )
-    p.add_argument("--transient", type=int, default=500, help="periods dropped (500)")
-    p.add_argument("--periods", type=int, default=2000, help="periods averaged over (2000)")
+    p.add_argument("--transient", type=whole, default=500, help="periods dropped (500)")
+    p.add_argument("--periods", type=whole, default=2000, help="periods averaged over (2000)")
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=run_lyapunov, method="event-driven")
+
+
+def whole(text: str) -> int:
+    """A whole number, also as 1e8."""
+    number = float(text)
+    if not number.is_integer():
+        raise ValueError
+    return int(number)
 
 
 def run_lyapunov(options: argparse.Namespace) -> int:
@@ -68,7 +76,7 @@ def _kept(latest: list[Any]) -> str:
 def _go_on(options: argparse.Namespace, latest: list[Any]) -> list[str]:
     """The command for the periods that are left."""
     done, _, x = latest[-1]
-    start = [repr(float(y)) for y in x]
+    start = [np.format_float_positional(y, trim="0") for y in x]  # argparse takes -1e-5 for an option
     return [*options.words, "--from", *start, "--transient", "0", "--periods", str(options.wanted - done)]
 
 

@@ -249,7 +249,7 @@ def test_an_exponent_that_is_interrupted_is_told_as_far_as_it_came(capsys, monke
         return begun(*arguments, progress=impatient)
 
     monkeypatch.setattr(lyapunov, "lyapunov", until_interrupted)
-    command = ("lyapunov", "cam-follower", "--rpm", 660, "--transient", 10, "--periods", 100_000_000)
+    command = ("lyapunov", "cam-follower", "--rpm", 660, "--transient", 10, "--periods", "1e8")
     status, out, err = run(capsys, *command)
     assert status == INTERRUPTED
     done = int(re.search(r"over (\d+) periods", out)[1])
@@ -257,5 +257,8 @@ def test_an_exponent_that_is_interrupted_is_told_as_far_as_it_came(capsys, monke
     assert f"kept: the exponent over {done} periods" in err
     assert f"--transient 0 --periods {100_000_000 - done}" in err
     monkeypatch.undo()
+    for number in ("2.5", "inf", "many"):
+        with pytest.raises(SystemExit):
+            run(capsys, *command[:-1], number)
     whole = run(capsys, *command[:-1], done, "--json")
     assert f"exponent {json.loads(whole[1])['largest']:.6g} +-" in out
