@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, simulate
 from lcpstep.compiled import by_address, compiled, jit_disabled
 from lcpstep.events.flight.loop import run as run_flights
 from lcpstep.events.single.loop import run as run_single
