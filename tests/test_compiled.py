@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, simulate
 from lcpstep.compiled import by_address, compiled, jit_disabled
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
