@@ -198,6 +198,16 @@ def _compile(
     return addresses
 
 
+def called_model(scene: Scene) -> kernels.Model:
+    """The model of scene and contacts with its functions in Python: for a few evaluations, without compiling any."""
+    fields, called_back = _system(scene) | _contacts(scene, scene.contacts), []
+    for name, f in fields.items():
+        if callable(f):
+            called_back.append(CalledBack(f))
+            fields[name] = called_back[-1].address
+    return kernels.Model(fields | {"called_back": called_back})
+
+
 def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     """Which callback has raised an exception, or is not finite at one of the times, in words."""
     found = failing(scene, times, q, v)

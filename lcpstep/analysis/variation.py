@@ -151,8 +151,9 @@ class _Variation:
         free = state_matrix(self.local)
         if self.run.scene.n_c == 0:
             return free, free
-        MG, W = m.M_inverse @ m.G[0], float(m.G[0] @ m.M_inverse @ m.G[0])
-        keep = np.eye(n) - np.outer(MG, m.G[0]) / W
+        M_inverse, G = m.arrays["M_inverse"], m.arrays["G"][0]
+        MG, W = M_inverse @ G, float(G @ M_inverse @ G)
+        keep = np.eye(n) - np.outer(MG, G) / W
         both = np.block([[keep, np.zeros((n, n))], [np.zeros((n, n)), keep]])
         return free, both @ free
 
@@ -196,8 +197,8 @@ def flow(scene: Scene, duration: float) -> Array:
 
 def state_matrix(local: Local) -> Array:
     """A of x' = A x + .. for a linear system in free motion, x = (q, v)."""
-    m, n = local.model, local.scene.n_q
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-m.M_inverse @ m.K, -m.M_inverse @ m.C]])
+    m, n = local.model.arrays, local.scene.n_q
+    return np.block([[np.zeros((n, n)), np.eye(n)], [-m["M_inverse"] @ m["K"], -m["M_inverse"] @ m["C"]]])
 
 
 def monodromy(scene: Scene, method: EventDriven, x: ArrayLike, t: tuple[float, float]) -> Array:
