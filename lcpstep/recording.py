@@ -106,7 +106,6 @@ class Recorder:
         dense_shape: tuple[int, int] | None = None,
         expected: int = 0,
     ) -> None:
-        self.n_q = n_q
         # Not filled with zeros, which would take longer than a short run: what is read has been written.
         self.rows = np.empty((rows, LEAD + 2 * n_q + n_c))
         self.lines = np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ())))

@@ -37,7 +37,7 @@ from lcpstep.sweep import Arrays, sweep
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 UNKNOWN, OBSTACLE = -1, -2  # labels: no attractor was reached; the cell's centre lies inside of the obstacle
-PARTS = 64  # of a stage, at most, for every part is a file
+PARTS = 32  # of a stage, at most, for every part is a file
 LEAST = 8192  # cells of a part
 IMAGES = 2  # exact images of a cell in a round
 ROUNDS, FEW = 24, 0.002  # of images and sharing; the share of cells left at which they end

@@ -4,16 +4,15 @@ from lcpstep.kernels.dynamics cimport external_force, obstacle
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.maps.answers cimport Answers
-from lcpstep.pointers cimport max, min
+from lcpstep.pointers cimport max
 from lcpstep.stepping.theta_method.plan cimport Plan
 
-cdef double OPEN, STRUCK
 
 
 @cython.final
 cdef class Lanes:
     cdef readonly dict arrays
-    cdef object space, marks
+    cdef object space, own
     cdef Py_ssize_t n
     cdef double h, theta, A_f, A_q, A_v, A_g, W
     cdef double* q
@@ -26,11 +25,23 @@ cdef class Lanes:
     cdef double* nobody
     cdef double* force
     cdef double* closed
+    cdef double* free
     cpdef void take(self, Plan plan)
 
 
 cpdef object advance(Model m, Lanes lanes, Answers a, double t0, double side, Py_ssize_t first, Py_ssize_t begin, Py_ssize_t last, Py_ssize_t k)
-cdef void strike(Model m, Lanes lanes, double f, double f_next) noexcept nogil
 cdef void take_step(Model m, Lanes lanes, double f, double f_next) noexcept nogil
+cdef void find_free "lcpstep_find_free"(
+    double* free, double* q, double* v, double push, double A_q, double A_v, Py_ssize_t n
+) noexcept nogil
+cdef void find_impulses "lcpstep_find_impulses"(
+    double* p, double* free, double* g, double* u, double* slack, double G, double ds, double r, double W, double half, Py_ssize_t n
+) noexcept nogil
+cdef void move "lcpstep_move"(
+    double* q, double* v, double* free, double* p, double A_g, double h, double theta, Py_ssize_t n
+) noexcept nogil
+cdef void measure "lcpstep_measure"(
+    double* g, double* u, double* q, double* v, double G, double height, double ds, Py_ssize_t n
+) noexcept nogil
+cdef void count_closed "lcpstep_count_closed"(double* closed, double* p, Py_ssize_t n) noexcept nogil
 cdef void note_impacts(Lanes lanes, Answers a, double t, Py_ssize_t k) noexcept nogil
-cdef void mark_closed(Lanes lanes) noexcept nogil

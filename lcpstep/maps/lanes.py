@@ -18,10 +18,8 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy
     from lcpstep.maps.answers import Answers
-    from lcpstep.pointers import max, min
+    from lcpstep.pointers import Doubles, max
     from lcpstep.stepping.theta_method.plan import Plan
-
-OPEN, STRUCK = 0.0, 1.0  # and 2: closed for several steps
 
 
 class Lanes:
@@ -30,7 +28,8 @@ class Lanes:
     q, v, g, u : (m,)   states, gaps and gap velocities
     p, before           impulse of the step, gap velocity at its start
     slack               a predicted gap this small is closed
-    closed              OPEN, STRUCK in the last step, or 2: closed for several
+    free                velocities without impulses
+    closed              for how many steps the contact has been closed
     h, theta, A_f, A_q, A_v, A_g, W     of the step, see `lcpstep.stepping.theta_method.plan`
     nobody, force : (1,)    a state for functions that depend on time alone; what they give
 
@@ -41,7 +40,7 @@ class Lanes:
 
     def __init__(self, arrays: dict[str, Any]) -> None:
         self.n, self.arrays = len(arrays["q"]), arrays
-        self.space, self.marks = np.zeros(2), np.zeros(self.n)
+        self.space, self.own = np.zeros(2), np.zeros((2, self.n))
         self.q, self.v = doubles(arrays["q"]), doubles(arrays["v"])
         self.g, self.u = doubles(arrays["g"]), doubles(arrays["u"])
         self.p, self.before, self.slack = (
@@ -49,7 +48,7 @@ class Lanes:
             doubles(arrays["before"]),
             doubles(arrays["slack"]),
         )
-        self.closed = doubles(self.marks)
+        self.closed, self.free = doubles(self.own[0]), doubles(self.own[1])
         self.nobody, self.force = doubles(self.space[:1]), doubles(self.space[1:])
 
     def take(self, plan: Plan) -> None:
@@ -75,59 +74,77 @@ def advance(
             t_next = t0 + lanes.h * (step + 1 - first)
             external_force(m, t_next, lanes.nobody, lanes.nobody, lanes.force)
             obstacle(m, t_next, lanes.nobody, lanes.nobody)
-            strike(m, lanes, f, lanes.force[0])
             take_step(m, lanes, f, lanes.force[0])
             if k >= 0:
                 note_impacts(lanes, a, t_next, k)
-            mark_closed(lanes)
+            count_closed(lanes.closed, lanes.p, lanes.n)
             f = lanes.force[0]
 
 
-def strike(m: Model, lanes: Lanes, f: float, f_next: float) -> None:
-    """Impulses of a step of all runs; forces at its start and end.
+def take_step(m: Model, lanes: Lanes, f: float, f_next: float) -> None:
+    """One step of all runs; forces at its start and end.
 
     In loops of their own, so that the compiler sees few enough arrays at a time to treat several runs at once.
     """
-    h, theta = lanes.h, lanes.theta
-    A_f, A_q, A_v, W = lanes.A_f, lanes.A_q, lanes.A_v, lanes.W
-    G, r, ds = m.G[0], m.restitution[0], m.motion_now[1]
-    q, v, g, u, p, slack = lanes.q, lanes.v, lanes.g, lanes.u, lanes.p, lanes.slack
-    for i in range(lanes.n):
-        v_free = v[i] + (A_f * (theta * f_next + (1.0 - theta) * f) - A_q * q[i] - A_v * v[i])
-        b = G * v_free + -ds + r * u[i]
+    push = lanes.A_f * (lanes.theta * f_next + (1.0 - lanes.theta) * f)
+    s, ds = m.motion_now[0], m.motion_now[1]
+    find_free(lanes.free, lanes.q, lanes.v, push, lanes.A_q, lanes.A_v, lanes.n)
+    find_impulses(
+        lanes.p, lanes.free, lanes.g, lanes.u, lanes.slack, m.G[0], ds, m.restitution[0], lanes.W, 0.5 * lanes.h,
+        lanes.n,
+    )  # fmt: skip
+    copy(lanes.before, lanes.u, lanes.n)
+    move(lanes.q, lanes.v, lanes.free, lanes.p, lanes.A_g, lanes.h, lanes.theta, lanes.n)
+    measure(lanes.g, lanes.u, lanes.q, lanes.v, m.G[0], m.offset[0] - s, ds, lanes.n)
+
+
+def find_free(free: Doubles, q: Doubles, v: Doubles, push: float, A_q: float, A_v: float, n: int) -> None:
+    """Velocities at the end of the step without impulses."""
+    for i in range(n):
+        free[i] = v[i] + (push - A_q * q[i] - A_v * v[i])
+
+
+def find_impulses(
+    p: Doubles, free: Doubles, g: Doubles, u: Doubles, slack: Doubles, G: float, ds: float, r: float, W: float,
+    half: float, n: int,
+) -> None:  # fmt: skip
+    """Impulses of contacts that are predicted to be closed half a step on."""
+    for i in range(n):
+        b = G * free[i] + -ds + r * u[i]
         z = max(0.0, -b / W)
-        p[i] = z if g[i] + 0.5 * h * u[i] <= slack[i] else 0.0
+        p[i] = z if g[i] + half * u[i] <= slack[i] else 0.0
 
 
-def take_step(m: Model, lanes: Lanes, f: float, f_next: float) -> None:
-    """A step of all runs with these impulses."""
-    h, theta = lanes.h, lanes.theta
-    A_f, A_q, A_v, A_g = lanes.A_f, lanes.A_q, lanes.A_v, lanes.A_g
-    G, offset, s, ds = m.G[0], m.offset[0], m.motion_now[0], m.motion_now[1]
-    q, v, g, u, p, before = lanes.q, lanes.v, lanes.g, lanes.u, lanes.p, lanes.before
-    copy(before, u, lanes.n)
-    for i in range(lanes.n):
-        v_free = v[i] + (A_f * (theta * f_next + (1.0 - theta) * f) - A_q * q[i] - A_v * v[i])
-        v_next = v_free + A_g * p[i]
-        q_next = q[i] + h * (theta * v_next + (1.0 - theta) * v[i])
-        q[i], v[i] = q_next, v_next
-        g[i] = offset - s + G * q_next
-        u[i] = G * v_next - ds
+def move(
+    q: Doubles, v: Doubles, free: Doubles, p: Doubles, A_g: float, h: float, theta: float, n: int
+) -> None:
+    """States at the end of the step."""
+    for i in range(n):
+        v_next = free[i] + A_g * p[i]
+        q[i] = q[i] + h * (theta * v_next + (1.0 - theta) * v[i])
+        v[i] = v_next
+
+
+def measure(
+    g: Doubles, u: Doubles, q: Doubles, v: Doubles, G: float, height: float, ds: float, n: int
+) -> None:
+    """Gaps and gap velocities."""
+    for i in range(n):
+        g[i] = height + G * q[i]
+        u[i] = G * v[i] - ds
+
+
+def count_closed(closed: Doubles, p: Doubles, n: int) -> None:
+    """For how many steps each contact has been closed."""
+    for i in range(n):
+        closed[i] = closed[i] + 1.0 if p[i] > 0.0 else 0.0
 
 
 def note_impacts(lanes: Lanes, a: Answers, t: float, k: int) -> None:
     """Impacts of the step, and beginnings of lasting contact."""
     for i in range(lanes.n):
         if lanes.p[i] > 0.0:
-            if lanes.closed[i] == OPEN:
+            if lanes.closed[i] == 0.0:
                 a.note_impact(i, k, t, lanes.before[i], lanes.u[i])
-            elif lanes.closed[i] == STRUCK:
+            elif lanes.closed[i] == 1.0:
                 a.note_landing(i, k, t)
-
-
-def mark_closed(lanes: Lanes) -> None:
-    """How long each contact has been closed: a step longer, or not at all."""
-    p, closed = lanes.p, lanes.closed
-    for i in range(lanes.n):
-        struck = 1.0 if p[i] > 0.0 else 0.0
-        closed[i] = min(closed[i] + 1.0, 2.0) * struck
