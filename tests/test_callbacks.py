@@ -276,7 +276,8 @@ def test_a_callback_of_any_make_is_compiled(name):
 
 READ_BACK = """
 import warnings
-from lcpstep import Moreau, UncompiledCallback, simulate
+from lcpstep import Moreau, simulate
+from lcpstep.model import UncompiledCallback
 from tests.test_callbacks import COMPILED, falling
 
 warnings.simplefilter("error", UncompiledCallback)
