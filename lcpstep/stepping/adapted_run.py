@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class AdaptedRun(Run):
         method, span, order = self.method, self.scene.t_span, 2 if self.method.theta == 0.5 else 1
         self.control = Attempts(
             self.model, self.plan, self.state, self.rows, self.recorder.record, self.plan_for,
-            span, method.h, method.tolerance, order,
+            span, method.h, cast(float, method.tolerance), order,
         )  # fmt: skip
         code = adaptive.run(self.control, self.scene.n_q + self.rows.n, self.arrive, progress)
         return Status.STEP_TOO_SMALL if code == adaptive.TOO_SMALL else Status(code)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import cast
 
 from lcpstep.stepping import adaptive
 from lcpstep.stepping.located_by_tolerance import Attempts
@@ -17,12 +18,12 @@ class AdaptedRun(Run):
 
     def even(self, progress: Callable[[float], None]) -> Status:
         """The whole run in steps that meet the tolerance; of one size where these make no error."""
-        method, p = self.method, self.steps.plan
-        if p.plain and p.steady and method.tolerance >= adaptive.NOISE:
+        method, tolerance, p = self.method, cast(float, self.method.tolerance), self.steps.plan
+        if p.plain and p.steady and tolerance >= adaptive.NOISE:
             return super().even(progress)
         self.steps.plan = Plan(p.fields | {"many": MANY_EXACTLY})
         span, order = self.scene.t_span, int(method.order)
-        self.control = Attempts(self.steps, self.made, span, method.h, method.tolerance, order)
+        self.control = Attempts(self.steps, self.made, span, method.h, tolerance, order)
         self.work.events_left = method.max_events
         code = adaptive.run(self.control, self.scene.n_q + self.scene.n_c, self.arrive, progress)
         return Status.STEP_TOO_SMALL if code == adaptive.TOO_SMALL else STATUS[code]
