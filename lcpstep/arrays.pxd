@@ -16,3 +16,7 @@ cdef inline double* doubles(object x) noexcept:
 
 cdef inline Py_ssize_t* indices(object x) noexcept:
     return <Py_ssize_t*> cnp.PyArray_DATA(<cnp.ndarray> x)
+
+
+cdef inline unsigned char* small_numbers(object x) noexcept:
+    return <unsigned char*> cnp.PyArray_DATA(<cnp.ndarray> x)

@@ -22,3 +22,8 @@ def doubles(x: Any) -> Doubles:
 def indices(x: Any) -> Indices:
     """The indices of a contiguous intp array."""
     return x.reshape(-1)
+
+
+def small_numbers(x: Any) -> Any:
+    """The numbers of a contiguous uint8 array."""
+    return x.reshape(-1)

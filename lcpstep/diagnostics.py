@@ -25,9 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, LinearSystem, Scene
-from lcpstep.compiled import compiled
-from lcpstep.dynamics import gap_rates, mass, total_force
-from lcpstep.model import model, tangent_model
+from lcpstep.kernels import states
+from lcpstep.model import kernel_model, kernel_tangent_model
 from lcpstep.stepping.sparse import Equations
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -221,23 +220,7 @@ def _forces(e: Equations, t: Array, q: Array, v: Array) -> Array:
 
 def _system_rates(scene: Scene, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
     """Kinetic energy, and the power v^T f of all forces but those of contacts, of a general system."""
-    m, fast = model(scene)
-    kinetic, power = np.zeros(len(t)), np.zeros(len(t))
-    q, v = np.ascontiguousarray(q), np.ascontiguousarray(v)
-    kernel = compiled(system_rates) if fast else system_rates
-    kernel(m, t, q, v, np.zeros((scene.n_q, scene.n_q)), np.zeros(scene.n_q), kinetic, power)
-    return kinetic, power
-
-
-def system_rates(m: Any, t: Any, q: Any, v: Any, M: Any, f: Any, kinetic: Any, power: Any) -> None:
-    """Kernel of `_system_rates`."""
-    for k in range(len(t)):
-        mass(m, t[k], q[k], v[k], M)
-        total_force(m, t[k], q[k], v[k], f)
-        for i in range(len(f)):
-            power[k] += v[k, i] * f[i]
-            for j in range(len(f)):
-                kinetic[k] += 0.5 * M[i, j] * v[k, i] * v[k, j]
+    return states.power(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v)))
 
 
 def _obstacles(m: Trajectory) -> tuple[Array, Any]:
@@ -295,19 +278,7 @@ def _own_rates(
                 contacts.motion(t[k], q[k], v[k], np.array(scene.p), s)
                 out[k] = -s[:, 1]
         return out + (G @ v.T).T if moved else out
-    m, fast = (tangent_model if tangents else model)(scene)
-    G, g_t = np.zeros((scene.n_c, scene.n_q)), np.zeros(scene.n_c)
-    q, v = np.ascontiguousarray(q), np.ascontiguousarray(v)
-    (compiled(own_rates) if fast else own_rates)(m, np.ascontiguousarray(t), q, v, G, g_t, moved, out)
-    return out
-
-
-def own_rates(m: Any, t: Any, q: Any, v: Any, G: Any, g_t: Any, moved: bool, out: Any) -> None:
-    """Kernel of `_own_rates`."""
-    for k in range(len(t)):
-        gap_rates(m, t[k], q[k], v[k], G, g_t)
-        for c in range(len(g_t)):
-            out[k, c] = g_t[c]
-            if moved:
-                for j in range(G.shape[1]):
-                    out[k, c] += G[c, j] * v[k, j]
+    m = (kernel_tangent_model if tangents else kernel_model)(scene)
+    return states.own_rates(
+        m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved
+    )

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
-from lcpstep.compiled import compiled
-from lcpstep.dynamics import gaps
-from lcpstep.model import joint_model, model
+from lcpstep.kernels import states
+from lcpstep.model import kernel_joint_model, kernel_model
 
 Array = NDArray[np.float64]
 PORTION = 1 << 20  # gaps at a time
@@ -31,8 +30,8 @@ def lowest_and_highest(
     if isinstance(constraints, LinearContacts) and (constraints.motion is None or constraints.sparse):
         _flat(constraints, np.array(scene.p), t, q, v, low, high)
     else:
-        m, fast = (joint_model if joints else model)(scene)
-        (compiled(extremes) if fast else extremes)(m, t, q, v, np.zeros(n), low, high)
+        m = (kernel_joint_model if joints else kernel_model)(scene)
+        return states.extremes(m, *(np.ascontiguousarray(x, dtype=float) for x in (t, q, v)))
     return low, high
 
 
@@ -48,14 +47,6 @@ def _flat(contacts: Any, p: Array, t: Array, q: Array, v: Array, low: Array, hig
                 g[k - first] -= s[:, 0]
         np.minimum(low, g.min(axis=0), out=low)
         np.maximum(high, g.max(axis=0), out=high)
-
-
-def extremes(m: Any, t: Any, q: Any, v: Any, g: Any, low: Any, high: Any) -> None:
-    """Kernel: the smallest and the largest value of every gap."""
-    for k in range(len(t)):
-        gaps(m, t[k], q[k], v[k], g)
-        for c in range(len(g)):
-            low[c], high[c] = min(low[c], g[c]), max(high[c], g[c])
 
 
 def closing_in(scene: Scene, t: float, q: Array, contacts: list[int]) -> list[int]:

@@ -274,6 +274,24 @@ def test_a_callback_of_any_make_is_compiled(name):
     assert m.q[-1, 0] == pytest.approx(0.0, abs=1e-12)  # 1 - 4 t^2
 
 
+READ_BACK = """
+import warnings
+from lcpstep import Moreau, simulate
+from lcpstep.model import UncompiledCallback
+from tests.test_callbacks import COMPILED, falling
+
+warnings.simplefilter("error", UncompiledCallback)
+for name in ("default", "partial by keyword"):
+    simulate(falling(COMPILED[name], t_end=0.1), Moreau(1e-2))
+"""
+
+
+@compiled_only
+def test_callbacks_with_more_arguments_are_read_back_from_where_they_were_kept():
+    for _ in range(2):
+        assert python(READ_BACK) == ""
+
+
 @compiled_only
 @pytest.mark.parametrize("name", PLAIN)
 def test_what_cannot_be_compiled_says_once_which_line_and_why(name):

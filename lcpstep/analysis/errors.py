@@ -21,11 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.analysis.graphs import graph, hausdorff
+from lcpstep.analysis.graphs import Graph, hausdorff
 from lcpstep.analysis.matching import Matching, match_impacts
-from lcpstep.compiled import compiled, jit_disabled
-from lcpstep.dynamics import gaps, mass
-from lcpstep.model import model
+from lcpstep.kernels import states
+from lcpstep.model import kernel_model
 
 Array = NDArray[np.float64]
 LOOKS = 2000  # instants looked at in any case, however coarse the grids
@@ -126,7 +125,7 @@ class Difference:
         t = self.rate * (t - t[0])
         if not (np.all(np.isfinite(v)) and np.all(np.isfinite(v_ref))):
             return math.inf
-        return max(hausdorff(graph(t, a), graph(t, b)) for a, b in zip(v.T, v_ref.T, strict=True))
+        return max(hausdorff(Graph(t, a), Graph(t, b)) for a, b in zip(v.T, v_ref.T, strict=True))
 
     @cached_property
     def impacts(self) -> Matching:
@@ -235,42 +234,16 @@ MEASURES = (
 
 def energies(scene: Scene, t: Array, q: Array, v: Array) -> Array:
     """Kinetic energy, and the potential of constant stiffness and constant forces, of states (n, n_q) [J]."""
-    m, fast = model(scene)
-    out = np.zeros(len(q))
-    _kernel(energy, fast)(m, t, q, v, np.zeros((scene.n_q, scene.n_q)), out)
-    return out
+    return np.asarray(states.energy(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v))))
 
 
 def least_gap(scene: Scene, t: Array, q: Array, v: Array) -> float:
     """The smallest gap of all contacts over states (n, n_q); infinite for a scene without contacts."""
-    m, fast = model(scene)
-    return float(_kernel(least, fast)(m, t, q, v, np.zeros(scene.n_c)))
-
-
-def _kernel(f: Any, fast: bool) -> Any:
-    return compiled(f) if fast and not jit_disabled() else f
-
-
-def energy(m: Any, t: Any, q: Any, v: Any, M: Any, out: Any) -> None:
-    """Kernel: (v^T M v + q^T K q)/2 - constant^T q of every state."""
-    for k in range(len(t)):
-        mass(m, t[k], q[k], v[k], M)
-        total = 0.0
-        for i in range(M.shape[0]):
-            total -= m.constant[i] * q[k, i]
-            for j in range(M.shape[0]):
-                total += 0.5 * (M[i, j] * v[k, i] * v[k, j] + m.K[i, j] * q[k, i] * q[k, j])
-        out[k] = total
-
-
-def least(m: Any, t: Any, q: Any, v: Any, g: Any) -> float:
-    """Kernel: the smallest gap of all states."""
-    smallest = math.inf
-    for k in range(len(t)):
-        gaps(m, t[k], q[k], v[k], g)
-        for c in range(len(g)):
-            smallest = min(smallest, g[c])
-    return smallest
+    return float(
+        np.min(
+            states.extremes(kernel_model(scene), *map(np.ascontiguousarray, (t, q, v)))[0], initial=math.inf
+        )
+    )
 
 
 def _largest(x: Array) -> float:

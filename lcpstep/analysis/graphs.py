@@ -10,15 +10,17 @@ for calculating the exact Hausdorff distance, IEEE Trans. Pattern Anal. Mach. In
 
 from __future__ import annotations
 
-import math
-from typing import Any, NamedTuple
+from typing import Any
 
+import cython
 import numpy as np
-from numpy.typing import NDArray
 
-from lcpstep.compiled import compiled
+if not cython.compiled:
+    from math import hypot, sqrt
 
-Array = NDArray[np.float64]
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.pointers import Doubles, Indices, max, min
+
 RESOLUTION = 1e-6  # of the distance
 ROUNDING = 1e-16  # of the size of the graphs
 LEAF = 8  # segments in a leaf of the tree
@@ -26,22 +28,32 @@ DEPTH = 256  # of the stacks
 FIRST = 512  # points looked at first, for a bound that spares most of the others
 
 
-class Graph(NamedTuple):
-    """Points of a polyline, and the boxes around its segments: a binary tree whose root is box 1."""
+class Graph:
+    """Points of a polyline, and the boxes around its segments: a binary tree whose root is box 1.
 
-    x: Array
-    y: Array
-    boxes: Array  # (2 leaves, 4): least and largest x, least and largest y
-    leaves: int  # a power of two
+    x, y : (n,);  boxes : (2 leaves, 4) least and largest x, least and largest y;  leaves : a power of two
+
+    Parameters
+    ----------
+    x, y : arrays   of the points, at least one
+    """
+
+    def __init__(self, x: Any, y: Any) -> None:
+        x, y = np.ascontiguousarray(x, dtype=float), np.ascontiguousarray(y, dtype=float)
+        if len(x) == 1:
+            x, y = np.repeat(x, 2), np.repeat(y, 2)
+        made, leaves = tree(x, y)
+        self.kept, self.n, self.leaves = (x, y, made), len(x), leaves
+        self.x, self.y, self.boxes = doubles(x), doubles(y), doubles(made)
+        self.size = float(np.max(np.abs(made[1])))
 
 
-def graph(x: Array, y: Array) -> Graph:
-    """Polyline through the points (x, y), at least one, and its tree."""
-    x, y = np.ascontiguousarray(x, dtype=float), np.ascontiguousarray(y, dtype=float)
-    if len(x) == 1:
-        x, y = np.repeat(x, 2), np.repeat(y, 2)
+def tree(x: Any, y: Any) -> tuple[Any, int]:
+    """Boxes around the segments of a polyline, and how many leaves."""
     first = np.arange(0, len(x) - 1, LEAF)
-    leaves = 1 << max(len(first) - 1, 0).bit_length()
+    leaves = 1
+    while leaves < len(first):
+        leaves *= 2
     boxes = np.empty((2 * leaves, 4))
     boxes[:, 0::2], boxes[:, 1::2] = np.inf, -np.inf
     for column, points in ((0, x), (2, y)):
@@ -54,31 +66,33 @@ def graph(x: Array, y: Array) -> Graph:
         boxes[low // 2 : low, 0::2] = pairs[:, :, 0::2].min(axis=1)
         boxes[low // 2 : low, 1::2] = pairs[:, :, 1::2].max(axis=1)
         low //= 2
-    return Graph(x, y, boxes, leaves)
+    return boxes, leaves
 
 
 def hausdorff(a: Graph, b: Graph) -> float:
     """Hausdorff distance of two polylines."""
-    one_sided, spare = compiled(farthest), (np.zeros(DEPTH, dtype=np.int64), np.zeros((DEPTH, 4)))
-    size = max(float(np.max(np.abs(g.boxes[1]))) for g in (a, b))
-    bound = float(one_sided(a, b, 0.0, ROUNDING * size, *spare))
-    return float(one_sided(b, a, bound, ROUNDING * size, *spare))
+    nodes, pieces = np.zeros(DEPTH, dtype=np.intp), np.zeros(4 * DEPTH)
+    rounding = ROUNDING * max(a.size, b.size)
+    bound = farthest(a, b, 0.0, rounding, indices(nodes), doubles(pieces))
+    return farthest(b, a, bound, rounding, indices(nodes), doubles(pieces))
 
 
-def farthest(a: Any, b: Any, bound: float, rounding: float, nodes: Any, pieces: Any) -> float:
-    """Kernel: the largest distance of a point of a from b, or the bound if that is larger."""
-    n = len(a.x)
-    for i in range(0, n, max(1, n // FIRST)):
-        segment = nearest(b, a.x[i], a.y[i], bound, min(i, len(b.x) - 2), nodes)
+def farthest(a: Graph, b: Graph, bound: float, rounding: float, nodes: Indices, pieces: Doubles) -> float:
+    """The largest distance of a point of a from b, or the bound if that is larger."""
+    n, last = a.n, b.n - 2
+    i = 0
+    while i < n:
+        segment = nearest(b, a.x[i], a.y[i], bound, i if i < last else last, nodes)
         bound = max(bound, to_segment(b, segment, a.x[i], a.y[i]))
+        i += n // FIRST if n >= FIRST else 1
     for i in range(n - 1):
-        same = min(i, len(b.x) - 2)
+        same = i if i < last else last
         if covered(a.x[i], a.y[i], a.x[i + 1], a.y[i + 1], b, same, bound):
             continue
         top = 0
-        pieces[0, 0], pieces[0, 1], pieces[0, 2], pieces[0, 3] = a.x[i], a.y[i], a.x[i + 1], a.y[i + 1]
+        pieces[0], pieces[1], pieces[2], pieces[3] = a.x[i], a.y[i], a.x[i + 1], a.y[i + 1]
         while top >= 0:
-            x0, y0, x1, y1 = pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3]
+            x0, y0, x1, y1 = pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3]
             top -= 1
             s0 = nearest(b, x0, y0, bound, same, nodes)
             bound = max(bound, to_segment(b, s0, x0, y0))
@@ -86,23 +100,23 @@ def farthest(a: Any, b: Any, bound: float, rounding: float, nodes: Any, pieces: 
             bound = max(bound, to_segment(b, s1, x1, y1))
             if covered(x0, y0, x1, y1, b, s0, bound) or covered(x0, y0, x1, y1, b, s1, bound):
                 continue
-            if math.hypot(x1 - x0, y1 - y0) <= RESOLUTION * bound + rounding or top + 2 >= len(pieces):
+            if hypot(x1 - x0, y1 - y0) <= RESOLUTION * bound + rounding or top + 2 >= DEPTH:
                 continue
             x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
             top += 1
-            pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3] = x, y, x1, y1
+            pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3] = x, y, x1, y1
             top += 1
-            pieces[top, 0], pieces[top, 1], pieces[top, 2], pieces[top, 3] = x0, y0, x, y
+            pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3] = x0, y0, x, y
     return bound
 
 
-def covered(x0: float, y0: float, x1: float, y1: float, b: Any, segment: int, bound: float) -> bool:
-    """Kernel: whether both ends, and so all points between them, lie within the bound of the segment."""
+def covered(x0: float, y0: float, x1: float, y1: float, b: Graph, segment: int, bound: float) -> bool:
+    """Whether both ends, and so all points between them, lie within the bound of the segment."""
     return to_segment(b, segment, x0, y0) <= bound and to_segment(b, segment, x1, y1) <= bound
 
 
-def nearest(g: Any, x: float, y: float, enough: float, guess: int, nodes: Any) -> int:
-    """Kernel: the segment nearest to a point, or the first one found to be near enough."""
+def nearest(g: Graph, x: float, y: float, enough: float, guess: int, nodes: Indices) -> int:
+    """The segment nearest to a point, or the first one found to be near enough."""
     found, best = guess, to_segment(g, guess, x, y)
     if best <= enough:
         return found
@@ -114,7 +128,8 @@ def nearest(g: Any, x: float, y: float, enough: float, guess: int, nodes: Any) -
             continue
         if node >= g.leaves:
             start = (node - g.leaves) * LEAF
-            for s in range(start, min(start + LEAF, len(g.x) - 1)):
+            end = start + LEAF if start + LEAF < g.n - 1 else g.n - 1
+            for s in range(start, end):
                 d = to_segment(g, s, x, y)
                 if d < best:
                     found, best = s, d
@@ -130,19 +145,19 @@ def nearest(g: Any, x: float, y: float, enough: float, guess: int, nodes: Any) -
     return found
 
 
-def to_box(g: Any, node: int, x: float, y: float) -> float:
-    """Kernel: distance of a point from a box."""
-    dx = max(g.boxes[node, 0] - x, x - g.boxes[node, 1], 0.0)
-    dy = max(g.boxes[node, 2] - y, y - g.boxes[node, 3], 0.0)
-    return math.sqrt(dx * dx + dy * dy)
+def to_box(g: Graph, node: int, x: float, y: float) -> float:
+    """Distance of a point from a box."""
+    dx = max(max(g.boxes[4 * node] - x, x - g.boxes[4 * node + 1]), 0.0)
+    dy = max(max(g.boxes[4 * node + 2] - y, y - g.boxes[4 * node + 3]), 0.0)
+    return sqrt(dx * dx + dy * dy)
 
 
-def to_segment(g: Any, s: int, x: float, y: float) -> float:
-    """Kernel: distance of a point from the segment between the points s and s + 1."""
+def to_segment(g: Graph, s: int, x: float, y: float) -> float:
+    """Distance of a point from the segment between the points s and s + 1."""
     px, py = x - g.x[s], y - g.y[s]
     ex, ey = g.x[s + 1] - g.x[s], g.y[s + 1] - g.y[s]
     length = ex * ex + ey * ey
     if length > 0.0:
         share = min(max((px * ex + py * ey) / length, 0.0), 1.0)
         px, py = px - share * ex, py - share * ey
-    return math.sqrt(px * px + py * py)
+    return sqrt(px * px + py * py)

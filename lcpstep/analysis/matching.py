@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.compiled import compiled
+from lcpstep.analysis.pairing import pair_up
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]
 MOST_CELLS = 200_000_000  # of the recursion's table, one byte each
 SHARE = 0.1  # of the mean time between impacts: the default of `within`
-NEITHER, PAIR, SKIP = range(3)  # where a cell's value comes from: drop a's last, pair both, drop b's last
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,48 +100,6 @@ def _in_order(a: Array, b: Array, within: float) -> NDArray[np.intp]:
         raise ValueError(
             f"within: {within:g} s allows {cells[-1]} pairs of impacts, more than {MOST_CELLS}; take less"
         )
-    origin = np.zeros(cells[-1], dtype=np.uint8)
-    row, before = np.zeros(len(b) + 1), np.zeros(len(b) + 1)
-    partner = np.full(len(a), -1)
-    compiled(pair_up)(a, b, within, low, high, cells, origin, row, before, partner)
+    partner = pair_up(np.ascontiguousarray(a), np.ascontiguousarray(b), within, low, high, cells)
     i = np.flatnonzero(partner >= 0)
     return np.column_stack([i, partner[i]])
-
-
-def pair_up(
-    a: Any,
-    b: Any,
-    within: float,
-    low: Any,
-    high: Any,
-    cells: Any,
-    origin: Any,
-    row: Any,
-    before: Any,
-    partner: Any,
-) -> None:
-    """Kernel: best pairing of a[:i + 1] with b[:j] for low[i] <= j <= high[i], then back along the best path."""
-    end = 0  # beyond this j the row before has one value
-    for i in range(len(a)):
-        for j in range(low[i], high[i] + 1):
-            # dropping a[i], pairing it with b[j - 1], or dropping b[j - 1]
-            best, choice = before[min(j, end)], NEITHER
-            if j > low[i]:
-                paired = before[min(j - 1, end)] + within - abs(a[i] - b[j - 1])
-                if paired > best:
-                    best, choice = paired, PAIR
-                if row[j - 1] > best:
-                    best, choice = row[j - 1], SKIP
-            row[j] = best
-            origin[cells[i] + j - low[i]] = choice
-        for j in range(low[i], high[i] + 1):
-            before[j] = row[j]
-        end = high[i]
-    j = len(b)
-    for i in range(len(a) - 1, -1, -1):
-        j = min(j, high[i])
-        while j >= low[i] and origin[cells[i] + j - low[i]] == SKIP:
-            j -= 1
-        if j >= low[i] and origin[cells[i] + j - low[i]] == PAIR:
-            partner[i] = j - 1
-            j -= 1

@@ -8,7 +8,7 @@ from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport after, max
 from lcpstep.rows cimport copy
 
-cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, LARGEST_KEPT, LARGEST_ENUMERATION
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, MAX_ITERATIONS, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, LARGEST_KEPT, LARGEST_ENUMERATION
 
 cdef Workspace space_for(Py_ssize_t n)
 cdef Py_ssize_t pivot_once(
@@ -22,3 +22,7 @@ cdef void solve_all(
 ) noexcept
 cdef object ray(Workspace work, Py_ssize_t n)
 cdef object array_of(double* x, Py_ssize_t n)
+cdef object search(
+    object W, object b, object z, object w, double tol, Py_ssize_t limit, Workspace work, Py_ssize_t status
+)
+cdef object told(object W, object b, object z, object w, Workspace work, Py_ssize_t status)

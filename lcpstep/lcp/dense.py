@@ -10,7 +10,17 @@ import numpy as np
 
 from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.problem import Ray, Solution, check_finite
-from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, NOT_FINITE, PER_UNKNOWN, RAY, SOLVED, Status
+from lcpstep.lcp.status import (
+    ENOUGH,
+    FAILED,
+    INFEASIBLE,
+    MAX_ITERATIONS,
+    NOT_FINITE,
+    PER_UNKNOWN,
+    RAY,
+    SOLVED,
+    Status,
+)
 
 if not cython.compiled:
     from lcpstep.arrays import are_doubles, doubles, indices
@@ -68,6 +78,32 @@ def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> 
     status = pivot_once(doubles(W), doubles(b), doubles(z), n, doubles(w), tol, limit, work)
     if status == SOLVED:
         return new(Solution, (z, w, NAME_OF_SOLVED, work.iterations, work.residual, "lemke", None))
+    if status in (RAY, FAILED, MAX_ITERATIONS) and max_iterations is None:
+        return search(W, b, z, w, tol, limit, work, status)
+    return told(W, b, z, w, work, status)
+
+
+def search(W: Any, b: Any, z: Any, w: Any, tol: float, limit: int, work: Workspace, status: int) -> Solution:
+    """The thorough search for a solution, and another method, unless there is a proof that there is none."""
+    if status == RAY and (certificate := farkas(W, b)) is not None:
+        return Solution(z, w, Status.INFEASIBLE, work.iterations, work.residual, "lemke", certificate)
+    n = len(b)
+    z[:] = 0.0
+    work.thorough = True
+    status = pivot_once(doubles(W), doubles(b), doubles(z), n, doubles(w), tol, limit, work)
+    work.thorough = False
+    if status not in (SOLVED, INFEASIBLE):
+        from lcpstep.lcp.newton import newton
+
+        other = newton(W, b, np.zeros(n), tol, None)
+        if other.solved:
+            return other
+    return told(W, b, z, w, work, status)
+
+
+def told(W: Any, b: Any, z: Any, w: Any, work: Workspace, status: int) -> Solution:
+    """The solution, or why there is none."""
+    n = len(b)
     if status == NOT_FINITE:
         check_finite(W, b)
     certificate: Any = None

@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles
-from lcpstep.lcp.enumeration cimport enumerate_bases
+from lcpstep.lcp.enumeration cimport enumerate_bases, enumerate_vertices
 from lcpstep.lcp.judge cimport judge, proves_infeasible
 from lcpstep.lcp.lemke cimport lemke
 from lcpstep.lcp.principal cimport exchange_indices
@@ -11,7 +11,7 @@ from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport abs, max, min
 from lcpstep.rows cimport copy
 
-cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, SPREADING, MOST, STARTS, STRIDE, TINY
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, LAST_EXCHANGES, SPREADING, MOST, STARTS, FEWEST_STARTS, STRIDE, PER_SQUARE, THOROUGH, MULTIPLIER, MODULUS, SIXTHS, TINY
 cdef double TOLERANCE, STRICT, ALMOST, SMALLEST_PIVOT, LARGER_PIVOT
 
 cdef Py_ssize_t solve_small(double* W, double* b, double* z, Py_ssize_t n, Workspace work) noexcept nogil
@@ -29,8 +29,13 @@ cdef Py_ssize_t pivot_on(
 cdef Py_ssize_t conclude(
     double* W, double* b, double* z, Py_ssize_t n, double tolerance, Py_ssize_t status, Workspace work
 ) noexcept nogil
+@cython.locals(number=cython.longlong)
 cdef void choose_start(Py_ssize_t attempt, Py_ssize_t n, Workspace work) noexcept nogil
 @cython.locals(some=bint)
 cdef bint choose_positive(double* z, Py_ssize_t n, Workspace work) noexcept nogil
 @cython.locals(some=bint)
 cdef bint choose_negative(double* b, Py_ssize_t n, Workspace work) noexcept nogil
+cdef Py_ssize_t exchange_at_last(
+    double* W, double* b, double* z, Py_ssize_t n, double tolerance, Workspace work
+) noexcept nogil
+cdef Py_ssize_t number_of_starts(Py_ssize_t n, Workspace work) noexcept nogil

@@ -21,7 +21,7 @@ from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOL
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.lcp.enumeration import enumerate_bases
+    from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge, proves_infeasible
     from lcpstep.lcp.lemke import lemke
     from lcpstep.lcp.principal import exchange_indices
@@ -34,14 +34,21 @@ if not cython.compiled:
 
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
+LAST_EXCHANGES = 100  # granted to the set of negative b where all else has failed
 SPREADING = (
     4  # more of them per unknown, for what is violated by rounding may spread from row to row; at most
 )
 MOST = 200
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again for more unknowns than TINY
-STARTS = 12  # times that Lemke's method is started
+STARTS, FEWEST_STARTS = 12, 2  # times that Lemke's method is started
 STRIDE = 7919  # a prime that scatters them
+PER_SQUARE, THOROUGH = 25, 3_000_000_000  # the same of a thorough search, times n^2, and at most this by n^3
+MULTIPLIER, MODULUS = (
+    48271,
+    2147483647,
+)  # pseudo-random numbers of S. Park and K. Miller, Comm. ACM 31 (1988) 1192
+SIXTHS = 6  # a start has one to six of them of all z
 SMALLEST_PIVOT, LARGER_PIVOT = 1e-11, 1e-8  # relative to the largest entry of a direction, in turn
 TINY = 8  # up to this size every basis is tried at last
 
@@ -105,7 +112,7 @@ def pivot_on(
     """Lemke's method in revised form, from z = 0 and, after a ray or a refused answer, from other bases."""
     strict, status = min(tolerance, STRICT), FAILED
     equilibrate(W, b, n, work)
-    for attempt in range(STARTS):
+    for attempt in range(number_of_starts(n, work)):
         choose_start(attempt, n, work)
         smallest = SMALLEST_PIVOT if attempt % 2 == 0 else LARGER_PIVOT
         ended = lemke(n, max_pivots, smallest, attempt == 0, work)
@@ -129,7 +136,18 @@ def conclude(
 ) -> int:
     """The best answer that passes; or every basis of a few unknowns; or why there is none."""
     open_question = status != INFEASIBLE and not work.best_residual < tolerance
+    if open_question and n > TINY:
+        if exchange_at_last(W, b, z, n, tolerance, work) == SOLVED:
+            return SOLVED
+        open_question = not work.best_residual < tolerance
     if open_question and n <= TINY and enumerate_bases(W, b, z, n, tolerance, 1 << n, work) == SOLVED:
+        return SOLVED
+    if (
+        open_question
+        and n <= TINY
+        and work.thorough
+        and enumerate_vertices(W, b, z, n, tolerance, work) == SOLVED
+    ):
         return SOLVED
     if work.best_residual < tolerance:
         copy(z, work.best, n)
@@ -144,12 +162,38 @@ def conclude(
     return status
 
 
+def exchange_at_last(W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, work: Workspace) -> int:
+    """Many exchanges, from the set of negative b and from all: they bear numbers of any size in one problem."""
+    choose_negative(b, n, work)
+    if exchange_indices(W, b, z, n, tolerance, LAST_EXCHANGES, work) == SOLVED:
+        return SOLVED
+    for i in range(n):
+        work.chosen[i] = 1
+    return exchange_indices(W, b, z, n, tolerance, LAST_EXCHANGES, work)
+
+
+def number_of_starts(n: int, work: Workspace) -> int:
+    """How often Lemke's method is started, within some seconds; a thorough search goes as far as these allow."""
+    affordable, enough = THOROUGH // (n * n * n), STARTS
+    if work.thorough and PER_SQUARE * n * n > STARTS:
+        enough = PER_SQUARE * n * n
+    if affordable < FEWEST_STARTS:
+        return FEWEST_STARTS
+    return affordable if affordable < enough else enough
+
+
 def choose_start(attempt: int, n: int, work: Workspace) -> None:
     """The basis to start from: z = 0 twice, then one positive z, with a partner if its diagonal is small."""
     columns, chosen = work.columns, work.chosen
     for i in range(n):
         chosen[i] = 0
     if attempt < 2:
+        return
+    if attempt >= STARTS:
+        number = STRIDE * attempt
+        for i in range(n):
+            number = (MULTIPLIER * number) % MODULUS
+            chosen[i] = 1 if number % SIXTHS < 1 + attempt % SIXTHS else 0
         return
     i = (STRIDE * attempt) % n
     partner = i

@@ -36,3 +36,4 @@ cdef class Workspace:
     cdef Py_ssize_t* place
     cdef readonly double residual, best_residual, smallest, ray_dz_0, ray_z_0
     cdef readonly Py_ssize_t iterations
+    cdef public bint thorough

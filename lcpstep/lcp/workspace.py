@@ -46,6 +46,7 @@ class Workspace:
     residual, iterations     of the last problem
     best_residual            of the answer in `best`
     ray_dz_0, ray_z_0        the covering variable's share in the ray
+    thorough                 whether a solution is searched for as long as there is hope
     smallest                 size above which a component of Lemke's direction counts
     """
 
@@ -56,6 +57,7 @@ class Workspace:
         self.residual = self.best_residual = self.smallest = 0.0
         self.ray_dz_0 = self.ray_z_0 = 0.0
         self.iterations = 0
+        self.thorough = False
         self.columns = doubles(self.numbers)
         self.inverse = after(self.columns, (n + 1) * n)
         self.factor = after(self.inverse, n * n)

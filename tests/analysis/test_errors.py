@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from lagrangian import Harmonic, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, simulate
 from lcpstep.analysis.errors import MEASURES, Difference
-from lcpstep.analysis.graphs import graph, hausdorff
+from lcpstep.analysis.graphs import Graph, hausdorff
 from lcpstep.analysis.matching import match_impacts
 from lcpstep.trajectory import IMPACT_DTYPE, Kind
 
@@ -170,21 +170,21 @@ def brute(a, b, n=400):
 @given(points, points, st.randoms(use_true_random=False))
 def test_the_distance_of_polylines_is_that_of_their_points(a, b, random):
     a, b = (np.column_stack([sorted(random.choice(range(9)) for _ in v), v]) for v in (a, b))
-    found, again = (hausdorff(graph(*x.T), graph(*y.T)) for x, y in ((a, b), (b, a)))
+    found, again = (hausdorff(Graph(*x.T), Graph(*y.T)) for x, y in ((a, b), (b, a)))
     assert found == pytest.approx(again, rel=1e-5, abs=1e-12)
     spacing = 13.0 / 400
     assert brute(a, b) - spacing <= found <= brute(a, b) + spacing
-    assert hausdorff(graph(*a.T), graph(*a.T)) == 0.0
+    assert hausdorff(Graph(*a.T), Graph(*a.T)) == 0.0
 
 
 def test_long_graphs_are_as_far_apart_as_one_of_them_was_moved():
     t = np.linspace(0.0, 100.0, 20_001)
     v = np.sign(np.sin(t)) + 0.1 * np.sin(7 * t)
     for shift in (1e-12, 1e-6, 1e-2, 0.3):
-        assert hausdorff(graph(t, v), graph(t, v + shift)) <= shift * (1 + 1e-6) + 1e-15
+        assert hausdorff(Graph(t, v), Graph(t, v + shift)) <= shift * (1 + 1e-6) + 1e-15
         # a horizontal piece at the end sees the whole shift
         t2, v2 = np.append(t, 200.0), np.append(v, v[-1])
-        assert hausdorff(graph(t2, v2), graph(t2, v2 + shift)) == pytest.approx(shift, rel=2e-4)
+        assert hausdorff(Graph(t2, v2), Graph(t2, v2 + shift)) == pytest.approx(shift, rel=2e-4)
 
 
 # --- impacts against every pairing

@@ -1,0 +1,17 @@
+from lcpstep.arrays cimport doubles
+from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
+from lcpstep.kernels.model cimport Model
+from lcpstep.pointers cimport after, max, min
+
+cdef void find_extremes(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* g, double* low, double* high
+) noexcept
+cdef void find_rates(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* G, double* g_t, bint moved, double* out
+) noexcept
+cdef void find_power(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* M, double* f, double* kinetic, double* power
+) noexcept
+cdef void find_energy(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* M, double* out
+) noexcept
