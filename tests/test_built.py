@@ -8,7 +8,7 @@ import pytest
 from lagrangian import profiles, scenes
 from lagrangian.scenes import pendulum
 from lcpstep import built, callbacks
-from lcpstep.compiled import jit_disabled
+from lcpstep.callbacks import disabled
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import shapes
 from tests.processes import python
@@ -25,7 +25,7 @@ def functions(scene):
                 yield f, shapes(n_q, n)[name]
 
 
-@pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+@pytest.mark.skipif(disabled(), reason="nothing is compiled")
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(name, monkeypatch):
     scene = scenes.CATALOGUE[name].make()

@@ -9,12 +9,12 @@ import pytest
 
 from lagrangian import Guard, HybridScene, HybridSystem, Mode, Scene, System
 from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
-from lcpstep.compiled import jit_disabled
+from lcpstep.callbacks import disabled
 from lcpstep.model import UncompiledCallback
 from lcpstep.trajectory import Status
 from tests.processes import python
 
-compiled_only = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+compiled_only = pytest.mark.skipif(disabled(), reason="nothing is compiled")
 METHODS = [Moreau(1e-2), Located(1e-2), EventDriven()]
 IDS = ["moreau", "located", "event-driven"]
 TABLE = np.arange(4.0)

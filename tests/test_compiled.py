@@ -5,14 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from lcpstep.compiled import by_address, compiled
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, simulate
-from lcpstep.compiled import by_address, compiled, jit_disabled
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
 
-pytestmark = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+pytestmark = pytest.mark.skipif(disabled(), reason="nothing is compiled")
 
 
 def free(t, q, v, p, out):

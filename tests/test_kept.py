@@ -10,10 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from lcpstep.compiled import by_address, compiled
 
-from lcpstep.compiled import by_address, compiled, jit_disabled
-
-pytestmark = pytest.mark.skipif(jit_disabled(), reason="nothing is compiled")
+pytestmark = pytest.mark.skipif(disabled(), reason="nothing is compiled")
 KERNELS = """
 def double(x):
     return 2.0 * x

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from lcpstep.compiled import call_solver, compiled, jit_disabled
+
 from lcpstep.lcp import Status, residual, solve_lcp, solve_lcp_batch
 from lcpstep.lcp.kernel import room, solve, solver
 from lcpstep.lcp.workspace import Workspace
@@ -81,7 +81,7 @@ def test_the_same_source_runs_as_plain_python_to_the_last_bit():
         assert (work.iterations, work.residual) == (other.iterations, other.residual)
 
 
-@pytest.mark.skipif(jit_disabled(), reason="nothing is compiled by numba")
+@pytest.mark.skipif(disabled(), reason="nothing is compiled by numba")
 def test_compiled_steps_call_a_solver_that_is_not_built():
     G = np.random.default_rng(2).normal(size=(5, 4, 4))
     W, b, z, status = G @ G.swapaxes(1, 2), G[:, 0].copy(), np.zeros((5, 4)), np.ones(5, int)
