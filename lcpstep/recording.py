@@ -19,6 +19,7 @@ from lcpstep.trajectory import IMPACT_DTYPE
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 EVENT_CAPACITY = 4096
+EXPECTED = 1 << 22  # states that room is made for at once, at most
 # Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
 # duration of the step that follows; then q, v, impulses
 TIME, MODE, LENGTH, LEAD = range(4)
@@ -129,7 +130,10 @@ class States(NamedTuple):
 
 
 class Recorder:
-    """Buffers of one run, and what they held when they were emptied."""
+    """Buffers of one run, and what they held when they were emptied.
+
+    expected : states of the whole run, where that is known; they are not moved again, then
+    """
 
     def __init__(
         self,
@@ -139,8 +143,8 @@ class Recorder:
         rows: int,
         dense: bool = False,
         dense_shape: tuple[int, int] | None = None,
+        expected: int = 0,
     ) -> None:
-        self.n_q = n_q
         self.buffers = Record(
             every=kept.every,
             on_events=kept.on_events,
@@ -154,16 +158,33 @@ class Recorder:
         self.record = kernels.Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, b.rows, b.events, b.dense
         )
-        self._states: list[tuple[Array, ...]] = []  # as `kernels.Record.states` gives them
+        self._states: list[kernels.Columns] = []
+        self._expected, self._free = (
+            min(expected, EXPECTED),
+            0,
+        )  # rows of the last of them that are not filled
         self._parts = {"events": [b.events[:0]], "dense": [b.dense[:0]]}
 
     def empty(self, rows: int, events: int) -> None:
         """Take over the first rows and events of the buffers."""
-        self.record.row = rows
-        self._states.append(self.record.states())
+        if rows > self._free:
+            self._close(max(rows, self._expected))
+        if rows > 0:
+            self.record.row = rows
+            self.record.move(self._states[-1], len(self._states[-1][0]) - self._free)
+            self._free -= rows
         self._parts["dense"].append(self.buffers.dense[:rows].copy())
         self._parts["events"].append(self.buffers.events[:events].copy())
-        self.record.row = self.record.event = 0
+        self.record.event = 0
+
+    def _close(self, rows: int) -> None:
+        """Leave the arrays at hand as they are, and go on with others for so many rows."""
+        if self._free > 0:
+            t, mode, length, q, v, impulse = self._states.pop()
+            n = len(t) - self._free
+            self._states.append((t[:n], mode[:n], length[:n], q[:n], v[:n], impulse[:n]))
+        self._states.append(self.record.room_for(rows))
+        self._free = rows
 
     def take(self) -> int:
         """Take over what kernels built ahead of time have written; how many events that were."""
@@ -173,9 +194,10 @@ class Recorder:
 
     def states(self) -> States:
         """All states kept so far."""
-        parts = self._states or [self.record.states()]
+        if self._free > 0 or not self._states:
+            self._close(0)
         t, mode, length, q, v, impulse = (
-            part[0] if len(part) == 1 else np.concatenate(part) for part in zip(*parts, strict=True)
+            part[0] if len(part) == 1 else np.concatenate(part) for part in zip(*self._states, strict=True)
         )
         return States(t, q, v, impulse, mode, length)
 

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, simulate
 from lcpstep.compiled import by_address, compiled, jit_disabled
 from lcpstep.events.flight.loop import run as run_flights
 from lcpstep.events.single.loop import run as run_single
-from lcpstep.stepping import theta
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
 
@@ -57,17 +56,6 @@ def two_forces(t, q, v, p, out):
 
 
 @pytest.mark.parametrize("keep", [1, 7, [0.01, 0.02], "impacts"])
-@pytest.mark.parametrize(
-    ("scenes", "without"), [(varied, (theta.linearise,)), (general, ())], ids=["linear", "general"]
-)
-def test_the_time_stepping_kernel_has_one_signature_for_all_scenes(scenes, without, keep):
-    kernel = compiled(theta.run, without)
-    for scene in scenes():
-        simulate(scene, Moreau(1e-3, theta=0.75), keep=keep)
-        assert len(kernel.signatures) == 1
-
-
-@pytest.mark.parametrize("keep", [1, 7, [0.01, 0.02], "impacts"])
 def test_the_event_driven_kernels_have_one_signature_for_all_scenes(keep):
     for scene in [*varied(), *general()]:
         if scene.n_c <= 1:
@@ -76,14 +64,14 @@ def test_the_event_driven_kernels_have_one_signature_for_all_scenes(keep):
         assert len(compiled(kernel).signatures) == 1
 
 
-WHOLE_RUN = """
+AHEAD_OF_TIME = """
+import sys
 from lagrangian import scenes
 from lcpstep import Moreau, simulate
-from lcpstep.compiled import compiled
-from lcpstep.stepping import theta
-simulate(scenes.cam_follower(t_end=0.01), Moreau(1e-3))
-stats = compiled(theta.run, (theta.linearise,)).stats
-print(sum(stats.cache_hits.values()), sum(stats.cache_misses.values()))
+for scene in (scenes.bouncing_ball(t_end=0.1), scenes.coulomb_oscillator(t_end=0.1)):
+    for keep in (1, 7, [0.01, 0.02], "impacts"):
+        simulate(scene, Moreau(1e-3), keep=keep)
+print("numba" in sys.modules)
 """
 SMALL_KERNEL = """
 from lcpstep.compiled import compiled
@@ -94,9 +82,12 @@ print(sum(kernel.stats.cache_hits.values()), sum(kernel.stats.cache_misses.value
 """
 
 
-@pytest.mark.parametrize("program", [SMALL_KERNEL, pytest.param(WHOLE_RUN, marks=pytest.mark.slow)])
-def test_the_next_process_finds_the_kernel_on_disk(tmp_path, program):
-    first, second = (python(program, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
+def test_steps_of_one_size_compile_nothing():
+    assert python(AHEAD_OF_TIME).split("\n")[-1] == "False"
+
+
+def test_the_next_process_finds_the_kernel_on_disk(tmp_path):
+    first, second = (python(SMALL_KERNEL, NUMBA_CACHE_DIR=str(tmp_path)) for _ in range(2))
     assert first.split("\n")[-1] == "0 1"
     assert second.split("\n")[-1] == "1 0"
 

@@ -18,6 +18,7 @@ cdef class Record:
     cdef double* last_row(self) noexcept nogil
     cdef double* dense_row(self, Py_ssize_t row) noexcept nogil
     cdef void keep(self, double t, double mode, double* q, double* v, double* impulse) noexcept nogil
+    cdef void keep_one(self, double t, double q, double v, double* impulse) noexcept nogil
     cdef void note(
         self, double t, Py_ssize_t contact, double before, double after_, double p, Py_ssize_t kind
     ) noexcept nogil

@@ -11,6 +11,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.pointers import Doubles, after, whole
 
+Columns = tuple[Any, Any, Any, Any, Any, Any]  # times, modes, durations, q, v and impulses of rows
 # Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
 # duration of the step that follows; then q, v, impulses
 TIME, MODE, LENGTH, LEAD = 0, 1, 2, 3
@@ -67,6 +68,14 @@ class Record:
             impulse[c] = 0.0
         self.row += 1
 
+    def keep_one(self, t: float, q: float, v: float, impulse: Doubles) -> None:
+        """`keep` where there are one coordinate and one impulse, mode 0."""
+        row = after(self.rows, self.row * self.row_size)
+        row[TIME], row[MODE], row[LENGTH] = t, 0.0, 0.0
+        row[LEAD], row[LEAD + 1], row[LEAD + 2] = q, v, impulse[0]
+        impulse[0] = 0.0
+        self.row += 1
+
     def note(self, t: float, contact: int, before: float, after_: float, p: float, kind: int) -> None:
         """One line of the impact log."""
         event = after(self.events, self.event * COLUMNS)
@@ -98,13 +107,21 @@ class Record:
             for i in range(n_c):
                 impulse[k * n_c + i] = row[LEAD + 2 * n + i]
 
-    def states(self) -> tuple[Any, ...]:
-        """Times, modes, durations, positions, velocities and impulses of the rows, as arrays."""
-        rows = self.row
+    def room_for(self, rows: int) -> Columns:
+        """Arrays for times, modes, durations, positions, velocities and impulses of so many rows."""
+        n, n_c = self.n_q, self.n_c
         t, mode, length = np.empty(rows), np.empty(rows), np.empty(rows)
-        q, v, impulse = np.empty((rows, self.n_q)), np.empty((rows, self.n_q)), np.empty((rows, self.n_c))
-        self.split(doubles(t), doubles(mode), doubles(length), doubles(q), doubles(v), doubles(impulse))
-        return t, mode, length, q, v, impulse
+        return t, mode, length, np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, n_c))
+
+    def move(self, columns: Columns, k: int) -> None:
+        """Move the rows to such arrays, from place k on."""
+        t, mode, length, q, v, impulse = columns
+        n, n_c = self.n_q, self.n_c
+        self.split(
+            after(doubles(t), k), after(doubles(mode), k), after(doubles(length), k), after(doubles(q), k * n),
+            after(doubles(v), k * n), after(doubles(impulse), k * n_c),
+        )  # fmt: skip
+        self.row = 0
 
     def is_due(self, step: int) -> bool:
         """Whether the state after so many steps is to be kept."""

@@ -49,16 +49,17 @@ class Run:
         self.constant = all(m.flat for m in (self.model, joints, tangents)) and self.model.linear
         self.constant = self.constant and not method.projected
         self.state = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
+        self.stretches = list(divided(scene.t_span, method.h))
         portion = min(PORTION, STATES * kept.every) if kept.every > 0 else PORTION
         # A portion keeps at most its steps, the given times, and the first and last state.
         room = STATES if kept.every > 0 else PORTION
-        self.recorder = Recorder(scene.n_q, self.rows.n, kept, room + len(kept.times) + 2)
+        expected = 1 + self.stretches[-1][3] // kept.every if kept.every > 0 else len(kept.times)
+        self.recorder = Recorder(scene.n_q, self.rows.n, kept, room + len(kept.times) + 2, expected=expected)
         sizes = scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0)
         size = max(float(np.max(np.abs(x), initial=0.0)) for x in sizes)
         self.slack = RESTING * (size or 1.0)
         self.events = 0
         self.pace = Pace(portion, scene.n_q + self.rows.n)
-        self.stretches = list(divided(scene.t_span, method.h))
         self.t0, self.first = scene.t_span[0], 0
         self.plan = self.plan_for(self.stretches[0][0])
 

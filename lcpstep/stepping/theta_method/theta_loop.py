@@ -1,7 +1,4 @@
-"""The loop of the Moreau theta-method over steps of one size; one step: `theta_step`.
-
-What all ends have in common: a state is looked at, and kept, when its step is complete.
-"""
+"""The loop of the Moreau theta-method over steps of one size; one step: `theta_step`."""
 
 from __future__ import annotations
 
@@ -70,11 +67,12 @@ def run(
         if code != FINISHED:
             return code
         solved = False
-        keep_times(plan.h, s, record, t, t_next)
+        if record.next_time < record.n_times:
+            keep_times(plan.h, s, record, t, t_next)
         advance(m, s, c, t_next)
         if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
             return NOT_FINITE
-        if record.is_due(s.steps) or (record.on_events and record.event > events):
+        if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
             record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
 
@@ -105,8 +103,8 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
         k += 1
         left -= 1
         if left == 0 and g - g == 0.0 and u - u == 0.0:
-            s.q[0], s.v[0], left = q, v, record.every
-            record.keep(t, 0.0, s.q, s.v, s.impulse)
+            left = record.every
+            record.keep_one(t, q, v, s.impulse)
     s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
     s.forces += k - s.steps
     s.steps = k
