@@ -95,7 +95,10 @@ def extensions() -> list[Extension]:
 if __name__ == "__main__":
     setup(
         ext_modules=cythonize(
-            extensions(), nthreads=os.cpu_count() or 1, compiler_directives=DIRECTIVES, build_dir="build/cython"
+            extensions(),
+            nthreads=os.cpu_count() or 1,
+            compiler_directives=DIRECTIVES,
+            build_dir="build/cython",
         ),
         cmdclass={"build_ext": Build},
         setup_requires=[] if has_compiler() else ["ziglang"],  # into the build environment that pip makes
