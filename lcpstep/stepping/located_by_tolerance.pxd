@@ -48,7 +48,7 @@ cdef class Attempts(Control):
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed
-    @cython.locals(entire=bint, early=bint)
+    @cython.locals(entire=bint, early=bint, agreed=bint)
     cdef Py_ssize_t attempt(self) noexcept nogil
     @cython.locals(event_first=bint)
     cdef void weigh(self, double length) noexcept nogil

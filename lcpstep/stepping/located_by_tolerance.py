@@ -132,10 +132,11 @@ class Attempts(Control):
         """One step, then two halves of it, both up to the first event; the last code of the loop."""
         self.from_time, self.to_time, self.h = self.base(), self.goal(), self.step_size(self.level)
         start, end, until = self.into, self.ends(), inf
-        entire = end == self.h
+        entire, agreed = end == self.h, False
         for _ in range(TRIALS):
             self.compare(start, end, entire, until)
-            if self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0:
+            agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
+            if agreed:
                 break
             self.restore()
             until = self.two.time
@@ -147,6 +148,9 @@ class Attempts(Control):
         self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
         if not self.full:
             self.weigh(end - start)
+        self.failed = (
+            self.failed or not agreed
+        )  # about the time of the event: the motion is back at its start
         self.cut = inf if entire and self.two.code == FINISHED else self.w.sigma
         return REACHED if self.two.good() else self.two.code
 
