@@ -121,7 +121,8 @@ def _function(f: Any, takes: int) -> FunctionType:
         return f
     user = _with_defaults(f, keywords) if keywords or code.co_kwonlyargcount else f
     enter = _enter if takes == SECOND_ORDER else _enter_first_order
-    return FunctionType(enter.__code__, {"user": user, "given": given}, f.__name__)
+    known = {"user": user, "given": given, "__name__": __name__}  # what is kept on disk belongs to a module
+    return FunctionType(enter.__code__, known, f.__name__)
 
 
 def _enter(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
