@@ -30,7 +30,7 @@ from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided, unresolved
-from lcpstep.stepping.theta import LATE
+from lcpstep.stepping.theta_method.codes import LATE
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import lcpstep
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built
 
-# Impacts and forces of several contacts, more events in a step than may be, joints, a mass that changes
+# Impacts and forces of several contacts, more events in a step than may be, joints, a mass that changes; all orders
 MOTIONS = """
 import hashlib
 import numpy as np
@@ -21,11 +21,12 @@ groove = Scene(
     LinearSystem(M=np.eye(2), force=[1.0, -10.0]), [0.0, 0.1], [0.3, -1.0], (0.0, 0.6),
     contacts=LinearContacts(G=np.vstack([planes, planes * [-1.0, 1.0]]), restitution=0.5),
 )
-for scene, n in (
-    (groove, 20), (scenes.pendulum_stop(form="rod", t_end=1.0), 30), (scenes.double_pendulum(t_end=0.5), 20),
-    (scenes.stack(t_end=0.3), 20), (scenes.bowl(t_end=0.5), 20),
+for scene, n, order in (
+    (groove, 20, 2), (scenes.pendulum_stop(form="rod", t_end=1.0), 30, 2), (scenes.double_pendulum(t_end=0.5), 20, 2),
+    (scenes.stack(t_end=0.3), 20, 2), (scenes.bowl(t_end=0.5), 20, 2), (groove, 20, 4), (groove, 20, "exact"),
+    (scenes.double_pendulum(t_end=0.5), 10, 4), (scenes.cam_follower(t_end=1.0), 20, "exact"),
 ):
-    m = simulate(scene, Located(scene.t_span[1] / n, max_per_step=3))
+    m = simulate(scene, Located(scene.t_span[1] / n, order=order, max_per_step=3))
     numbers = b"".join(x.tobytes() for x in (m.t, m.q, m.v, m.impulse, m.joint_impulse))
     print(scene.name, len(m.impacts), m.message, hashlib.sha256(numbers).hexdigest())
 """
@@ -40,5 +41,5 @@ def test_kernels_of_located_move_alike_where_they_are_not_built(tmp_path):
     assert plain[0].endswith(".py")
     assert not built[0].endswith(".py")
     assert plain[1:] == built[1:]
-    assert len(plain) == 6
+    assert len(plain) == 10
     assert "plastic impact" in plain[1]

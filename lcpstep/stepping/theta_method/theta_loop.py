@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL, NOT_FINITE
+from lcpstep.stepping.theta_method.codes import FINISHED, LATE, LOG_FULL, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
@@ -16,8 +16,6 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.row_impulses import constant_rows
     from lcpstep.stepping.theta_method.theta_step import take_step
-
-LATE = 1e-9  # of a step: what rounding may take from the last one's end
 
 
 def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
