@@ -1,4 +1,4 @@
-"""Why the loop of the theta-method returned: a status of the run, or what Python is to do before it goes on."""
+"""Why the loop of the theta-method returned, as Python sees it: a status of the run, or what is to be done first."""
 
 from __future__ import annotations
 
@@ -11,3 +11,4 @@ LOG_FULL, NEED_LCP = -1, -2  # empty the record; solve the problem at hand
 # Kinds of events
 IMPACT, STICK, RELEASE = int(Kind.IMPACT), int(Kind.STICK), int(Kind.RELEASE)
 MAX_ITERATIONS = 25  # of Newton, per step
+LATE = 1e-9  # of a step: what rounding may take from the last one's end
