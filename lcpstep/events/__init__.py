@@ -8,7 +8,8 @@
     hybrid      modes, guards and resets
 
 Each has its `run`, from a scene to a trajectory, and its `loop`, the kernel over events. What they share lies here:
-`run`, `clock`, `contact`, `bookkeeping`, `plan`, `acceleration`, and the steps of `dop853`.
+`running` and `scan` of the loops that are built ahead of time (as is `flight`); `run`, `clock`, `contact`, `bookkeeping`,
+`plan`, `acceleration`, and the steps of `dop853` of the others.
 """
 
 from lcpstep.events.driven import EventDriven
