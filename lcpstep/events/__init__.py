@@ -8,8 +8,7 @@
     hybrid      modes, guards and resets
 
 Each has its `run`, from a scene to a trajectory, and its `loop`, the kernel over events. What they share lies here:
-`running` and `scan` of the loops that are built ahead of time (as is `flight`); `run`, `clock`, `contact`, `bookkeeping`,
-`plan`, `acceleration`, and the steps of `dop853` of the others.
+`run`, `clock`, `contact`, `bookkeeping`, `plan`, `acceleration`, and the steps of `dop853`.
 """
 
 from lcpstep.events.driven import EventDriven
