@@ -220,7 +220,7 @@ def double(t, q, v, p, out):
 
 @pytest.mark.parametrize(
     "body",
-    ["out[0] = settings.MASS", "out[0] = Box.SIDE", "f = lambda z: NUMBER * z\n    out[0] = f(1.0)"],
+    ["out[0] = settings.MASS", "out[0] = Box.SIDE.value", "f = lambda z: NUMBER * z\n    out[0] = f(1.0)"],
     ids=["attribute of a module", "member of an enumeration", "read by a function inside"],
 )
 def test_what_a_function_reads_in_other_places_is_noticed(load, tmp_path, monkeypatch, body):

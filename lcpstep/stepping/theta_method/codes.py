@@ -11,4 +11,3 @@ LOG_FULL, NEED_LCP = -1, -2  # empty the record; solve the problem at hand
 # Kinds of events
 IMPACT, STICK, RELEASE = int(Kind.IMPACT), int(Kind.STICK), int(Kind.RELEASE)
 MAX_ITERATIONS = 25  # of Newton, per step
-LATE = 1e-9  # of a step: what rounding may take from the last one's end
