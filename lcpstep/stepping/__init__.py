@@ -1,9 +1,8 @@
 """Time-stepping: impacts happen somewhere within a step, and complementarity problems decide how.
 
-moreau, theta            Moreau's theta-method: method and step; `newton` for nonlinear systems, `constrained`,
-`joints`, `friction` and `projection` for what a scene has besides contacts, `sparse`
-for large ones
-located, pieces          impacts at their own times: method, and the kernels of its steps
+moreau, moreau_run       Moreau's theta-method and a run of it; its steps are in `theta_method`, `sparse` has large ones
+constraints              what contacts, tangents and joints have in common as rows of a step
+located, pieces          impacts at their own times: method, and a run with its steps
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance`; `hidden_forces`,
-                         `hidden_switches`: what forces hide
+                         `hidden_switches`: what forces hide; `adaptive`, `adapted_run`: their runs
 """
