@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from types import FunctionType
 from typing import Any
 
-try:
-    from lcpstep.kernels.ready import FUNCTIONS  # type: ignore[import-not-found, unused-ignore]
+try:  # written and compiled when the package is built, see ready.py beside setup.py
+    FUNCTIONS: dict[tuple[str, str], tuple[Any, ...]] = import_module("lcpstep.kernels.ready").FUNCTIONS
 except ImportError:  # the library runs uncompiled
-    FUNCTIONS: dict[tuple[str, str], tuple[Any, ...]] = {}  # type: ignore[no-redef]
+    FUNCTIONS = {}
 
 
 def address(f: Any) -> int:
@@ -18,4 +19,5 @@ def address(f: Any) -> int:
     code, constants, names, numbers, found = FUNCTIONS[f.__module__, f.__name__]
     own = f.__code__
     same = (own.co_code, own.co_consts, own.co_names) == (code, constants, names)
-    return found if same and all(f.__globals__.get(name) == x for name, x in numbers.items()) else 0
+    same = same and all(f.__globals__.get(name) == x for name, x in numbers.items())
+    return int(found) if same else 0

@@ -152,18 +152,23 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
     from lcpstep.guarded import signature
 
     for g in fingerprint.reached(f):
-        unchecked = UNCHECKED & {name for code in fingerprint.codes(g.__code__) for name in code.co_names}
-        if unchecked:
+        if unchecked := UNCHECKED & _names(g):
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
         if any(g in fingerprint.reached(callee) for _, callee in fingerprint.callees(g)):
             raise _unfit(g, f"{g.__name__} calls itself")
+    prints = any("print" in _names(g) for g in fingerprint.reached(f))  # which makes arrays of its own
     try:
-        return _compiled(f, signature(takes - 2, ndim), nrt=False)
+        return _compiled(f, signature(takes - 2, ndim), nrt=prints)
     except Exception:  # numba's errors share no base class
         try:
             return _compiled(f, signature(takes - 2, ndim), nrt=True)
         except Exception as error:
             raise _explained(error, f.__code__) from error
+
+
+def _names(f: FunctionType) -> set[str]:
+    """Names of globals and attributes in the code of f."""
+    return {name for code in fingerprint.codes(f.__code__) for name in code.co_names}
 
 
 def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:

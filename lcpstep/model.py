@@ -54,17 +54,18 @@ def dense(name: str, matrix: Any) -> Array:
 
 def model(scene: Scene) -> kernels.Model:
     """The scene's model as kernels built ahead of time take it."""
-    return _models(scene, contacts=_contacts(scene, scene.contacts))[0]
+    return _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0]
 
 
 def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
     """Models of the contacts, joints and tangents of a scene, any of them empty."""
+    own = _system(scene)
     parts = {"contacts": _contacts(scene, scene.contacts)}
     if scene.n_j > 0:
         parts["joints"] = _joints(scene)
     if scene.contacts is not None and scene.contacts.friction is not None:
         parts["friction"] = _tangents(scene)
-    made = dict(zip(parts, _models(scene, **parts), strict=True))
+    made = dict(zip(parts, _models(scene, own, **parts), strict=True))
     nothing = _empty(scene.n_q)
     return made["contacts"], made.get("joints", nothing), made.get("friction", nothing)
 
@@ -79,17 +80,16 @@ def _empty(n_q: int) -> kernels.Model:
 
 def joint_model(scene: Scene) -> kernels.Model:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    return _models(scene, joints=_joints(scene))[0]
+    return _models(scene, _system(scene), joints=_joints(scene))[0]
 
 
 def tangent_model(scene: Scene) -> kernels.Model:
     """The scene's model with its contacts' tangents in the place of their normals; it knows no gap, only rates."""
-    return _models(scene, friction=_tangents(scene))[0]
+    return _models(scene, _system(scene), friction=_tangents(scene))[0]
 
 
-def _models(scene: Scene, **constraints: dict[str, Any]) -> list[kernels.Model]:
+def _models(scene: Scene, own: dict[str, Any], **constraints: dict[str, Any]) -> list[kernels.Model]:
     """A model for each kind of constraints, its functions C functions: compiled, or around Python."""
-    own = _system(scene)
     functions, called_back = c_functions(scene, system=own, **constraints)
     own |= functions["system"] | {"called_back": called_back}
     return [kernels.Model(own | rows | functions[part]) for part, rows in constraints.items()]

@@ -132,11 +132,15 @@ def test_a_changed_global_is_seen_by_the_next_run(monkeypatch):
 
 RUN = """
 import numpy as np
-from lagrangian import scenes
+from lagrangian import Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
 import sys
-made = scenes.cam_follower(t_end=0.1), scenes.bouncing_ball(t_end=1.0)
-for scene in made:
+
+def swing(t, q, v, p, out):
+    out[0] = -np.sin(q[0]) + np.cos(t)
+
+own = Scene(System(1, 1.0, swing), q0=1.0, v0=0.0, t_span=(0.0, 0.1))
+for scene in (scenes.cam_follower(t_end=0.1), scenes.bouncing_ball(t_end=1.0), own):
     for method in Moreau(1e-3), EventDriven():
         m = simulate(scene, method)
         print(*(x.hex() for x in m.at(0.09)[0]), len(m.t), len(m.impacts))

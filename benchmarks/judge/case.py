@@ -39,7 +39,7 @@ def judged(
     """
     endings, findings, reference = {}, [], None
     compared = d.length < LONG * d.h
-    methods = [x for x in methods if share == 1.0 or chance(d, x, 0).random() < WAYS[x].share]
+    methods = list(methods)
     with np.errstate(all="ignore"):
         for name in dict.fromkeys([REFERENCE, *methods]):
             if name in without:

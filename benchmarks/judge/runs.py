@@ -53,7 +53,6 @@ class Way:
     order: float  # at which its error goes down with the factor
     code: str  # what makes it, for the reproduction
     tolerance: float = 0.0
-    share: float = 1.0  # of the scenes that it is asked for: its loop over steps may be in plain Python
 
 
 N = MAX_EVENTS
@@ -70,14 +69,12 @@ WAYS = {
         1,
         "Located(8 * {h}, tolerance=1e-4)",
         1e-4,
-        0.3,
     ),
     "located-4-tolerance": Way(
         lambda h, f: Located(8 * h, 4, N, tolerance=1e-6 * f),
         1,
         "Located(8 * {h}, 4, tolerance=1e-6)",
         1e-6,
-        0.3,
     ),
     "moreau": Way(lambda h, f: Moreau(h * f), 1, "Moreau({h})"),
     "moreau-tolerance": Way(

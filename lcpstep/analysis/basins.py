@@ -109,8 +109,7 @@ def basins(
     study = _Study(scene, method, grid, targets, phase, longest)
     inputs = study.inputs(known)
     label, x = np.full(n_q * n_v, UNKNOWN), grid.centres(np.arange(n_q * n_v))
-    rest = np.arange(n_q * n_v)
-    landed: Any = np.zeros((n_q * n_v, 0), dtype=np.int32)
+    rest, landed = np.arange(n_q * n_v), np.zeros((n_q * n_v, 0), dtype=np.int64)
 
     def stage(name: str, work: Callable[..., Any], least: int) -> Arrays:
         size = max(least, -(-len(rest) // PARTS))
@@ -242,8 +241,9 @@ def spread(grid: Grid, cells: Ints, landed: Ints, label: Ints) -> None:
     small = label.astype(np.int16)  # a quarter of what has to be read again and again
     while len(cells):
         inner = np.append(homogeneous(small.reshape(grid.n_v, grid.n_q)).ravel(), np.int16(UNKNOWN))
-        fates = inner[landed]
-        fate = np.max(fates, axis=1)  # where several images are settled, they are on one attractor
+        fate = inner[landed[:, 0]]
+        for k in range(1, landed.shape[1]):  # where several images are settled, they are on one attractor
+            np.maximum(fate, inner[landed[:, k]], out=fate)
         settled = fate >= 0
         if not np.any(settled):
             return

@@ -89,14 +89,14 @@ class Run(ABC):
     def empty(self) -> None:
         """Move the buffers' contents to the recorder, but for the last row, whose step may still be to come."""
         record = self.recorder.record
-        last = max(record.row - 1, 0)
+        left, last = min(record.row, 1), max(record.row - 1, 0)
         self.recorder.empty(last, record.event)
         for kept in (
             self.recorder.rows,
             self.recorder.curves,
         ):  # or has been made, where the run ends at an event
             kept[:1] = kept[last : last + 1]
-        record.row, record.event = min(record.row, 1), 0
+        record.row, record.event = left, 0
 
     def trajectory(self, status: Status, message: str) -> Trajectory:
         """Everything computed so far."""

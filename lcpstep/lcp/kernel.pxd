@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.arrays cimport doubles
 from lcpstep.lcp.enumeration cimport enumerate_bases, enumerate_vertices
 from lcpstep.lcp.judge cimport judge, proves_infeasible
 from lcpstep.lcp.lemke cimport lemke

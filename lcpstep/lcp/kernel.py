@@ -11,11 +11,14 @@ answer is judged before it is called one, and a problem of a few unknowns is enu
 
 from __future__ import annotations
 
+from typing import Any
+
 import cython
 
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
 
 if not cython.compiled:
+    from lcpstep.arrays import doubles
     from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge, proves_infeasible
     from lcpstep.lcp.lemke import lemke
@@ -217,3 +220,8 @@ def choose_negative(b: Doubles, n: int, work: Workspace) -> bool:
         work.chosen[i] = 1 if b[i] < 0.0 else 0
         some = some or b[i] < 0.0
     return some
+
+
+def solve(W: Any, b: Any, z: Any, work: Workspace) -> int:
+    """`solve_small`, called from Python."""
+    return solve_small(doubles(W), doubles(b), doubles(z), len(b), work)

@@ -7,6 +7,7 @@ from lcpstep.pointers cimport abs, after, inf, max, min, nan, whole
 from lcpstep.stepping.hidden_forces cimport hidden, late
 from lcpstep.stepping.pieces.codes cimport BUFFER_FULL, CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners cimport find_corners
+from lcpstep.stepping.pieces.led cimport Led, copy_state
 from lcpstep.stepping.pieces.loop cimport Steps
 from lcpstep.stepping.pieces.smooth cimport invert
 from lcpstep.stepping.pieces.state cimport Plan, Work
@@ -15,21 +16,6 @@ from lcpstep.stepping.step_control cimport Control, stamp
 
 cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, OWN, ROWS, TRIALS
 cdef double EARLY, NEAR
-
-
-@cython.final
-cdef class Led:
-    cdef object kept
-    cdef Py_ssize_t code
-    cdef double time
-    cdef double* q
-    cdef double* v
-    cdef double* gap
-    cdef double* half
-    cdef double* force
-    cdef double* impulse
-    cdef Py_ssize_t* status
-    cdef bint good(self) noexcept nogil
 
 
 cdef class Attempts(Control):
@@ -48,7 +34,7 @@ cdef class Attempts(Control):
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed
-    @cython.locals(entire=bint, early=bint)
+    @cython.locals(entire=bint, early=bint, agreed=bint)
     cdef Py_ssize_t attempt(self) noexcept nogil
     @cython.locals(event_first=bint)
     cdef void weigh(self, double length) noexcept nogil
@@ -66,4 +52,3 @@ cdef class Attempts(Control):
     cdef double depth(self) noexcept nogil
     cdef void loads(self, double* force, double* impulse) noexcept nogil
     cdef double wrong(self, double length) noexcept nogil
-    cdef void copy_state(self, Work to, Work w) noexcept nogil

@@ -20,11 +20,12 @@ from lcpstep.stepping.step_control import Control
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.record import COLUMNS, LEAD
-    from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
+    from lcpstep.kernels.vectors import clear, copy, distance, largest
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan, whole
     from lcpstep.stepping.hidden_forces import hidden, late
     from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
     from lcpstep.stepping.pieces.corners import find_corners
+    from lcpstep.stepping.pieces.led import Led, copy_state
     from lcpstep.stepping.pieces.loop import Steps
     from lcpstep.stepping.pieces.smooth import invert
     from lcpstep.stepping.pieces.state import Plan
@@ -37,29 +38,6 @@ TRIALS = 4  # of a step whose event comes at another time
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 OWN = LEVELS + 2  # place of those of a part as long as none
 ROWS = 8  # that a step may keep besides the times asked for
-
-
-class Led:
-    """Where a run led.
-
-    code, time      why it ended, and when, since the start of the step
-    q, v            before an event there
-    gap, half       gaps, and halves of their accelerations over the piece
-    status          OPEN or CLOSED
-    force, impulse  over the piece, and since the start of the step, of contacts where some were closed
-    """
-
-    def __init__(self, n_q: int, n_c: int) -> None:
-        self.kept = np.zeros(2 * n_q + 4 * n_c), np.zeros(n_c, dtype=np.intp)
-        self.q, self.status = doubles(self.kept[0]), indices(self.kept[1])
-        self.v, self.gap = after(self.q, n_q), after(self.q, 2 * n_q)
-        self.half, self.force = after(self.gap, n_c), after(self.gap, 2 * n_c)
-        self.impulse = after(self.gap, 3 * n_c)
-        self.code, self.time = FINISHED, 0.0
-
-    def good(self) -> bool:
-        """Whether it could be taken."""
-        return self.code in (FINISHED, STOPPED)
 
 
 class Attempts(Control):
@@ -96,7 +74,8 @@ class Attempts(Control):
         self.saved, self.own_row = Work(w.n_q, w.n_c, w.joints), np.zeros(record.row_size)
         self.row = doubles(self.own_row)
         self.saved_row = self.saved_event = self.saved_time = 0
-        self.n_numbers, self.n_marks, self.n_matrices = len(w.numbers), len(w.marks), len(w.matrices)
+        self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
+        self.n_matrices = 0 if plan.constant else len(w.matrices)
         fields, places = plan.fields, OWN + 1 if plan.trapezoidal else 1
         self.matrices = [np.zeros((places, *np.shape(fields[name]))) for name in MATRICES]
         self.A_inverse, self.AG = doubles(self.matrices[0]), doubles(self.matrices[1])
@@ -132,10 +111,11 @@ class Attempts(Control):
         """One step, then two halves of it, both up to the first event; the last code of the loop."""
         self.from_time, self.to_time, self.h = self.base(), self.goal(), self.step_size(self.level)
         start, end, until = self.into, self.ends(), inf
-        entire = end == self.h
+        entire, agreed = end == self.h, False
         for _ in range(TRIALS):
             self.compare(start, end, entire, until)
-            if self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0:
+            agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
+            if agreed:
                 break
             self.restore()
             until = self.two.time
@@ -147,6 +127,9 @@ class Attempts(Control):
         self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
         if not self.full:
             self.weigh(end - start)
+        self.failed = (
+            self.failed or not agreed
+        )  # about the time of the event: the motion is back at its start
         self.cut = inf if entire and self.two.code == FINISHED else self.w.sigma
         return REACHED if self.two.good() else self.two.code
 
@@ -316,7 +299,7 @@ class Attempts(Control):
 
     def store(self) -> None:
         """Keep the state at the start of a step, and the last row."""
-        self.copy_state(self.saved, self.w)
+        copy_state(self.saved, self.w, self.n_numbers, self.n_marks, self.n_matrices)
         self.saved_row, self.saved_event, self.saved_time = (
             self.record.row,
             self.record.event,
@@ -330,7 +313,7 @@ class Attempts(Control):
     def restore(self) -> None:
         """Go back to the start of the step; work that was done stays counted."""
         self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
-        self.copy_state(self.w, self.saved)
+        copy_state(self.w, self.saved, self.n_numbers, self.n_marks, self.n_matrices)
         self.record.row, self.record.event, self.record.next_time = (
             self.saved_row,
             self.saved_event,
@@ -342,16 +325,3 @@ class Attempts(Control):
     def accept(self) -> None:
         """The step stands."""
         self.w.under_way = False
-
-    def copy_state(self, to: Work, w: Work) -> None:
-        """All of a motion's state."""
-        copy(to.q, w.q, self.n_numbers)
-        copy_indices(to.status, w.status, self.n_marks)
-        if not self.plan.constant:
-            copy(to.G, w.G, self.n_matrices)
-        to.sigma, to.end, to.low, to.high = w.sigma, w.end, w.low, w.high
-        to.stalled, to.settled, to.ahead, to.blind, to.goal = w.stalled, w.settled, w.ahead, w.blind, w.goal
-        to.under_way, to.unchanged, to.touching, to.pausing = w.under_way, w.unchanged, w.touching, w.pausing
-        to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
-        to.steps, to.lcp_calls, to.force_evaluations = w.steps, w.lcp_calls, w.force_evaluations
-        to.events_left, to.cut, to.members, to.idle = w.events_left, w.cut, w.members, w.idle

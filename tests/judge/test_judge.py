@@ -106,7 +106,8 @@ def test_a_disturbed_scene_keeps_what_is_closed():
 
 
 def test_a_run_without_end_is_reported_and_the_rest_goes_on():
-    (answer,) = answers([(7, BALL)], ["event-driven"], 1, limit=1e-4)
+    elastic = replace(BALL, restitution=1.0, q0=(1e-3,), v0=(0.0,), t_span=(0.0, 900.0))
+    (answer,) = answers([(7, elastic)], ["event-driven"], 1, limit=1e-3)
     assert answer.index == 7
     assert answer.endings == {"event-driven": "hang"}
     assert kinds(answer.findings) == {"hang"}

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep.dynamics import gap_rates, gaps
+from lcpstep.kernels import states
 from lcpstep.model import joint_model, tangent_model
 
 
@@ -28,33 +28,28 @@ def scene(**kw):
     )
 
 
+def at(t, q):
+    return np.array([t]), np.array([q]), np.array([[0.2, -0.3]])
+
+
 def test_joints_are_evaluated_as_contacts_are():
     s = scene(joints=Joints(1, rod, rod_jacobian))
-    m, _ = joint_model(s)
-    g, G, g_t = np.ones(1), np.ones((1, 2)), np.ones(1)
     assert s.n_j == 1
-    plain = m._replace(gap=rod, jacobian=rod_jacobian)
-    gaps(plain, 0.0, np.array([0.6, 0.9]), np.zeros(2), g)
-    gap_rates(plain, 0.0, np.array([0.6, 0.9]), np.zeros(2), G, g_t)
-    assert g[0] == pytest.approx(0.5 * (0.36 + 0.81 - 1.0))
-    assert G.tolist() == [[0.6, 0.9]]
-    assert g_t[0] == 0.0
+    m = joint_model(s)
+    low, high = states.extremes(m, *at(0.0, [0.6, 0.9]))
+    assert low[0] == high[0] == pytest.approx(0.5 * (0.36 + 0.81 - 1.0))
+    assert states.own_rates(m, *at(0.0, [0.6, 0.9]), True)[0, 0] == pytest.approx(0.6 * 0.2 - 0.9 * 0.3)
+    assert states.own_rates(m, *at(0.0, [0.6, 0.9]), False)[0, 0] == 0.0
 
 
 def test_tangents_are_evaluated_as_rates_are():
     contacts = LinearContacts([[0.0, 1.0]], friction=Coulomb(0.3, [[1.0, 0.0]], slip=-2.0))
-    m, _ = tangent_model(scene(contacts=contacts))
-    G, g_t = np.ones((1, 2)), np.ones(1)
-    gap_rates(m, 0.0, np.zeros(2), np.zeros(2), G, g_t)
-    assert G.tolist() == [[1.0, 0.0]]
-    assert g_t[0] == -2.0
-    m, _ = tangent_model(
-        scene(contacts=LinearContacts([[0.0, 1.0]], friction=Coulomb(0.3, slope, slip=belt)))
-    )
-    plain = m._replace(jacobian=slope, gap_t=belt)
-    gap_rates(plain, 0.5, np.zeros(2), np.zeros(2), G, g_t)
-    assert G.tolist() == [[1.0, 0.0]]
-    assert g_t[0] == -1.0
+    m = tangent_model(scene(contacts=contacts))
+    assert states.own_rates(m, *at(0.0, [0.0, 0.0]), False)[0, 0] == -2.0
+    assert states.own_rates(m, *at(0.0, [0.0, 0.0]), True)[0, 0] == 0.2 - 2.0
+    m = tangent_model(scene(contacts=LinearContacts([[0.0, 1.0]], friction=Coulomb(0.3, slope, slip=belt))))
+    assert states.own_rates(m, *at(0.5, [0.0, 0.0]), False)[0, 0] == -1.0
+    assert states.own_rates(m, *at(0.5, [0.0, 0.0]), True)[0, 0] == 0.2 - 1.0
 
 
 @pytest.mark.parametrize(

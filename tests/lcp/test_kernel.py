@@ -1,11 +1,10 @@
-"""The entry for steppers: called from compiled code, on one set of work arrays, without allocation."""
+"""The entry for steppers, on one set of work arrays, without allocation."""
 
 import numpy as np
 import pytest
-from lcpstep.compiled import call_solver, compiled, jit_disabled
 
-from lcpstep.lcp import Status, residual, solve_lcp, solve_lcp_batch
-from lcpstep.lcp.kernel import room, solve, solver
+from lcpstep.lcp import Status, residual, solve_lcp
+from lcpstep.lcp.kernel import solve
 from lcpstep.lcp.workspace import Workspace
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built, kernels
@@ -13,21 +12,13 @@ from tests.uncompiled import copy_without_what_is_built, kernels
 plain = kernels()
 
 
-def repeat(f, W, b, z, status, work):
-    """A kernel that solves one problem after the other."""
-    for i in range(b.shape[0]):
-        status[i] = call_solver(f, W[i], b[i], z[i], work)
-
-
 def test_one_workspace_serves_every_smaller_size():
-    fast, rng = not jit_disabled(), np.random.default_rng(0)
-    work = room(30, fast)
+    rng, work = np.random.default_rng(0), Workspace(30)
     for n in (30, 1, 7, 2, 3, 30):
         G = rng.normal(size=(20, n, n))
-        W, b, z, status = G @ G.swapaxes(1, 2), rng.normal(size=(20, n)), np.zeros((20, n)), np.ones(20, int)
+        W, b, z = G @ G.swapaxes(1, 2), rng.normal(size=(20, n)), np.zeros((20, n))
         before = W.copy(), b.copy()
-        compiled(repeat)(solver(fast), W, b, z, status, work)
-        assert not status.any()
+        assert not any(solve(*problem, work) for problem in zip(W, b, z, strict=True))
         assert max(residual(*problem) for problem in zip(W, b, z, strict=True)) <= 1e-13
         assert np.array_equal(W, before[0])
         assert np.array_equal(b, before[1])
@@ -79,15 +70,6 @@ def test_the_same_source_runs_as_plain_python_to_the_last_bit():
         assert status == solve(W, b, expected, other)
         assert z.tobytes() == expected.tobytes()
         assert (work.iterations, work.residual) == (other.iterations, other.residual)
-
-
-@pytest.mark.skipif(disabled(), reason="nothing is compiled by numba")
-def test_compiled_steps_call_a_solver_that_is_not_built():
-    G = np.random.default_rng(2).normal(size=(5, 4, 4))
-    W, b, z, status = G @ G.swapaxes(1, 2), G[:, 0].copy(), np.zeros((5, 4)), np.ones(5, int)
-    compiled(repeat)(plain.kernel.solver(True), W, b, z, status, plain.kernel.room(4, True))
-    assert not status.any()
-    np.testing.assert_array_equal(z, solve_lcp_batch(W, b).z)
 
 
 NOTHING_BUILT = """

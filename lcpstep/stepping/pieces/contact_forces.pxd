@@ -11,6 +11,7 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport release, release_time, stick, turn
 
 cdef bint hold(Model m, Plan plan, Work w, Record record, Py_ssize_t place, double t) noexcept nogil
+cdef Py_ssize_t answered(Plan plan, Work w, Py_ssize_t place) noexcept nogil
 @cython.locals(closed=bint)
 cdef Py_ssize_t choose_resting(Work w) noexcept nogil
 cdef double leaving(Model m, Work w, double* W, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil

@@ -37,9 +37,10 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
     for c in range(w.n_c):
         w.fall[c] = 0.0
     rest = w.end - w.sigma
-    W = after(plan.WA, place * w.n_c * w.n_c) if plan.constant else w.W
-    MG = after(plan.AG, place * w.n_c * w.n_q) if plan.constant else w.MG
-    if not solve_chosen(m, plan, w, W, place if plan.constant else INERTIA, n_k):
+    place = answered(plan, w, place)
+    W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
+    MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
+    if not solve_chosen(m, plan, w, W, place, n_k):
         return False
     for i in range(n):
         w.a_try[i] = abs(w.free[i])
@@ -68,6 +69,25 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
         w.older[c], w.older_time[c] = force, t + 0.5 * rest
         w.force_now[c] = force
     return True
+
+
+def answered(plan: Plan, w: Work, place: int) -> int:
+    """Place of the matrices by which accelerations answer contact forces over a piece, at the normals at hand.
+
+    They are those of the trapezoidal rule: a force changes the velocity that damping answers within the piece.
+    """
+    if plan.constant:
+        return place
+    if not (plan.trapezoidal and plan.stiff):
+        return INERTIA
+    n, n_c, inverse = w.n_q, w.n_c, after(plan.A_inverse, place * w.n_q * w.n_q)
+    AG, WA = after(plan.AG, place * n_c * n), after(plan.WA, place * n_c * n_c)
+    for c in range(n_c):
+        for i in range(n):
+            AG[c * n + i] = product(inverse, after(w.G, c * n), i, n)
+        for d in range(n_c):
+            WA[d * n_c + c] = product(w.G, after(AG, c * n), d, n)
+    return place
 
 
 def choose_resting(w: Work) -> int:
@@ -121,9 +141,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
     A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
     forces over the piece do: damping answers them.
     """
-    place, n_k = w.made_with if plan.constant else INERTIA, 0
-    W = after(plan.WA, place * w.n_c * w.n_c) if plan.constant else w.W
-    MG = after(plan.AG, place * w.n_c * w.n_q) if plan.constant else w.MG
+    n_k = 0
     for c in range(w.n_c):
         if w.status[c] == CLOSED:
             w.chosen[n_k] = c
@@ -132,6 +150,9 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
             n_k += 1
     if n_k == 0:
         return True
+    place = answered(plan, w, w.made_with)
+    W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
+    MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
     if not solve_chosen(m, plan, w, W, place, n_k):
         return False
     for k in range(n_k):

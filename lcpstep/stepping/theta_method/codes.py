@@ -1,4 +1,4 @@
-"""Why the loop of the theta-method returned: a status of the run, or what Python is to do before it goes on."""
+"""Why the loop of the theta-method returned, as Python sees it: a status of the run, or what is to be done first."""
 
 from __future__ import annotations
 

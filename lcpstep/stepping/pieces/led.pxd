@@ -1,0 +1,26 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.vectors cimport copy, copy_indices
+from lcpstep.pointers cimport after
+from lcpstep.stepping.pieces.codes cimport FINISHED, STOPPED
+from lcpstep.stepping.pieces.state cimport Work
+
+
+@cython.final
+cdef class Led:
+    cdef object kept
+    cdef Py_ssize_t code
+    cdef double time
+    cdef double* q
+    cdef double* v
+    cdef double* gap
+    cdef double* half
+    cdef double* force
+    cdef double* impulse
+    cdef Py_ssize_t* status
+    cdef bint good(self) noexcept nogil
+
+
+cdef void copy_state(
+    Work to, Work w, Py_ssize_t n_numbers, Py_ssize_t n_marks, Py_ssize_t n_matrices
+) noexcept nogil
