@@ -8,8 +8,8 @@ from lcpstep.kernels.dynamics cimport gaps
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs
 
-cdef Py_ssize_t MEETS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
-cdef double NONE
+cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
+cdef double NONE, NEVER
 
 cdef double first_event(Mechanism s, double a, double b) noexcept nogil
 cdef double first_contact(

@@ -21,9 +21,9 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
 
-MEETS, OPENS, NEVER_LEFT = range(3)  # what a contact does
+MEETS, LANDS, OPENS, NEVER_LEFT = range(4)  # what a contact does
 GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
-NONE = -1.0  # in place of a root's time
+NONE, NEVER = -1.0, -2.0  # in place of a root's time: not known; there is none
 MAX_ITERATIONS = 100
 
 
@@ -31,7 +31,7 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
     """First contact that closes or opens in (a, b], or NONE.
 
     The left end is in `left`; the right end has just been observed and goes into `right`. Which contact, and what it
-    does (MEETS, OPENS, NEVER_LEFT), into `event_contact` and `event_kind`.
+    does (MEETS, LANDS, OPENS, NEVER_LEFT), into `event_contact` and `event_kind`.
     """
     found, noise = NONE, multiplier_noise(s)
     copy(s.right.gap, s.contact.gap, 4 * s.n_c)  # what is observed now will be overwritten
@@ -42,6 +42,9 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
             if right < -noise and s.contact.held_until[c] < s.t0 + b:
                 kind = OPENS
                 tau = a if left <= 0.0 else root(s, MULTIPLIER, c, a, left, b, right)
+        elif s.contact.lands[c] != NONE:
+            if a < s.contact.lands[c] <= b:
+                tau, kind = s.contact.lands[c], LANDS
         else:
             left_end = (s.left.gap[c], s.left.speed[c], s.left.curve[c])
             right_end = (s.right.gap[c], s.right.speed[c], s.right.curve[c])

@@ -40,6 +40,7 @@ cdef class Contacts(Rows):
     cdef double* terms
     cdef double* turn_speed
     cdef double* synchronous
+    cdef double* lands
     cdef double* b
     cdef double* z
     cdef double* noise
@@ -47,6 +48,7 @@ cdef class Contacts(Rows):
     cdef Py_ssize_t* closed
     cdef Py_ssize_t* was_closed
     cdef Py_ssize_t* loaded
+    cdef Py_ssize_t* carried
 
 
 cdef class Mechanism(Clock):
@@ -55,7 +57,7 @@ cdef class Mechanism(Clock):
     cdef readonly RungeKutta smooth
     cdef readonly Contacts contact
     cdef Rows joint
-    cdef Seen left, right
+    cdef Seen start, left, right
     cdef Workspace lcp
     cdef readonly bint constant
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit

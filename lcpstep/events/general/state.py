@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
-ROWS, CONTACTS, MARKS = 5, 13, 4  # numbers per row, per contact besides, and marks of a contact
+ROWS, CONTACTS, MARKS = 5, 14, 5  # numbers per row, per contact besides, and marks of a contact
 MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
 NOISE = 64 * RESOLUTION
 
@@ -70,9 +70,11 @@ class Contacts(Rows):
     terms             size of the terms of a gap velocity, at the impacts of one instant
     turn_speed        speed a number of impacts ago
     synchronous       whether gap and speed are those of q, v
+    lands             when a short hop ends after the base time; see `hops`
     b, z, noise       by member: right-hand side and solution of the problem, rounding of b
     member            contacts of the problem
     closed, was_closed, loaded   lasting contact; so when last told; carries a force
+    carried                      the gap at the base time is known better than by q
     """
 
     def __init__(self, n: int) -> None:
@@ -88,13 +90,15 @@ class Contacts(Rows):
         self.terms = after(self.owed_until, n)
         self.turn_speed = after(self.terms, n)
         self.synchronous = after(self.turn_speed, n)
-        self.b = after(self.synchronous, n)
+        self.lands = after(self.synchronous, n)
+        self.b = after(self.lands, n)
         self.z = after(self.b, n)
         self.noise = after(self.z, n)
         self.member = indices(self.marks)
         self.closed = indices_after(self.member, n)
         self.was_closed = indices_after(self.closed, n)
         self.loaded = indices_after(self.was_closed, n)
+        self.carried = indices_after(self.loaded, n)
         for c in range(n):
             self.struck[c] = self.held_until[c] = self.chatter_end[c] = -inf
 
@@ -127,6 +131,7 @@ class Mechanism(Clock):
     q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
     a_free, force     acceleration M^-1 f without contacts and joints, f
     contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
+    start             of contacts at the base time of a step
     R, MR : (n_r, n_q)  rows of joints (first) and contacts, rows M^-1 R^T
     D, L : (n_r, n_r)   Delassus matrix R M^-1 R^T, Cholesky factor of the rows held
     row, held         rows held, their multipliers;  n_held, n_held_joints  how many
@@ -194,7 +199,7 @@ class Mechanism(Clock):
         self.row = indices(self.lists)
         self.kept = indices_after(self.row, r)
         self.contact, self.joint = Contacts(n_c), Rows(n_j)
-        self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Workspace(n_c)
+        self.start, self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Seen(n_c), Workspace(n_c)
         self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
         self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
         for i in range(n):

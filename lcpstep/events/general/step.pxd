@@ -1,24 +1,23 @@
 cimport cython
-from lcpstep.events.general.earliest cimport MEETS, NONE, OPENS, first_event, observe, remember
+from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, remember
 from lcpstep.events.general.equations cimport measure, measure_on
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project
+from lcpstep.events.general.hops cimport carry, find_landings, reach_corner, shortest_hop, speed_at
 from lcpstep.events.general.keep cimport keep, keep_wanted, store_dense
 from lcpstep.events.general.motion cimport lift, press_between, rebase
-from lcpstep.events.general.parabolas cimport hop
 from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, inf, min
+from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, REFINEMENTS
 cdef double LOOK_AHEAD
 
 cdef Py_ssize_t step(Mechanism s) noexcept nogil
 cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
-cdef double shortest_hop(Mechanism s) noexcept nogil
 cdef void make_dense(Mechanism s, double tau) noexcept nogil
 cdef double shorten(Mechanism s, Py_ssize_t c, double tau, Py_ssize_t kind) noexcept nogil
 @cython.locals(solved=bint)

@@ -8,19 +8,28 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.events.general.earliest import MEETS, NONE, OPENS, first_event, observe, remember
+    from lcpstep.events.general.earliest import (
+        LANDS,
+        MEETS,
+        NEVER_LEFT,
+        NONE,
+        OPENS,
+        first_event,
+        observe,
+        remember,
+    )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_again, note, parted, project
+    from lcpstep.events.general.hops import carry, find_landings, reach_corner, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted, store_dense
     from lcpstep.events.general.motion import lift, press_between, rebase
-    from lcpstep.events.general.parabolas import hop
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, inf, min
+    from lcpstep.pointers import abs, min
 
 PARTS = 4  # scan intervals of a step
 REFINEMENTS = 3  # of an event's time by repeated steps
@@ -30,11 +39,13 @@ LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 def step(s: Mechanism) -> int:
     """One DOP853 step, and the first event within it; `complete` takes it over."""
     remember(s)
+    copy(s.start.gap, s.contact.gap, 4 * s.n_c)
     longest = min(s.t_end, s.high) - s.t0
     code = s.smooth.take_step(s.t0, min(min(longest, s.scan), 4.0 * shortest_hop(s)), s.scan)
     if code != DONE:
         return code
     h = s.length = s.smooth.length
+    find_landings(s, h)
     tau, a = NONE, 0.0
     for part in range(1, PARTS + 1):
         if tau == NONE and s.n_c > 0:
@@ -52,14 +63,17 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
     """Take over the step that has just been made, which ends early if an event was found in it."""
     border, h, tau, end = min(s.t_end, s.high), s.length, s.found, s.seen_to
     if tau == NONE:
+        reach_corner(s, h)
         t_next = border if h >= border - s.t0 else s.after(h)
         take_over(s, record, tally, t_next, h)
         return pass_end(s, record, tally)
-    c, kind = s.event_contact, s.event_kind
+    c, kind, u = s.event_contact, s.event_kind, 0.0
     if kind == OPENS and not look_ahead(s, c, tau, end):
         return NO_FORCES
     if tau > 0.0:
         tau = shorten(s, c, tau, kind)
+    if kind == LANDS:
+        u = speed_at(s, c, tau)
     take_over(s, record, tally, min(s.after(tau), border), tau)
     if not measure_on(s, s.t0):
         return NOT_FINITE
@@ -68,19 +82,11 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         return DONE
     s.next = JUMP
     lift(s, c)
-    if kind != MEETS:
+    if kind == LANDS:
+        s.contact.speed[c] = min(u, 0.0)
+    elif kind == NEVER_LEFT:
         s.contact.speed[c], s.contact.closed[c], s.contact.held_until[c] = 0.0, 1, s.t0 + end
     return DONE
-
-
-def shortest_hop(s: Mechanism) -> float:
-    """Duration of the shortest hop that has just begun, were its acceleration constant."""
-    shortest = inf
-    for c in range(s.n_c):
-        u, alpha = s.contact.speed[c], s.contact.curve[c]
-        if s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0 and u > 0.0 and alpha < 0.0:
-            shortest = min(shortest, hop(u, alpha))
-    return shortest
 
 
 def make_dense(s: Mechanism, tau: float) -> None:
@@ -150,6 +156,7 @@ def pass_end(s: Mechanism, record: Record, tally: Tally) -> int:
     """Go on beyond the end of a step without an event, with the same rows held."""
     if not measure_on(s, s.t0):
         return NOT_FINITE
+    carry(s)
     s.culprit = parted(s)
     if s.culprit >= 0:
         return JOINTS_FAILED

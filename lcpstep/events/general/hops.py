@@ -1,0 +1,192 @@
+"""Short hops of contacts of a Runge-Kutta step, as kernels: followed by the gap acceleration, not by the gap.
+
+    g = g0 + u0 tau + tau^2 int_0^1 (1 - x) alpha(x tau) dx,      u = u0 + tau int_0^1 alpha(x tau) dx
+
+A hop as low as the rounding of positions is lost in their difference, and with it the end of a chattering sequence,
+which is where the hops before put it. So the landing of a hop that starts on the surface is sought in the integrals;
+a low one that crosses a corner goes on beyond it from the gap and the speed that they give there.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from math import pow, sqrt
+
+    from lcpstep.events.general.earliest import NEVER, NONE, observe
+    from lcpstep.events.general.parabolas import first_root, hop
+    from lcpstep.events.general.state import Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import largest
+    from lcpstep.pointers import abs, inf, max, min, nan
+
+# Gauss' nodes on [0, 1], and weights, the same for the outer and for the inner two
+NODE_0, NODE_1, NODE_2, NODE_3 = (
+    0.06943184420297371,
+    0.33000947820757187,
+    0.6699905217924281,
+    0.9305681557970263,
+)
+OUTER, INNER = 0.17392742256872692, 0.32607257743127307
+# What the quadrature leaves of the first power that it does not integrate, x^8: (4!)^4 / (9 (8!)^2)
+REMAINDER = 331776.0 / (9.0 * 1625702400.0)
+LONGER = 3.0  # how much longer than under constant acceleration a hop may last
+SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
+LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
+STEADY = 1e-9  # of the velocities: a gap velocity that changes by more at a corner does not do so by rounding
+MAX_ITERATIONS = 60
+
+
+def find_landings(s: Mechanism, h: float) -> None:
+    """When the hops that have just begun land within the step of size h, into `lands`."""
+    for c in range(s.n_c):
+        s.contact.lands[c], s.contact.carried[c] = landing(s, c, h), 0
+
+
+def landing(s: Mechanism, c: int, h: float) -> float:
+    """When contact c lands within the step, NEVER if it does not, or NONE if the gap itself is to be looked at."""
+    guess = hop_time(s, c, s.start.gap[c], s.start.speed[c], s.start.curve[c])
+    low = guess < inf and is_low(s, c, h)
+    if not low and not guess < h:
+        return NONE
+    longest = min(LONGER * guess, h)
+    tau = low_hop(s, c, guess, longest) if s.start.gap[c] > 0.0 else short_hop(s, c, guess, longest)
+    return NEVER if low and tau == NONE else tau
+
+
+def shortest_hop(s: Mechanism) -> float:
+    """Duration of the shortest hop that has just begun, were its acceleration constant."""
+    shortest = inf
+    for c in range(s.n_c):
+        shortest = min(shortest, hop_time(s, c, s.contact.gap[c], s.contact.speed[c], s.contact.curve[c]))
+    return shortest
+
+
+def hop_time(s: Mechanism, c: int, g: float, u: float, alpha: float) -> float:
+    """Duration of the hop of contact c that begins so at the base, were alpha constant; infinite if none does."""
+    if s.contact.closed[c] == 1 or not alpha < 0.0:
+        return inf
+    if g == 0.0:
+        return hop(u, alpha) if u > 0.0 else inf
+    return first_root(g, u, alpha) if s.contact.carried[c] == 1 else inf
+
+
+def is_low(s: Mechanism, c: int, h: float) -> bool:
+    """Whether a hop that is pressed stays low up to the corner at which the step of size h ends."""
+    if h > SHORT * s.scan or h < s.high - s.t0:
+        return False
+    highest = s.start.gap[c] + h * (abs(s.start.speed[c]) + 0.5 * h * abs(s.start.curve[c]))
+    return highest <= LOW * largest(s.q0, 0.0, s.n_q)
+
+
+def short_hop(s: Mechanism, c: int, guess: float, longest: float) -> float:
+    """End of a hop that left the surface at the base, or NONE if it is longer than `longest`: (g - g0) / tau = 0.
+
+    NONE as well where the acceleration changes too much for the quadrature: such hops are seen in the gap itself.
+    """
+    a, b = 0.0, longest
+    f, u, exact = follow(s, c, b)
+    if f > 0.0:
+        return NONE
+    x = min(guess, b)
+    for _ in range(MAX_ITERATIONS):
+        f, u, exact = follow(s, c, x)
+        if not exact:
+            return NONE
+        if f > 0.0:
+            a = x
+        else:
+            b = x
+        slope = (u - f) / x  # of g / tau
+        x_new = x - f / slope if slope != 0.0 else a
+        if not (a <= x_new <= b):
+            x_new = 0.5 * (a + b)
+        if abs(x_new - x) <= 2.0 * RESOLUTION * x:
+            return x_new
+        x = x_new
+    return x
+
+
+def low_hop(s: Mechanism, c: int, guess: float, longest: float) -> float:
+    """End of a hop that begins with a gap g0 at the base, or NONE if it is longer: Newton's method for g / tau."""
+    x, g0 = guess, s.start.gap[c]
+    for _ in range(MAX_ITERATIONS):
+        if not 0.0 < x <= longest:
+            return NONE
+        f, u, _ = follow(s, c, x)
+        f += g0 / x
+        slope = (u - f) / x
+        if not slope < 0.0:
+            return NONE
+        change = -f / slope
+        x = max(x + change, 0.1 * x)
+        if abs(change) <= 2.0 * RESOLUTION * x:
+            break
+    return x
+
+
+def follow(s: Mechanism, c: int, tau: float) -> tuple[float, float, bool]:
+    """(g - g0) / tau and u at tau after the base, and whether they are as good as rounding leaves the gap itself.
+
+    The integrals are of alpha less its value at the base, so that equal hops under constant acceleration stay equal
+    to the last digit.
+    """
+    alpha = s.start.curve[c]
+    d0, d1 = change_of_curve(s, c, NODE_0 * tau), change_of_curve(s, c, NODE_1 * tau)
+    d2, d3 = change_of_curve(s, c, NODE_2 * tau), change_of_curve(s, c, NODE_3 * tau)
+    mean = alpha + (OUTER * (d0 + d3) + INNER * (d1 + d2))
+    outer, inner = (1.0 - NODE_0) * d0 + (1.0 - NODE_3) * d3, (1.0 - NODE_1) * d1 + (1.0 - NODE_2) * d2
+    weighted = 0.5 * alpha + (OUTER * outer + INNER * inner)
+    most = max(abs(alpha), max(max(abs(alpha + d0), abs(alpha + d1)), max(abs(alpha + d2), abs(alpha + d3))))
+    left = tau * tau * REMAINDER * eighth_power(d0 / NODE_0, d1 / NODE_1, d2 / NODE_2, d3 / NODE_3, most)
+    u0 = s.start.speed[c]
+    exact = left <= RESOLUTION * max(largest(s.q0, 0.0, s.n_q), u0 * tau)
+    return u0 + tau * weighted, u0 + tau * mean, exact
+
+
+def speed_at(s: Mechanism, c: int, tau: float) -> float:
+    """The gap velocity that a hop of contact c has at tau after the base."""
+    return follow(s, c, tau)[1]
+
+
+def change_of_curve(s: Mechanism, c: int, tau: float) -> float:
+    """By how much the gap acceleration at tau after the base differs from that at the base."""
+    return s.contact.curve[c] - s.start.curve[c] if observe(s, tau) else nan
+
+
+def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> float:
+    """Estimate of the coefficient of x^8 in a function of size `most`; d: its change over x, at the nodes.
+
+    Coefficients fall like powers of one ratio, which is the largest that those of x^2, x^3 and x^4 show.
+    """
+    d01, d12, d23 = (
+        (d1 - d0) / (NODE_1 - NODE_0),
+        (d2 - d1) / (NODE_2 - NODE_1),
+        (d3 - d2) / (NODE_3 - NODE_2),
+    )
+    d02, d13 = (d12 - d01) / (NODE_2 - NODE_0), (d23 - d12) / (NODE_3 - NODE_1)
+    c4 = (d13 - d02) / (NODE_3 - NODE_0)
+    c3 = d02 - c4 * (NODE_0 + NODE_1 + NODE_2)
+    c2 = d01 - (NODE_0 + NODE_1) * d02 + c4 * (NODE_0 * NODE_1 + NODE_0 * NODE_2 + NODE_1 * NODE_2)
+    if most == 0.0:
+        return 0.0
+    ratio = max(sqrt(abs(c2) / most), max(pow(abs(c3) / most, 1.0 / 3.0), pow(abs(c4) / most, 0.25)))
+    return most * pow(ratio, 8.0)
+
+
+def reach_corner(s: Mechanism, h: float) -> None:
+    """Gaps and speeds of the low hops at the corner that ends the step, into `right`."""
+    for c in range(s.n_c):
+        if s.contact.lands[c] == NEVER:
+            f, u, _ = follow(s, c, h)
+            s.right.gap[c], s.right.speed[c] = s.start.gap[c] + f * h, u
+
+
+def carry(s: Mechanism) -> None:
+    """Beyond the corner low hops go on from what `reach_corner` has found, unless the surface jumps there."""
+    for c in range(s.n_c):
+        u = s.right.speed[c]
+        steady = abs(s.contact.speed[c] - u) <= STEADY * largest(s.v, 1.0, s.n_q)
+        if s.contact.lands[c] == NEVER and s.right.gap[c] > 0.0 and steady:
+            s.contact.gap[c], s.contact.speed[c], s.contact.carried[c] = s.right.gap[c], u, 1
