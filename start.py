@@ -34,10 +34,10 @@ def main(arguments: list[str]) -> int:
         sys.exit(f"lcpstep needs Python 3.11 or newer; this is {sys.version.split()[0]}")
     if arguments not in ([], ["test"]):
         sys.exit(__doc__)
+    set_up()
     if not arguments:
-        set_up(".")
         return subprocess.call([BIN / "lcpstep", "compare", "cam-follower"], cwd=ROOT)
-    set_up(".[test]")
+    set_up_checks()
     for check in CHECKS:
         print("==", *check, flush=True)
         status = subprocess.call([BIN / check[0], *check[1:]], cwd=ROOT)
@@ -46,21 +46,51 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def set_up(what: str) -> None:
-    """Make the virtual environment and install the project into it, unless that has been done."""
-    wanted = hashlib.sha256(
-        b"".join((ROOT / f).read_bytes() for f in ("pyproject.toml", "setup.py"))
-    ).hexdigest()
-    done = ENVIRONMENT / f"installed{what.strip('.')}"
-    if done.exists() and done.read_text() == wanted:
+def set_up() -> None:
+    """Make the virtual environment and install the project into it, unless that has been done with these sources."""
+    if is_done("installed", "pyproject.toml", "setup.py", "ready.py", *kernels()):
         return
-    print("setting up .venv; this takes a minute", flush=True)
+    print("setting up .venv, and building; this takes two or three minutes", flush=True)
     if os.name != "nt" and "CC" not in os.environ and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
-    install("--quiet", "--editable", what)
-    done.write_text(wanted)
+    install("--quiet", "--editable", ".")
+    note_done("installed", "pyproject.toml", "setup.py", "ready.py", *kernels())
+
+
+def set_up_checks() -> None:
+    """Install what the checks need beside the project."""
+    import tomllib
+
+    if is_done("checks", "pyproject.toml"):
+        return
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    install("--quiet", *project["optional-dependencies"]["test"])
+    note_done("checks", "pyproject.toml")
+
+
+def kernels() -> list[str]:
+    """Files from which machine code is built."""
+    headers = sorted(ROOT.glob("lcpstep/**/*.pxd")) + sorted(ROOT.glob("lcpstep/**/*.h"))
+    files = {file for header in headers for file in (header, header.with_suffix(".py")) if file.exists()}
+    return sorted(str(file.relative_to(ROOT)) for file in files)
+
+
+def is_done(what: str, *files: str) -> bool:
+    """Whether that has been done with files of these contents."""
+    note = ENVIRONMENT / what
+    return note.exists() and note.read_text() == digest(*files)
+
+
+def note_done(what: str, *files: str) -> None:
+    """Remember it."""
+    (ENVIRONMENT / what).write_text(digest(*files))
+
+
+def digest(*files: str) -> str:
+    """A checksum of files."""
+    return hashlib.sha256(b"".join((ROOT / file).read_bytes() for file in files)).hexdigest()
 
 
 def install(*arguments: str) -> None:
