@@ -21,8 +21,8 @@ def drag(t, q, v, p, out):
     out[0] = -9.81 - 0.3 * v[0]
 
 ball = Scene(
-    system=System(1, 1.0, drag), q0=[0.01], v0=[0.0], t_span=(0.0, 0.16), contacts=LinearContacts(1.0, restitution=0.5),
-    corners=[0.1355],
+    system=System(1, 1.0, drag), q0=[0.01], v0=[0.0], t_span=(0.0, 0.16),
+    contacts=LinearContacts(1.0, restitution=0.5), corners=[0.1355],
 )
 pendulum = Scene(
     system=System(2, [[1.0, 0.0], [0.0, 1.0]], weight), q0=[0.6, -0.8], v0=[0.0, 0.0], t_span=(0.0, 0.5),
