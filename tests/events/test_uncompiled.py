@@ -17,6 +17,13 @@ def length(t, q, v, p, out):
 def radius(t, q, v, p, out):
     out[0, 0], out[0, 1] = 2.0 * q[0], 2.0 * q[1]
 
+def drag(t, q, v, p, out):
+    out[0] = -9.81 - 0.3 * v[0]
+
+ball = Scene(
+    system=System(1, 1.0, drag), q0=[0.01], v0=[0.0], t_span=(0.0, 0.16),
+    contacts=LinearContacts(1.0, restitution=0.5), corners=[0.1355],
+)
 pendulum = Scene(
     system=System(2, [[1.0, 0.0], [0.0, 1.0]], weight), q0=[0.6, -0.8], v0=[0.0, 0.0], t_span=(0.0, 0.5),
     joints=Joints(1, length, radius), contacts=LinearContacts([[1.0, 0.0]], restitution=0.5),
@@ -25,7 +32,7 @@ beads = Scene(
     system=LinearSystem([[1.0, 0.0], [0.0, 2.0]], force=[-9.81, -19.62]), q0=[0.1, 0.3], v0=[0.0, 0.0],
     t_span=(0.0, 0.4), contacts=LinearContacts([[1.0, 0.0], [-1.0, 1.0]], restitution=[0.5, 0.8]),
 )
-for scene in (pendulum, beads):
+for scene in (ball, pendulum, beads):
     run = simulate(scene, EventDriven(rtol=1e-7, atol=1e-7), keep=1)
     print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
 print(cython.compiled, file=sys.stderr)
