@@ -144,6 +144,22 @@ def test_a_callback_that_goes_wrong_is_named_with_time_and_state(name, system, c
 
 
 @pytest.mark.parametrize("method", METHODS)
+def ends_without_a_gap(t, q, v, p, out):
+    out[0] = q[0] if t < 1.0 - 1e-9 else math.nan
+
+
+def upwards(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("method", [Moreau(0.1), Moreau(0.1, tolerance=1e-3), Located(0.1)], ids=repr)
+def test_a_gap_that_is_no_number_in_the_last_step_is_told(method):
+    contacts = Contacts(1, ends_without_a_gap, upwards)
+    scene = Scene(LinearSystem(1.0), q0=1.0, v0=1.0, t_span=(0.0, 1.0), contacts=contacts)
+    with pytest.raises(SimulationError, match="gap"):
+        simulate(scene, method)
+
+
 def test_the_state_in_the_message_is_that_of_the_time_in_the_message(method):
     with pytest.raises(SimulationError) as caught:
         run(FALLING, LinearContacts(G=1.0, motion=bad_motion), method)

@@ -116,9 +116,9 @@ class Run:
                     break
             self.empty()
             progress(self.now)
-            if s.steps < goal:
-                break
-        return Status(code) if s.steps < last else Status.DONE
+            if code not in (FINISHED, LOG_FULL, NEED_LCP):  # be it in the last step of the portion
+                return Status(code)
+        return Status.DONE
 
     def solve_outside(self) -> bool:
         """Hand the problem at hand to the named solver; whether it was solved."""
