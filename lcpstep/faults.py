@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian.checks import python, read_only, said, shown
+from lagrangian.checks import shown
 
 Array = NDArray[np.float64]
 Callback = Callable[..., Any]  # f(t, q, v, p, out) or f(t, x, p, out)
@@ -63,17 +63,3 @@ def cause() -> BaseException | None:
     if isinstance(error, KeyboardInterrupt):
         raise error
     return error
-
-
-def plain(f: Callback) -> Callback:
-    """F as kernels in plain Python call it: with read-only arrays, and its exceptions noted."""
-    f, name = python(f), name_of(f)
-
-    def watched(t: float, q: Array, v: Array, p: Array, out: Array) -> None:
-        try:
-            f(t, read_only(q), read_only(v), read_only(p), out)
-        except Exception as error:
-            note(Fault(name, t, q.copy(), v.copy(), said(error)))
-            raise
-
-    return watched

@@ -1,4 +1,4 @@
-"""simulate(scene, method): the one door to both integrators."""
+"""simulate(scene, method): the one door to all methods."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Method(Protocol):
-    """How a motion is computed: `lcpstep.Moreau`, `lcpstep.EventDriven`."""
+    """How a motion is computed: `lcpstep.Moreau`, `lcpstep.Located`, `lcpstep.EventDriven`."""
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene."""
