@@ -1,7 +1,8 @@
 """Exceptions of the user's functions, in machine code and in plain Python: of which, and what it was called with.
 
 Machine code does not pass an exception on: it leaves `out` not-a-number and notes it here (`lcpstep.guarded`), and
-so a kernel that overlooks the number is found out. In plain Python it is noted and goes on its way.
+so a kernel that overlooks the number is found out. What Python raises is kept, for the
+run to raise from.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def simulate(
     Parameters
     ----------
     scene : lagrangian.Scene, or lagrangian.HybridScene for a system with modes (by `EventDriven`)
-    method : lcpstep.Moreau or lcpstep.EventDriven
+    method : lcpstep.Moreau, lcpstep.Located or lcpstep.EventDriven
     keep : which states the trajectory holds
         1: every step (default); k: every k-th; increasing times: those; "impacts": those right after an event.
         The impact log is always complete.
