@@ -88,4 +88,15 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4-tolerance",),
     ),
+    "a heavy body squeezes light ones against a wall": (
+        Description(
+            M=((13300.0, 0.0, 0.0, 0.0), (0.0, 7.77, 0.0, 0.0), (0.0, 0.0, 0.0014, 0.0), (0.0, 0.0, 0.0, 0.22)),
+            q0=(0.0, 0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0, 0.0), t_span=(0.0, 4.2183), h=0.0981,
+            G=((-1.0, 1.0, 0.0, 0.0), (0.0, -1.0, 1.0, 0.0), (0.0, 0.0, -1.0, 1.0), (1.0, 0.0, 0.0, 0.0),
+               (0.0, 0.0, 0.0, -1.0)),
+            offset=(0.0, 0.0375, 0.44, 0.0, 0.0), restitution=(0.58, 0.61, 0.0, 0.011, 0.0),
+            sine=(1390.0, 0.747, 3.52e-05, -0.0136), force_omega=0.545, family="beads",
+        ),
+        ("event-driven", "located", "located-4", "located-exact"),
+    ),
 }  # fmt: skip
