@@ -99,4 +99,15 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located", "located-4", "located-exact"),
     ),
+    "struck while at rest on two other contacts": (
+        Description(
+            M=((777.0, 0.0, 0.0), (0.0, 60.9, 0.0), (0.0, 0.0, 4.97)), q0=(0.0, 0.0, 0.0),
+            v0=(-0.651, -1.13, -0.0721), t_span=(0.0, 35.1656), h=0.0904,
+            G=((-0.358, 0.686, 0.371), (-0.788, 0.29, -1.24), (3.38, -0.888, 0.227)),
+            offset=(0.13, 0.664, 0.0156), restitution=(0.3, 0.0, 0.0),
+            K=((172.0, 51.2, 1.78), (51.2, 16.2, 0.159), (1.78, 0.159, 0.234)), constant=(488.0, -69.8, -5.2),
+            function=True, family="square",
+        ),
+        ("located",),
+    ),
 }  # fmt: skip
