@@ -6,7 +6,7 @@ from lcpstep.kernels.acceleration cimport inverse_mass
 from lcpstep.kernels.vectors cimport clear, largest, product
 from lcpstep.pointers cimport abs, inf, max, min
 
-@cython.locals(solved=bint)
+@cython.locals(solved=bint, touches=bint)
 cdef bint strike(Mechanism s) noexcept nogil
 cdef double impulses(Mechanism s) noexcept nogil
 cdef double missing_speeds(Mechanism s) noexcept nogil

@@ -30,7 +30,8 @@ def strike(s: Mechanism) -> bool:
     for c in range(s.n_c):
         s.contact.loaded[c] = 0
         u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
-        if s.contact.closed[c] == 1 or (s.contact.gap[c] == 0.0 and u <= speed_noise(s, c)):
+        touches = s.contact.gap[c] == 0.0 and s.contact.parting[c] == 0
+        if s.contact.closed[c] == 1 or (touches and u <= speed_noise(s, c)):
             s.contact.member[s.n_members] = c
             s.contact.b[s.n_members] = (1.0 + s.model.restitution[c]) * min(u, 0.0)
             s.contact.noise[s.n_members] = speed_noise(s, c)

@@ -9,15 +9,21 @@ from lcpstep.events.general.keep cimport keep_event, log
 from lcpstep.events.general.motion cimport lift, rebase, touching
 from lcpstep.events.general.parabolas cimport polish, synchronise
 from lcpstep.events.general.state cimport JUMP, Mechanism
+from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.dynamics cimport order_matters
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport max
+from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t IMPACT, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
 
 cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
+@cython.locals(now=bint)
+cdef bint just_opened(Mechanism s, Py_ssize_t c) noexcept nogil
+@cython.locals(landed=bint, new=bint)
+cdef bint let_go(Mechanism s) noexcept nogil
+cdef void rejoin(Mechanism s) noexcept nogil
 @cython.locals(hit=bint)
 cdef bint approaches(Mechanism s) noexcept nogil
 @cython.locals(strikes=bint)

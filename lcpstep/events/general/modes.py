@@ -22,11 +22,12 @@ if not cython.compiled:
     from lcpstep.events.general.motion import lift, rebase, touching
     from lcpstep.events.general.parabolas import polish, synchronise
     from lcpstep.events.general.state import JUMP, Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import order_matters
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import max
+    from lcpstep.pointers import abs, max
 
 ROUNDS = 100_000  # problems of impacts at one instant
 
@@ -35,9 +36,10 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
     """Impacts at the state q, v until no contact that is closed approaches."""
     before = tally.stalled
     for c in range(s.n_c):
-        s.contact.terms[c] = 0.0
+        s.contact.terms[c], s.contact.parting[c] = 0.0, 1 if just_opened(s, c) else 0
     for turn in range(ROUNDS):
         if not approaches(s):
+            rejoin(s)
             if tally.stalled > before + 1:  # the impacts of one instant count as one
                 tally.stalled = before + 1
             return DONE
@@ -54,12 +56,52 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
         else:
             if turn & (turn - 1) == 0:  # Brent's search for a cycle looks back to powers of two
                 look_back(s)
+            if turn > 0 and not let_go(s):
+                return NOT_FINITE
             if not strike(s):
                 return NO_IMPULSES
             tell_impacts(s, record, tally, s.t0)
             if s.constant:
                 synchronise(s)
     return TOO_MANY_EVENTS
+
+
+def just_opened(s: Mechanism, c: int) -> bool:
+    """Whether contact c has struck at this instant, as far as time can be told, and the forces have opened it."""
+    now = s.t0 - s.contact.struck[c] <= 4.0 * RESOLUTION * abs(s.t0)
+    return now and s.contact.closed[c] == 0 and s.contact.curve[c] > 0.0
+
+
+def let_go(s: Mechanism) -> bool:
+    """Between two impacts of one instant: contacts that have landed in the first, and that the forces open, part.
+
+    Time goes on between the two, if by less than can be told; what has parted passes no impulse on until it strikes
+    again. So a light body between a wall and a heavy one stops that by ever closer impacts. False where not finite.
+    """
+    landed = False
+    for c in range(s.n_c):
+        new = s.contact.closed[c] == 1 and s.contact.was_closed[c] == 0
+        landed = landed or (new and s.contact.struck[c] == s.t0)
+    if not landed:
+        return True
+    if not s.constant and not measure_again(s, s.t0):
+        return False
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 1:
+            s.contact.parting[c] = 1
+    contact_forces(s, s.t0)
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 1:
+            s.contact.parting[c] = 0
+    return True
+
+
+def rejoin(s: Mechanism) -> None:
+    """After the last impact of an instant the forces decide anew about the contacts that parted and still touch."""
+    for c in range(s.n_c):
+        if s.contact.parting[c] == 1 and abs(s.contact.speed[c]) <= speed_noise(s, c):
+            s.contact.closed[c], s.contact.speed[c] = 1, 0.0
+        s.contact.parting[c] = 0
 
 
 def approaches(s: Mechanism) -> bool:
@@ -75,7 +117,9 @@ def approaches(s: Mechanism) -> bool:
                 ):  # lowering would lift others, and feed their hops
                     lift(s, c)
                 s.contact.gap[c] = 0.0
-                if u >= -noise:
+                if u < -noise:
+                    s.contact.parting[c] = 0
+                elif s.contact.parting[c] == 0:
                     s.contact.closed[c], s.contact.speed[c] = 1, 0.0
                 hit = hit or u < -noise
         s.left.speed[c] = s.contact.speed[c]

@@ -49,6 +49,7 @@ cdef class Contacts(Rows):
     cdef Py_ssize_t* was_closed
     cdef Py_ssize_t* loaded
     cdef Py_ssize_t* carried
+    cdef Py_ssize_t* parting
 
 
 cdef class Mechanism(Clock):

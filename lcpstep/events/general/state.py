@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
-ROWS, CONTACTS, MARKS = 5, 14, 5  # numbers per row, per contact besides, and marks of a contact
+ROWS, CONTACTS, MARKS = 5, 14, 6  # numbers per row, per contact besides, and marks of a contact
 MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
 NOISE = 64 * RESOLUTION
 
@@ -75,6 +75,7 @@ class Contacts(Rows):
     member            contacts of the problem
     closed, was_closed, loaded   lasting contact; so when last told; carries a force
     carried                      the gap at the base time is known better than by q
+    parting                      let go of by the forces between two impacts of one instant
     """
 
     def __init__(self, n: int) -> None:
@@ -99,6 +100,7 @@ class Contacts(Rows):
         self.was_closed = indices_after(self.closed, n)
         self.loaded = indices_after(self.was_closed, n)
         self.carried = indices_after(self.loaded, n)
+        self.parting = indices_after(self.carried, n)
         for c in range(n):
             self.struck[c] = self.held_until[c] = self.chatter_end[c] = -inf
 

@@ -1,8 +1,9 @@
 from lcpstep.kernels.dynamics cimport external_force
+from lcpstep.kernels.linear cimport grow_factor, solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport abs
+from lcpstep.pointers cimport abs, max
 from lcpstep.stepping.pieces.codes cimport CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
 from lcpstep.stepping.pieces.impulses cimport strike
 from lcpstep.stepping.pieces.keep cimport keep
@@ -14,4 +15,5 @@ from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t event(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
 cdef void straighten(Model m, Plan plan, Work w, Py_ssize_t d) noexcept nogil
+cdef void straighten_all(Model m, Work w, Py_ssize_t n_s) noexcept nogil
 cdef double height(Model m, Work w, Py_ssize_t c) noexcept nogil

@@ -6,10 +6,11 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force
+    from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max
     from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
@@ -43,6 +44,8 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
             d = w.chosen[k]
             lift(m, plan, w, w.q, d, -height(m, w, d))
             straighten(m, plan, w, d)
+        if n_s > 1:
+            straighten_all(m, w, n_s)
     if plan.trapezoidal and not plan.steady:
         external_force(m, within(plan, w, now), w.q, w.v, w.force)
         w.force_evaluations += 1
@@ -70,6 +73,30 @@ def straighten(m: Model, plan: Plan, w: Work, d: int) -> None:
             change = w.W[c * w.n_c + d] * error / w.W[d * w.n_c + d]
             if abs(change) <= ROUNDING * abs(w.rate[c]):
                 w.rate[c] += change
+
+
+def straighten_all(m: Model, w: Work, n_s: int) -> None:
+    """State and gaps of the contacts struck at once, together: put right one by one, each spoils those before it."""
+    for level in range(2):
+        x = w.q if level == 0 else w.v
+        worst = size = 0.0
+        for k in range(n_s):
+            d = w.chosen[k]
+            w.residual[k] = height(m, w, d) if level == 0 else product(m.G, w.v, d, w.n_q) - w.rate[d]
+            worst = max(worst, abs(w.residual[k]))
+            for i in range(w.n_q):
+                size = max(size, abs(m.G[d * w.n_q + i] * x[i]))
+        if worst > ROUNDING * size:
+            n_k = 0
+            for k in range(n_s):
+                w.held[n_k] = w.chosen[k]
+                if grow_factor(w.W, w.n_c, w.problem, w.n_c, w.held, w.doubt, n_k):
+                    w.change[n_k] = -w.residual[k]
+                    n_k += 1
+            solve_factored(w.problem, w.n_c, n_k, w.change)
+            for k in range(n_k):
+                for i in range(w.n_q):
+                    x[i] += w.MG[w.held[k] * w.n_q + i] * w.change[k]
 
 
 def height(m: Model, w: Work, c: int) -> float:
