@@ -143,7 +143,6 @@ def test_a_callback_that_goes_wrong_is_named_with_time_and_state(name, system, c
     np.testing.assert_allclose(m.q[:, 0], 1.0 - 4.0 * m.t**2, rtol=0, atol=4 * 1e-2 * latest + 1e-12)
 
 
-@pytest.mark.parametrize("method", METHODS)
 def ends_without_a_gap(t, q, v, p, out):
     out[0] = q[0] if t < 1.0 - 1e-9 else math.nan
 
@@ -160,6 +159,7 @@ def test_a_gap_that_is_no_number_in_the_last_step_is_told(method):
         simulate(scene, method)
 
 
+@pytest.mark.parametrize("method", METHODS)
 def test_the_state_in_the_message_is_that_of_the_time_in_the_message(method):
     with pytest.raises(SimulationError) as caught:
         run(FALLING, LinearContacts(G=1.0, motion=bad_motion), method)
