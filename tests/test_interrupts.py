@@ -28,7 +28,7 @@ LONG = {
     "corner": "cam-follower --points 20000 --out out",
     "abs": "--grid 400 --out out",
     "thesis": "",
-    "lyapunov": "cam-follower --rpm 660 --transient 100000000",
+    "lyapunov": "cam-follower --rpm 660 --periods 100000000",
     "map": "logistic --parameter r --range 2.8 4 --points 4000000 --out out",
 }
 ENDS_AT_ONCE = {"scenes"}

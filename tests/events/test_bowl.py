@@ -86,6 +86,11 @@ def test_so_they_are_from_anywhere(seed):
         check(q0, v0, restitution, t_end, bias)
 
 
+def test_a_hop_is_seen_whatever_its_gap_does_within_a_long_step():
+    """Free flight is one step as long as the scan allows; the gap's speed turns more than once beyond the surface."""
+    check(*random_start(197), 1000.0, bias=False)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(100, 200))
 def test_so_they_are_from_many_more_places(seed):

@@ -8,7 +8,7 @@ from lcpstep.kernels.dynamics cimport gaps
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs
 
-cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
+cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS, HALVINGS
 cdef double NONE, NEVER
 
 cdef double first_event(Mechanism s, double a, double b) noexcept nogil
@@ -25,3 +25,4 @@ cdef double root(
 cdef bint observe(Mechanism s, double tau) noexcept nogil
 cdef void remember(Mechanism s) noexcept nogil
 cdef double multiplier_noise(Mechanism s) noexcept nogil
+cdef double way_back(Mechanism s, Py_ssize_t c, double a, double b, double g_b) noexcept nogil

@@ -25,6 +25,7 @@ MEETS, LANDS, OPENS, NEVER_LEFT = range(4)  # what a contact does
 GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
 NONE, NEVER = -1.0, -2.0  # in place of a root's time: not known; there is none
 MAX_ITERATIONS = 100
+HALVINGS = 50  # of an interval in which a gap has opened and closed again
 
 
 def first_event(s: Mechanism, a: float, b: float) -> float:
@@ -53,7 +54,10 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
             else:
                 tau = first_contact(s, c, a, b, left_end, right_end)
             if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
-                tau, kind = a, NEVER_LEFT
+                if left_end[1] > speed_noise(s, c):
+                    tau = way_back(s, c, a, b, right_end[0])
+                if tau == NONE:
+                    tau, kind = a, NEVER_LEFT
         if tau != NONE and (found == NONE or tau < found):
             found, s.event_contact, s.event_kind = tau, c, kind
     return found
@@ -104,6 +108,19 @@ def first_in_half(
         return NONE
     if left[0] > 0.0 and right[0] <= 0.0:
         return root(s, GAP, c, a, left[0], b, right[0])
+    return NONE
+
+
+def way_back(s: Mechanism, c: int, a: float, b: float, g_b: float) -> float:
+    """When the gap of contact c falls to zero that has opened at a, and is closed at b, whatever it does between."""
+    for _ in range(HALVINGS):
+        middle = 0.5 * (a + b)
+        if not a < middle < b or not observe(s, middle):
+            return NONE
+        g = s.contact.gap[c]
+        if g > 0.0:
+            return root(s, GAP, c, middle, g, b, g_b)
+        b, g_b = middle, g
     return NONE
 
 
