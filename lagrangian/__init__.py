@@ -1,16 +1,35 @@
 """Models of mechanical systems with unilateral constraints: what moves, and what it may not cross.
 
-Nothing here knows how a motion is computed; see `lcpstep` for that.
+Nothing here knows how a motion is computed; see `lcpstep` for that. Every name is imported from its module when it is
+first asked for.
 """
 
-from lagrangian import scenes
-from lagrangian.contacts import Contacts, LinearContacts
-from lagrangian.friction import Coulomb
-from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
-from lagrangian.joints import Joints, LinearJoints
-from lagrangian.profiles import Arc, CamProfile
-from lagrangian.scene import Scene
-from lagrangian.system import Harmonic, LinearSystem, System
+from typing import TYPE_CHECKING
+
+from lagrangian.lazy import lazily
+
+if TYPE_CHECKING:
+    from lagrangian import scenes
+    from lagrangian.contacts import Contacts, LinearContacts
+    from lagrangian.friction import Coulomb
+    from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
+    from lagrangian.joints import Joints, LinearJoints
+    from lagrangian.profiles import Arc, CamProfile
+    from lagrangian.scene import Scene
+    from lagrangian.system import Harmonic, LinearSystem, System
+else:
+    __getattr__ = lazily(
+        globals(),
+        {
+            "lagrangian.contacts": "Contacts LinearContacts",
+            "lagrangian.friction": "Coulomb",
+            "lagrangian.hybrid": "Guard HybridScene HybridSystem Mode Surface",
+            "lagrangian.joints": "Joints LinearJoints",
+            "lagrangian.profiles": "Arc CamProfile",
+            "lagrangian.scene": "Scene",
+            "lagrangian.system": "Harmonic LinearSystem System",
+        },
+    )
 
 __all__ = [
     "Arc",
@@ -31,3 +50,7 @@ __all__ = [
     "System",
     "scenes",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

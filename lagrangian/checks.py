@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from collections.abc import Callable, Mapping
 from types import CellType, FunctionType
 from typing import Any
@@ -65,11 +66,17 @@ def _real(name: str, value: ArrayLike) -> Array:
     try:
         given = np.array(value)
         texts = given.dtype == object and any(isinstance(x, (str, bytes, bool)) for x in given.flat)
-        if given.dtype.kind not in "iufO" or texts or _holds_truth(value) or np.ma.is_masked(value):
+        if given.dtype.kind not in "iufO" or texts or _holds_truth(value) or _is_masked(value):
             raise TypeError
         return np.array(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):  # an integer beyond all floating-point numbers
         raise ValueError(f"{name}: expected real numbers, got {value!r}") from None
+
+
+def _is_masked(value: Any) -> bool:
+    """Whether an array has masked entries; there are none before `numpy.ma` has been loaded, which takes its time."""
+    ma: Any = sys.modules.get("numpy.ma")
+    return ma is not None and bool(ma.is_masked(value))
 
 
 def _holds_truth(value: Any) -> bool:

@@ -6,7 +6,6 @@ made again from its source wherever a pickled scene needs it.
 
 from __future__ import annotations
 
-import hashlib
 import linecache
 import sys
 from dataclasses import dataclass
@@ -39,6 +38,8 @@ def derived_from(f: FunctionType) -> Derived | None:
 
 def load(source: str) -> Any:
     """The source as a module; tracebacks and debuggers show its lines."""
+    import hashlib
+
     name = PREFIX + hashlib.sha256(source.encode()).hexdigest()[:DIGITS]
     if name not in sys.modules:
         module, file = ModuleType(name), f"<{name}>"

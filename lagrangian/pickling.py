@@ -7,7 +7,6 @@ its place: `Pickled` does. `copy`, and picklers that take the code of functions 
 
 from __future__ import annotations
 
-import pickle
 import sys
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -51,8 +50,10 @@ def _outgoing(name: str, x: Any) -> Any:
     if derived is not None and f is x:
         return derived
     if _found(f.__module__, f.__qualname__) is not f and not any(module in BY_VALUE for module in _callers()):
+        from pickle import PicklingError
+
         where = f"{f.__code__.co_filename}, line {f.__code__.co_firstlineno}"
-        raise pickle.PicklingError(
+        raise PicklingError(
             f"{name}: {f.__qualname__!r} ({where}) cannot be pickled, for no other process finds it by that name; "
             "write it as a function of its own at the top of a module, and what it takes from around it into p"
         )

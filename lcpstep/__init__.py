@@ -1,19 +1,47 @@
 """Simulation of Lagrangian systems with unilateral constraints.
 
-Time-stepping by complementarity problems (`Moreau`) and event by event (`EventDriven`), on scenes made with the
-package `lagrangian`; and `solve_lcp`, the solver underneath. Importing this loads numpy only.
+Time-stepping by complementarity problems (`Moreau`, `Located`) and event by event (`EventDriven`), on scenes made
+with the package `lagrangian`; and `solve_lcp`, the solver underneath. Importing this loads nothing yet: every name is
+imported from its module when it is first asked for.
 """
 
-from lcpstep.continued import continued
-from lcpstep.diagnostics import Energy, energy
-from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, SimulationInterrupted, UnknownName
-from lcpstep.events import EventDriven
-from lcpstep.lcp import solve_lcp
-from lcpstep.simulate import simulate
-from lcpstep.stepping.located import Located
-from lcpstep.stepping.moreau import Moreau
-from lcpstep.study import study
-from lcpstep.trajectory import Kind, Status, Trajectory
+from typing import TYPE_CHECKING
+
+from lagrangian.lazy import lazily
+
+if TYPE_CHECKING:
+    from lcpstep.continuing import continued
+    from lcpstep.diagnostics import Energy, energy
+    from lcpstep.errors import (
+        LcpStepError,
+        MissingSolver,
+        SimulationError,
+        SimulationInterrupted,
+        UnknownName,
+    )
+    from lcpstep.events import EventDriven
+    from lcpstep.lcp import solve_lcp
+    from lcpstep.simulation import simulate
+    from lcpstep.stepping.located import Located
+    from lcpstep.stepping.moreau import Moreau
+    from lcpstep.studies import study
+    from lcpstep.trajectory import Kind, Status, Trajectory
+else:
+    __getattr__ = lazily(
+        globals(),
+        {
+            "lcpstep.continuing": "continued",
+            "lcpstep.diagnostics": "Energy energy",
+            "lcpstep.errors": "LcpStepError MissingSolver SimulationError SimulationInterrupted UnknownName",
+            "lcpstep.events": "EventDriven",
+            "lcpstep.lcp": "solve_lcp",
+            "lcpstep.simulation": "simulate",
+            "lcpstep.stepping.located": "Located",
+            "lcpstep.stepping.moreau": "Moreau",
+            "lcpstep.studies": "study",
+            "lcpstep.trajectory": "Kind Status Trajectory",
+        },
+    )
 
 __version__ = "0.1.0"
 __all__ = [
@@ -35,3 +63,7 @@ __all__ = [
     "solve_lcp",
     "study",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

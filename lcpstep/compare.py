@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.simulate import Method, fitted, simulate
+from lcpstep.simulation import Method, fitted, simulate
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]

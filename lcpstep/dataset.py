@@ -10,7 +10,7 @@ from typing import Any
 
 from lagrangian import HybridScene, Scene
 from lcpstep.files import replacing
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 
 COMPRESSION = {"zlib": True, "complevel": 4}
 UNITS = {  # of the variables that results are made of

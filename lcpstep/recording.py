@@ -6,14 +6,16 @@ Kernels write into arrays of fixed size and return when these are full; the reco
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.kernels.record import Columns, Record
 from lcpstep.trajectory import IMPACT_DTYPE
+
+if TYPE_CHECKING:
+    from lcpstep.kernels.record import Columns
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
@@ -106,6 +108,8 @@ class Recorder:
         dense_shape: tuple[int, int] | None = None,
         expected: int = 0,
     ) -> None:
+        from lcpstep.kernels.record import Record
+
         # Not filled with zeros, which would take longer than a short run: what is read has been written.
         self.rows = np.empty((rows, LEAD + 2 * n_q + n_c))
         self.lines = np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ())))

@@ -11,7 +11,7 @@ from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.hybrid_abs import hybrid_abs
 from lagrangian.scenes.hybrid_oscillators import bilinear_oscillator, stick_slip_oscillator
 from lcpstep import EventDriven, LcpStepError, Located, Moreau, SimulationInterrupted, continued, simulate
-from lcpstep.continued import PutBack
+from lcpstep.continuing import PutBack
 from tests.models import bowl_scene
 from tests.stepping.test_joints import point_on_a_rod
 

@@ -16,7 +16,7 @@ from lcpstep.cli.common import DONE, FAILED
 from lcpstep.dataset import labelled, save
 from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import replacing
-from lcpstep.study import study
+from lcpstep.studies import study
 from lcpstep.sweep import Store
 
 resource = pytest.importorskip("resource")

@@ -25,9 +25,9 @@ def checked(make: Callable[P, S]) -> Callable[P, S]:
 
     A restitution lies in [0, 1]; t_end is positive; what has a whole number as default takes whole numbers only.
     """
-    signature = inspect.signature(make)
 
     def made(*arguments: P.args, **named: P.kwargs) -> S:
+        signature = _signature(make)
         for name, value in signature.bind(*arguments, **named).arguments.items():
             default = signature.parameters[name].default
             if name == "restitution":
@@ -49,6 +49,11 @@ def checked(make: Callable[P, S]) -> Callable[P, S]:
 
     result: Callable[P, S] = functools.wraps(make)(made)
     return result
+
+
+@functools.cache
+def _signature(make: Callable[..., Any]) -> inspect.Signature:
+    return inspect.signature(make)
 
 
 @dataclass(eq=False)

@@ -25,7 +25,7 @@ from lcpstep.errors import LcpStepError, StudyInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.many import End, Follower
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]

@@ -26,7 +26,7 @@ from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods, periods
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]

@@ -31,7 +31,7 @@ from lcpstep.analysis.attractors import Attractor, Attractors, attractors, rando
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, Targets, periodic, periods
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.sweep import Arrays, sweep
 
 Array = NDArray[np.float64]

@@ -24,7 +24,7 @@ from lcpstep.analysis.listed import joined, listed
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import periods
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.sweep import Arrays, sweep
 from lcpstep.trajectory import Status
 

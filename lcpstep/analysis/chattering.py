@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status
 
 Array = NDArray[np.float64]

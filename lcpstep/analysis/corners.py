@@ -36,7 +36,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.maps.local import Local
 from lcpstep.maps.stroboscopic import StroboscopicMap
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import IMPACT_DTYPE, Kind, Status, Trajectory
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.maps.batch import Periods, continued, periods
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 
 Array = NDArray[np.float64]
 COPIES, PERIODS = 5, 24  # other grids, and for how long each

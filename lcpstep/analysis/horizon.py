@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.errors import LcpStepError
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]

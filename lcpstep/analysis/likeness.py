@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.batch import periods
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]

@@ -25,7 +25,7 @@ from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.maps.batch import Periods
 from lcpstep.maps.modes import mode_at
-from lcpstep.simulate import Method, fitted, simulate
+from lcpstep.simulation import Method, fitted, simulate
 
 Array = NDArray[np.float64]
 SAMPLES = 64  # of the gap per period, between impacts

@@ -19,7 +19,7 @@ from lcpstep.analysis.dials import dial, shown, with_value
 from lcpstep.analysis.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import IMPACT_DTYPE, Status, Trajectory
 
 Array = NDArray[np.float64]

@@ -21,7 +21,7 @@ from lcpstep.analysis.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.lcp import solve_lcp
 from lcpstep.lcp.qp import TOLERANCES, known_solvers
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status, Trajectory
 
 EXACT = "lemke"

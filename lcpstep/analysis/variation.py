@@ -25,7 +25,7 @@ from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
 from lcpstep.maps.stroboscopic import StroboscopicMap
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]

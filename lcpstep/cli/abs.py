@@ -33,7 +33,7 @@ from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text
 from lcpstep.errors import StudyInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.files import replacing
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
 THRESHOLDS = ("torque_max", "torque_min", "slip_max", "slip_min")

@@ -18,7 +18,7 @@ from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, stud
 from lcpstep.dataset import labelled, provenance
 from lcpstep.plot import attractors as pictures
 from lcpstep.plot.words import method_words, scene_words
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.stepping.moreau import Moreau
 
 LONGEST = 60  # periods that a motion may repeat after, where not given

@@ -30,7 +30,7 @@ from lcpstep.cli.studies import (
 from lcpstep.errors import UnknownName
 from lcpstep.plot import bifurcation as pictures
 from lcpstep.plot.words import method_words
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 
 AGREEMENT = "agreement.nc"
 

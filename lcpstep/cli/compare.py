@@ -23,7 +23,7 @@ from lcpstep.cli.common import (
 )
 from lcpstep.compare import Comparison, compare
 from lcpstep.maps import Sections, sections
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
 
 CENTIMETRE = 0.01  # the distance at which two motions no longer count as the same [m]

@@ -29,7 +29,7 @@ from lcpstep.cli.common import (
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.files import replacing
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {

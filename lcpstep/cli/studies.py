@@ -24,7 +24,7 @@ from lcpstep.cli.common import (
 )
 from lcpstep.dataset import Progress
 from lcpstep.errors import SweepStopped
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 
 CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
 PARTS = "parts"  # folder of an unfinished sweep

@@ -25,7 +25,7 @@ from lcpstep.cli.common import (
     scene_with_contacts,
 )
 from lcpstep.errors import StudyInterrupted
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 
 LONGEST = 100  # steps in the span, at least, where a tolerance chooses them
 METHODS: dict[str, Callable[[argparse.Namespace, float], Method]] = {

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from lagrangian import HybridScene, Scene, checks
-from lcpstep.events.flight.oscillator import oscillator_of
-from lcpstep.events.flight.run import ClosedForm
-from lcpstep.events.general.run import General
-from lcpstep.events.hybrid.run import HybridRun
-from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.model import model, require
-from lcpstep.recording import Kept
-from lcpstep.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.events.hybrid.trajectory import HybridTrajectory
+    from lcpstep.recording import Kept
+    from lcpstep.trajectory import Trajectory
 
 LEAST_TOLERANCE = 1e-14  # relative; below it rounding decides
 
@@ -69,14 +67,23 @@ class EventDriven:
         self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]
     ) -> HybridTrajectory:
         """The motion of a system with modes; see `lcpstep.simulate`."""
+        from lcpstep.events.hybrid.run import HybridRun
+
         return HybridRun(self, scene).finish(kept, progress)
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        from lcpstep.model import model, require
+
         require(scene, "EventDriven", joints=True, friction=False)
         if scene.n_c <= 1 and scene.n_j == 0:
+            from lcpstep.events.flight.oscillator import oscillator_of
+            from lcpstep.events.flight.run import ClosedForm
+
             closed = model(scene)
             o = oscillator_of(closed)
             if o is not None:
                 return ClosedForm(self, scene, kept, closed, o).finish(progress)
+        from lcpstep.events.general.run import General
+
         return General(self, scene, kept).finish(progress)

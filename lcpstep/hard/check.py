@@ -31,7 +31,7 @@ from lagrangian import Scene
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.hard.methods import METHODS, MOREAU
 from lcpstep.recording import Keep
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]

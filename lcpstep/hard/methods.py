@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from lcpstep.events import EventDriven
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
 

@@ -11,7 +11,6 @@ import contextlib
 import io
 import warnings
 from functools import cache
-from importlib.metadata import metadata
 from typing import Any
 
 import numpy as np
@@ -68,6 +67,8 @@ def require_solver(name: str) -> None:
     if name not in known_solvers():
         raise UnknownName("LCP solver", f"qp:{name}", [f"qp:{n}" for n in known_solvers()])
     if name not in qpsolvers.available_solvers:
+        from importlib.metadata import metadata
+
         extras = metadata("qpsolvers").get_all("Provides-Extra") or []
         how = (
             f"pip install 'qpsolvers[{name}]'"

@@ -21,7 +21,7 @@ from lcpstep.maps.task import (
     INSIDE as INSIDE,
 )  # in place of a `Status`: the start lies inside of the obstacle
 from lcpstep.maps.task import UNREACHED, Task
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Kind, Status
 

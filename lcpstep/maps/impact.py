@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.local import Local
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.batch import IMPACTS_KEPT, INSIDE, Periods, periodic, periods, section
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Status
 

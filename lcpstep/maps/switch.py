@@ -28,7 +28,7 @@ from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.impact import TWO_PI, NoReturn
 from lcpstep.maps.modes import told
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]

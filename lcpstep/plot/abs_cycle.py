@@ -14,7 +14,7 @@ from lagrangian.scenes.hybrid_abs import T_MAX, holding_torque
 from lcpstep.analysis.abs_cycle import OUTCOMES, Basins, Bifurcation, Cycle, corner, peak
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.simulate import simulate
+from lcpstep.simulation import simulate
 
 COLOURS = ("#4c9a6a", "#c44e52", "#4c72b0", "#999999")  # of the outcomes
 

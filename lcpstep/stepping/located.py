@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.errors import LcpStepError
-from lcpstep.model import require
-from lcpstep.recording import Kept
-from lcpstep.stepping.pieces.adapted import AdaptedRun
-from lcpstep.stepping.pieces.run import Run
 from lcpstep.stepping.steps import check_steps
-from lcpstep.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.recording import Kept
+    from lcpstep.trajectory import Trajectory
 
 ORDERS = (2, 4, "exact")
 
@@ -72,6 +72,8 @@ class Located:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
+        from lcpstep.model import require
+
         check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
         require(scene, "Located", joints=True, friction=False)
         variant = "a tolerance" if self.tolerance is not None else f"order={self.order!r}"
@@ -79,8 +81,13 @@ class Located:
         require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
-        kind = Run if self.tolerance is None else AdaptedRun
-        return kind(self, scene, kept).finish(progress)
+        if self.tolerance is not None:
+            from lcpstep.stepping.pieces.adapted import AdaptedRun
+
+            return AdaptedRun(self, scene, kept).finish(progress)
+        from lcpstep.stepping.pieces.run import Run
+
+        return Run(self, scene, kept).finish(progress)
 
 
 def require_linear(scene: Scene) -> None:

@@ -7,16 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from lagrangian import Scene, checks
+from lagrangian import LinearContacts, LinearSystem, Scene, checks
 from lcpstep.errors import LcpStepError
-from lcpstep.lcp import check_method
-from lcpstep.recording import Kept
-from lcpstep.stepping import sparse
-from lcpstep.stepping.adapted_run import AdaptedRun
-from lcpstep.stepping.moreau_run import Run
 from lcpstep.stepping.steps import check_steps
-from lcpstep.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.recording import Kept
+    from lcpstep.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,10 @@ class Moreau:
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
         object.__setattr__(self, "theta", checks.number("theta", self.theta, least=0.0, most=1.0))
-        check_method(self.lcp)
+        if self.lcp != "lemke":
+            from lcpstep.lcp import check_method
+
+            check_method(self.lcp)
         checks.instance("projected", self.projected, bool)
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
@@ -78,12 +80,26 @@ class Moreau:
                 f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '
                 f"compiled with the loop; got {self.lcp!r} for {scene.name!r}"
             )
-        if sparse.is_sparse(scene) and not self.beyond_contacts(scene):
+        if is_sparse(scene) and not self.beyond_contacts(scene):
+            from lcpstep.stepping import sparse
+
             if self.tolerance is not None:
                 raise LcpStepError(
                     f"tolerance: scenes with sparse matrices take steps of one size; expected None for {scene.name!r}"
                 )
             return sparse.Run(self, scene, kept).finish(progress)
         if self.tolerance is not None:
+            from lcpstep.stepping.adapted_run import AdaptedRun
+
             return AdaptedRun(self, scene, kept).finish(progress)
+        from lcpstep.stepping.moreau_run import Run
+
         return Run(self, scene, kept).finish(progress)
+
+
+def is_sparse(scene: Scene) -> bool:
+    """Whether the scene asks for sparse steps: a linear system and contacts, one of them with a sparse matrix."""
+    system, contacts = scene.system, scene.contacts
+    if not isinstance(system, LinearSystem) or not (contacts is None or isinstance(contacts, LinearContacts)):
+        return False
+    return system.sparse or (contacts is not None and contacts.sparse)

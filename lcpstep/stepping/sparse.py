@@ -43,14 +43,6 @@ LOOKS = 50  # steps between two reports of progress
 SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may ask for its own solver
 
 
-def is_sparse(scene: Scene) -> bool:
-    """Whether the scene asks for these steps: a linear system and contacts, one of them with a sparse matrix."""
-    system, contacts = scene.system, scene.contacts
-    if not isinstance(system, LinearSystem) or not (contacts is None or isinstance(contacts, LinearContacts)):
-        return False
-    return system.sparse or (contacts is not None and contacts.sparse)
-
-
 class Equations:
     """The scene's sparse matrices, forces and gaps."""
 

@@ -17,7 +17,7 @@ from lcpstep.maps import sections
 from lcpstep.plot.motion import portraits, time_series
 from lcpstep.plot.orbits import motion_panel, state_panel
 from lcpstep.plot.sections import maps
-from lcpstep.simulate import Method
+from lcpstep.simulation import Method
 from lcpstep.trajectory import Kind
 
 SPEEDS = (358.0, 660.0, 700.0)

@@ -11,7 +11,6 @@ from lagrangian.relations import check_derivatives
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.faults import fault, forget
-from lcpstep.model import culprit, hybrid_culprit
 from lcpstep.recording import Keep, Kept
 from lcpstep.trajectory import Status
 
@@ -94,10 +93,14 @@ def simulate(
             raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
         if fault() is not None:
+            from lcpstep.model import hybrid_culprit
+
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
     run = method.run(scene, kept, report)
     if fault() is not None:
+        from lcpstep.model import culprit
+
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)
     doubt = too_deep(run)

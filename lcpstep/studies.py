@@ -25,7 +25,7 @@ from lcpstep.analysis.horizon import LOST, Growth, growth
 from lcpstep.analysis.reference import TIGHTEST, Reference, find_reference
 from lcpstep.analysis.work_precision import Level, Study
 from lcpstep.errors import DamagedFile, LcpStepError, StudyInterrupted, UnknownName
-from lcpstep.simulate import Method, simulate
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
 
 LOG = logging.getLogger(__name__)
