@@ -65,7 +65,8 @@ class LinearContacts(Pickled):
     @property
     def n_c(self) -> int:
         """Number of contacts."""
-        return int(np.shape(self.G)[0])
+        G: Any = self.G
+        return int(G.shape[0])
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
         """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""

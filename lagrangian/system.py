@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -97,7 +98,8 @@ class LinearSystem(Pickled):
         if not callable(self.force):
             force = self.force if self.force is not None else 0.0
             force = force if isinstance(force, Harmonic) else Harmonic(constant=force)
-            force.terms(self.n_q)
+            constant, cosine, sine = force.terms(self.n_q)  # its own, which nobody changes
+            force = Harmonic(constant, cosine, sine, force.omega)
             object.__setattr__(self, "force", force)
 
     def _keep_sparse(self) -> None:
@@ -117,7 +119,8 @@ class LinearSystem(Pickled):
     @property
     def n_q(self) -> int:
         """Number of coordinates."""
-        return int(np.shape(self.M)[0])
+        M: Any = self.M
+        return int(M.shape[0])
 
     def trial(self, t: float, q: Array, v: Array, p: Array) -> None:
         """Evaluate every callback once in plain Python; raises ValueError where one does not fit."""

@@ -30,15 +30,16 @@ def too_deep(run: Trajectory) -> str:
     scene = run.scene
     if scene.contacts is None or run.status != Status.DONE or len(run.t) == 0:
         return ""
-    k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
+    last = len(run.t) - 1
+    k = sorted({int(i * (last / (LOOKS - 1))) for i in range(LOOKS - 1)} | {last})
     states = [(scene.t_span[0], np.asarray(scene.q0), np.asarray(scene.v0))]
     states += [(float(run.t[i]), run.q[i], run.v[i]) for i in k]
     try:
         g = _gaps(scene, states)
-        row, c = np.unravel_index(int(np.argmin(g)), g.shape)
-        depth = max(0.0, -float(g[row, c]))
+        depth = max(0.0, -float(g.min()))
         if depth == 0.0:
             return ""
+        row, c = np.unravel_index(int(np.argmin(g)), g.shape)
         G = np.abs(_normal(scene, int(c), states[row]))
         q, v = (np.array([x[i] for x in states]) for i in (1, 2))
         size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)

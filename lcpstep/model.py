@@ -9,11 +9,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterable
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scene, System
 from lagrangian.checks import Callback
 from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
@@ -27,6 +28,8 @@ from lcpstep.kernels.uncompiled import CalledBack
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
+LARGEST_KEPT = 200  # coordinates of a system whose numbers stay with it
+KEPT: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()  # numbers of systems, which never change
 TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
 TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tangents stand for normals
@@ -183,11 +186,21 @@ def hybrid_culprit(scene: HybridScene, mode: str) -> str:
 
 
 def _system(scene: Scene) -> dict[str, Any]:
-    n_q, system = scene.n_q, scene.system
+    system = scene.system
+    known = KEPT.get(system)
+    if known is None:
+        known = _equations(system)
+        if system.n_q <= LARGEST_KEPT:
+            KEPT[system] = known
+    own = {name: x.copy() if isinstance(x, np.ndarray) else x for name, x in known.items()}
+    return own | {"p": np.array(scene.p), "frame_now": np.zeros((scene.n_q, 3)), "carried": False}
+
+
+def _equations(system: LinearSystem | System) -> dict[str, Any]:
+    n_q = system.n_q
     zero, square = np.zeros(n_q), np.zeros((n_q, n_q))
     fields: dict[str, Any] = dict.fromkeys(("force", "frame", "mass", "force_q", "force_v"), ABSENT)
     fields |= {"constant": zero, "cosine": zero, "sine": zero, "omega": 0.0, "C": square, "K": square}
-    fields |= {"p": np.array(scene.p), "frame_now": np.zeros((n_q, 3)), "carried": False}
     if isinstance(system, LinearSystem):
         M = dense("M", system.M)
         fields |= {"C": dense("C", system.C), "K": dense("K", system.K), "frame": system.frame or ABSENT}

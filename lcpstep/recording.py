@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
+LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 EXPECTED = 1 << 22  # states that room is made for at once, at most
 # Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
@@ -70,10 +71,11 @@ def in_order(events: Array, end: float) -> Array:
     The end of a chattering sequence is noted, with the time at which it comes, where the rest of the sequence is
     summed up: before events of other contacts that come earlier. What the contact itself does next ends the sequence.
     """
-    time, contact = np.minimum(events[:, 0], end), events[:, 1]
-    ordered = np.column_stack([time, events[:, 1:]])
-    if np.all(np.diff(time) >= 0.0):
+    ordered = events.copy()
+    ordered[:, 0] = time = np.minimum(events[:, 0], end)
+    if (time[1:] >= time[:-1]).all():
         return ordered
+    contact = events[:, 1]
     for c in np.unique(contact):
         own = contact == c
         ordered[own, 0] = np.minimum.accumulate(time[own][::-1])[::-1]
@@ -165,7 +167,7 @@ class Recorder:
     def events(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
         events = in_order(np.concatenate(self._parts["events"]), end)
-        log = np.empty(len(events), dtype=IMPACT_DTYPE)
+        log = np.empty(len(events), dtype=LOGGED).view(np.recarray)
         for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
             log[name] = column
-        return log.view(np.recarray)
+        return log

@@ -64,3 +64,11 @@ def test_a_curvature_that_jumps_does_not_drown_in_ever_shorter_steps():
     q, v = np.array([1e-9, 1.0]), np.array([1.0, 0.3])
     found = Point(model(Scene(LinearSystem(M=np.eye(2)), q, v, (0.0, 1.0), contacts))).gap_bias(0.0, q, v)
     assert -1.0 - 1e-6 < found < 1.0 + 1e-6  # -1 on one side of it and 1 on the other
+
+
+def test_models_of_one_scene_share_no_arrays():
+    scene = Scene(system=LinearSystem(M=2.0, K=3.0, force=1.0), q0=0.0, v0=0.0, t_span=(0.0, 1.0))
+    first, again = model(scene), model(scene)
+    for name, x in first.arrays.items():
+        np.testing.assert_array_equal(x, again.arrays[name])
+        assert not np.shares_memory(x, again.arrays[name])

@@ -24,7 +24,7 @@ from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.constraints.coulomb import ContactProblem
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, divided, unresolved
+from lcpstep.stepping.steps import RESTING, divided, largest, unresolved
 from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL, MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
@@ -55,8 +55,7 @@ class Run:
         room = STATES if kept.every > 0 else PORTION
         expected = 1 + self.stretches[-1][3] // kept.every if kept.every > 0 else len(kept.times)
         self.recorder = Recorder(scene.n_q, self.rows.n, kept, room + len(kept.times) + 2, expected=expected)
-        sizes = scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0)
-        size = max(float(np.max(np.abs(x), initial=0.0)) for x in sizes)
+        size = largest(scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
         self.events = 0
         self.pace = Pace(portion, scene.n_q + self.rows.n)
@@ -216,7 +215,9 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     """
     M, C, K, G = (m.arrays[name] for name in ("M", "C", "K", "G"))
     A = M + h * theta * C + (h * theta) ** 2 * K
-    inverse: Any = np.linalg.inv(A) if m.linear else np.zeros(A.shape)
+    inverse: Any = (
+        (np.linalg.inv(A) if C.any() or K.any() else m.arrays["M_inverse"]) if m.linear else np.zeros(A.shape)
+    )
     X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
     if c.n == m.n_c:
         A_g = inverse @ G.T

@@ -30,7 +30,7 @@ from lcpstep.model import c_functions, culprit
 from lcpstep.recording import LEAD, TIME, Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import LATE, RESTING, divided, unresolved
+from lcpstep.stepping.steps import LATE, RESTING, divided, largest, unresolved
 from lcpstep.trajectory import Counts, Kind, Status, Trajectory
 
 if TYPE_CHECKING:
@@ -133,8 +133,7 @@ class Run:
             )
         self.method, self.scene, self.kept = method, scene, kept
         self.equations = Equations(scene)
-        sizes = (scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
-        size = max(float(np.max(np.abs(np.asarray(x)), initial=0.0)) for x in sizes)
+        size = largest(scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
         n_q, n_c = scene.n_q, scene.n_c
         self.q, self.v, self.t = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]

@@ -8,7 +8,8 @@ import numpy as np
 
 from lagrangian import Scene
 
-MARGIN = 2.0**-49  # relative: what rounding may make of the phase of a callback, and of the time of a corner
+MARGIN = 2.0**-49  # relative: what rounding may make of the phase of a callback, and of the time of a corner;
+# by so much times are moved off a corner
 
 
 def start_side(scene: Scene, t: float) -> float:

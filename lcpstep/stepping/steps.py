@@ -6,6 +6,9 @@ Steps that are lost in the rounding of the times they are added to are refused: 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
 
 from lcpstep.errors import LcpStepError
 
@@ -13,6 +16,11 @@ RESOLUTION = 2.0**-52
 WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
 LATE = 1e-9  # of a step: what rounding may take from the end of the last one
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed
+
+
+def largest(*numbers: Any) -> float:
+    """The largest of all numbers by its size; 0 of none."""
+    return float(np.abs(np.concatenate(numbers)).max(initial=0.0))
 
 
 def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:

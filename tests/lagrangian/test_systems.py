@@ -120,6 +120,17 @@ def test_a_number_stands_for_all_coordinates():
     np.testing.assert_array_equal(sine, [1.0, 2.0])
 
 
+def test_a_system_keeps_its_force_when_the_arrays_that_it_was_made_from_change():
+    push, M = np.array([1.0, 2.0]), np.eye(2)
+    system = LinearSystem(M=M, force=Harmonic(constant=push, cosine=push, omega=2.0))
+    push[0], M[0, 0] = 5.0, 7.0
+    np.testing.assert_array_equal(system.force.constant, [1.0, 2.0])
+    np.testing.assert_array_equal(system.force.terms(2)[1], [1.0, 2.0])
+    assert system.M[0, 0] == 1.0
+    with pytest.raises(ValueError, match="read-only"):
+        system.force.constant[0] = 3.0
+
+
 @pytest.mark.parametrize("n_q", [0, -1, 1.5, "one", None])
 def test_the_number_of_coordinates_is_a_positive_integer(n_q):
     with pytest.raises(ValueError, match=r"^n_q: "):

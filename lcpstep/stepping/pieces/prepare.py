@@ -13,6 +13,8 @@ from lcpstep.kernels.model import Model
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.start import MARGIN
+from lcpstep.stepping.steps import largest
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -23,7 +25,6 @@ SMALL = 8  # coordinates up to which matrices are made anew for the rest of a st
 # frozen acceleration of order two makes no error by that
 MANY, MANY_EXACTLY = 200, 20_000
 PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstacle
-MARGIN = 2.0**-49  # relative; by which times are moved off a corner
 
 
 def at_rest(m: Model, trapezoidal: bool) -> Model:
@@ -58,11 +59,12 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     if trapezoidal:
         implicit = h if method.order == 2 else 0.0
-        A_inverse[:] = np.linalg.inv(a["M"] + 0.5 * implicit * a["C"] + 0.25 * implicit**2 * a["K"])
+        A = a["M"] + 0.5 * implicit * a["C"] + 0.25 * implicit**2 * a["K"]
+        A_inverse[:] = np.linalg.inv(A) if stiff else a["M_inverse"]
     if constant:
         AG[:] = (A_inverse[0] @ a["G"].T).T
         WA[:] = a["G"] @ AG[0].T
-    size = max(np.max(np.abs(x), initial=0.0) for x in (scene.q0, a["offset"], h * np.asarray(scene.v0)))
+    size = largest(scene.q0, a["offset"], h * np.asarray(scene.v0))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
@@ -70,7 +72,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": stiff,
         "steady": bool(trapezoidal and not stiff and unforced),
         "plain": bool(trapezoidal and m.flat and not moving), "constant": constant, "small": n_q <= SMALL,
-        "slack": ROUNDING * float(size or 1.0), "per_step": method.max_per_step,
+        "slack": ROUNDING * (size or 1.0), "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": longest(scene, m, method),
         "corners": np.array(scene.corners, dtype=np.float64), "period": scene.period,
@@ -95,7 +97,9 @@ def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
     w = Work(scene.n_q, scene.n_c, joints)
     c, c_t = displaced(scene, m, scene.t_span[0])
     w.view("q")[:], w.view("v")[:] = np.asarray(scene.q0) + c, np.asarray(scene.v0) + c_t
-    if p.plain and scene.n_c > 0:
+    if (
+        p.plain and scene.n_q * scene.n_c > 1
+    ):  # of one coordinate and contact they are the whole, as they stand
         for name, marks in ranges(m.arrays).items():
             w.view(name)[:] = marks
     return w

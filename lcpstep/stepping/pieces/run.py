@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,7 +116,10 @@ class Run:
         if len(self.kept.times) == 0 and self.now > t[-1]:
             t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
             impulse, jumps = np.vstack([impulse, impulse_now]), np.append(jumps, True)
-        bad = np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
+        finite = np.isfinite(q).all() and np.isfinite(v).all()
+        bad: Any = (
+            [] if finite else np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
+        )
         if len(bad):  # the step that failed has left its numbers behind
             t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
         last = (float(t[-1]), q[-1], v[-1]) if len(bad) and len(t) else (self.now, q_now, v_now)
