@@ -174,7 +174,7 @@ def _names(f: FunctionType) -> set[str]:
 def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     """C function of f, with numba's counting of references where f makes arrays or lists; that takes longer."""
     from lcpstep.guarded import Guarded, Wrapped, array
-    from lcpstep.kept import Kept
+    from lcpstep.kept import OnDisk
 
     options = OPTIONS | {"_nrt": nrt}
     parts = Wrapped.create_cfunc_wrapper, array
@@ -185,7 +185,7 @@ def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     if not inner and fingerprint.UNKNOWN not in fingerprint.dependencies(
         f
     ):  # what it reads cannot change unseen
-        c_function._cache = Kept(copy)
+        c_function._cache = OnDisk(copy)
     c_function.compile()
     return c_function
 

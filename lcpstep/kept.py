@@ -47,7 +47,7 @@ HARMLESS = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
 SHARED = 0o077  # permissions of others
 
 
-class Kept:
+class OnDisk:
     """The entries of one compiled function; takes the place of numba's own cache.
 
     Parameters

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
+from lcpstep.kernels.layout import LEAD
 from lcpstep.trajectory import IMPACT_DTYPE
 
 if TYPE_CHECKING:
@@ -22,9 +23,6 @@ Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 EXPECTED = 1 << 22  # states that room is made for at once, at most
-# Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
-# duration of the step that follows; then q, v, impulses
-TIME, MODE, LENGTH, LEAD = range(4)
 
 
 @dataclass(frozen=True)

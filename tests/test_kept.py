@@ -53,9 +53,9 @@ def entries(folder):
 
 def from_disk(f, ndim=1):
     """Whether machine code of the function was found; it must be right."""
-    from lcpstep.kept import Kept
+    from lcpstep.kept import OnDisk
 
-    found, load = [], Kept.load_overload
+    found, load = [], OnDisk.load_overload
 
     def watched(self, *arguments):
         found.append(load(self, *arguments))
@@ -63,7 +63,7 @@ def from_disk(f, ndim=1):
 
     callbacks.MADE.clear()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Kept, "load_overload", watched)
+        patch.setattr(OnDisk, "load_overload", watched)
         compiled = callback_at(callbacks.address(f, ndim))
     q, out, expected = np.array([1.5]), np.zeros((1,) * ndim), np.zeros((1,) * ndim)
     compiled(0.5, q, q, np.zeros(0), out, np.array([1, 1, 0, 1, ndim - 1]))

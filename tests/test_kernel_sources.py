@@ -1,10 +1,16 @@
-"""What Python and C read differently, in the sources of kernels."""
+"""What Python and C read differently, in the sources of kernels; and what a `.pxd` says once more than the `.py`."""
 
 import ast
+import itertools
+import math
+import re
 
+import numpy as np
 import pytest
 
-from tests.uncompiled import BUILT
+from lcpstep.kernels import vectors
+from lcpstep.stepping.pieces import codes, quadratic, times
+from tests.uncompiled import BUILT, HEADERS
 
 
 def whole(node, integers):
@@ -36,3 +42,100 @@ def test_no_kernel_divides_integers(name):
 
 def test_a_division_of_integers_is_found():
     assert divisions("EARLY = 1 / 16\n\ndef f(n: int, m: int, x: float):\n    return n / m + x / n") == [1, 4]
+
+
+# --- modules that are merged into others: their functions are written in both files ------------------------------
+
+INLINE = re.compile(r"cdef inline (?:\w+\*? )+(\w+)\((.*)\) noexcept(?: nogil)?:")
+NUMBER = re.compile(r"^    (?:double )?([A-Z_]+) (?:= (-?\d+)|\"(.+)\")$", re.M)
+VALUES = [0.0, -0.0, 1.0, -1.0, 0.3, -0.7, 2.5e3, -1e-300, math.inf, -math.inf, math.nan]
+IN_C = {"pointers": {"abs", "max", "min", "bits", "double_of"}}  # C's own; "max(a, b)" has no other arguments
+
+
+def header(name):
+    return BUILT[name].with_suffix(".pxd").read_text()
+
+
+def arguments_in_c(name):
+    """Names of the arguments of each function of a `.pxd` file."""
+    found = dict(INLINE.findall(header(name)))
+    return {f: [re.split(r"[ *]+", x.strip())[-1] for x in given.split(",")] for f, given in found.items()}
+
+
+def arguments_in_python(name):
+    functions = [
+        node for node in ast.parse(BUILT[name].read_text()).body if isinstance(node, ast.FunctionDef)
+    ]
+    return {f.name: [x.arg for x in f.args.args] for f in functions}
+
+
+def as_python(name):
+    """The functions of a `.pxd` file, which are Python but for their types."""
+    text = INLINE.sub(lambda m: f"def {m[1]}({', '.join(arguments_in_c(name)[m[1]])}):", header(name))
+    text = re.sub(r"^(from .* cimport .*|)$", "", text, flags=re.M)
+    text = re.sub(r"cdef double (\w+ =)", r"\1", text)
+    known = {"sqrt": math.sqrt, "abs": abs, "max": max, "min": min, "inf": math.inf, "range": range}
+    known |= {x: getattr(codes, x) for x in ("EPS", "LATE")}
+    exec(text, known)
+    return known
+
+
+@pytest.mark.parametrize("name", sorted(HEADERS))
+def test_functions_have_the_same_arguments_in_both_files(name):
+    own = IN_C.get(name.rpartition(".")[2], set())
+    in_c, in_python = arguments_in_c(name), arguments_in_python(name)
+    assert {f: x for f, x in in_c.items() if f not in own} == {
+        f: x for f, x in in_python.items() if f not in own
+    }
+
+
+def test_numbers_of_located_are_the_same_in_both_files():
+    found = {
+        name: int(whole) if whole else float.fromhex(x) if "x" in x else float(x)
+        for name, whole, x in NUMBER.findall(header(codes.__name__))
+    }
+    names = {name for name in vars(codes) if name.isupper()}
+    assert found == {name: getattr(codes, name) for name in names}
+
+
+def same(a, b):
+    return a == b or (math.isnan(a) and math.isnan(b))
+
+
+@pytest.mark.parametrize("f", [quadratic.first_zero, quadratic.may_reach_zero])
+def test_quadratics_are_the_same_in_both_files(f):
+    other = as_python(quadratic.__name__)[f.__name__]
+    n = len(arguments_in_python(quadratic.__name__)[f.__name__])
+    finite = [x for x in VALUES if math.isfinite(x)]
+    for given in itertools.product(finite, repeat=n):
+        assert same(f(*given), other(*given)), given
+
+
+@pytest.mark.parametrize("name", sorted(arguments_in_python(vectors.__name__)))
+def test_short_loops_are_the_same_in_both_files(name):
+    rng = np.random.default_rng(4)
+    for size, factor in itertools.product((0, 1, 5), VALUES):
+        given = {"n": size, "c": 1, "factor": factor, "least": abs(factor)}
+        given |= {x: rng.normal(size=2 * size) for x in ("x", "y", "v")} | {"G": rng.normal(size=2 * size)}
+        answers = []
+        for f in (getattr(vectors, name), as_python(vectors.__name__)[name]):
+            arrays = {k: x.copy() if isinstance(x, np.ndarray) else x for k, x in given.items()}
+            arguments = [arrays[k] for k in arguments_in_python(vectors.__name__)[name]]
+            with np.errstate(invalid="ignore"):
+                answers.append([f(*arguments), *arguments])
+        for mine, other in zip(*answers, strict=True):
+            np.testing.assert_array_equal(mine, other)
+
+
+class Piece:
+    """A plan, and the work at hand."""
+
+    h, margin, plain, low, high = 0.1, 1e-9, False, 0.2, 0.7
+
+
+@pytest.mark.parametrize("t", [-1.0, 0.0, 0.2, 0.2 + 1e-9, 0.5, 0.7 - 2e-9, 0.7 - 1e-10, 0.7, 1e9])
+def test_times_are_the_same_in_both_files(t):
+    piece, other = Piece(), as_python(times.__name__)
+    assert times.within(piece, piece, t) == other["within"](piece, piece, t)
+    assert times.at_corner(piece, piece, t) == other["at_corner"](piece, piece, t)
+    assert times.just_after(piece, t) == other["just_after"](piece, t)

@@ -1,5 +1,6 @@
 """The library's own sources in the place of what is built from them."""
 
+import ast
 import importlib
 import importlib.util
 import shutil
@@ -8,12 +9,18 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import lcpstep
+from tests.processes import python
 
 ROOT = Path(lcpstep.__file__).parent
 BUILT = {
     ".".join(("lcpstep", *header.relative_to(ROOT).with_suffix("").parts)): header.with_suffix(".py")
     for header in ROOT.rglob("*.pxd")
 }
+HEADERS = next(  # those that are merged into others
+    ast.literal_eval(node.value)
+    for node in ast.parse((ROOT.parent / "setup.py").read_text()).body
+    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "HEADERS"
+)
 
 
 class Sources:
@@ -46,3 +53,18 @@ def copy_without_what_is_built(folder):
     skipped = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
     for package in ("lcpstep", "lagrangian"):
         shutil.copytree(ROOT.parent / package, folder / package, ignore=skipped)
+
+
+def both_ways(folder, program):
+    """Lines that a program prints where the library is built, and where it is not, in this folder.
+
+    The first is the file of one of its kernels, and left out.
+    """
+    copy_without_what_is_built(folder)
+    built, plain = (
+        python(program, cwd=home, PYTHONPATH=str(home), NUMBA_DISABLE_JIT="1").splitlines()
+        for home in (ROOT.parent, folder)
+    )
+    assert plain[0].endswith(".py")
+    assert not built[0].endswith(".py")
+    return built[1:], plain[1:]

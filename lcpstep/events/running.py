@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
+from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import culprit, unrepeatable
 from lcpstep.pace import Pace
-from lcpstep.recording import TIME, Kept, Recorder, States
+from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]

@@ -7,15 +7,13 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH, MODE, TIME
+
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.pointers import Doubles, after, whole
 
 Columns = tuple[Any, Any, Any, Any, Any, Any]  # times, modes, durations, q, v and impulses of rows
-# Places in a row: its time, whether the contact is closed (of `Located`: whether velocities may have jumped here),
-# duration of the step that follows; then q, v, impulses
-TIME, MODE, LENGTH, LEAD = 0, 1, 2, 3
-COLUMNS = 6  # of an event: time, contact, gap velocity before and after, impulse, kind
 
 
 class Record:

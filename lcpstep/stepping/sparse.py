@@ -25,9 +25,10 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.kernels.function import Function
+from lcpstep.kernels.layout import LEAD, TIME
 from lcpstep.lcp.saddle import Point, Problem, Saddle
 from lcpstep.model import c_functions, culprit
-from lcpstep.recording import LEAD, TIME, Kept, Recorder
+from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import LATE, RESTING, divided, largest, unresolved

@@ -1,14 +1,10 @@
 """Steps by a tolerance where nothing is built, and with functions that stay in Python."""
 
-from pathlib import Path
-
 import pytest
 
-import lcpstep
 from lagrangian import LinearContacts, Scene, System
 from lcpstep import Located, Moreau, SimulationError, SimulationInterrupted, Status, simulate
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 # Impacts, forces of closed contacts, friction, releases, corners, a mass that changes, more coordinates than are
 # inverted in a step
@@ -40,15 +36,9 @@ for scene, method in cases:
 
 
 def test_steps_are_alike_where_they_are_not_built(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    built, plain = (
-        python(MOTIONS, cwd=folder, PYTHONPATH=str(folder), NUMBA_DISABLE_JIT="1").splitlines()
-        for folder in (Path(lcpstep.__file__).parents[1], tmp_path)
-    )
-    assert plain[0].endswith(".py")
-    assert not built[0].endswith(".py")
-    assert plain[1:] == built[1:]
-    assert len(plain) == 14
+    built, plain = both_ways(tmp_path, MOTIONS)
+    assert plain == built
+    assert len(plain) == 13
 
 
 METHODS = [Moreau(0.1, tolerance=1e-2), Located(0.1, tolerance=1e-3), Located(0.1, 4, tolerance=1e-4)]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Harmonic, LinearSystem, Scene, System, scenes
-from lcpstep import Kind, Located, simulate
+from lcpstep import Kind, Located, SimulationError, Status, simulate
 
 TIMES = [0.3, 0.3 + 1e-13, 0.25, 1.0 / 3.0, 0.3141592653589793]
 SAMPLES = np.linspace(0.011, 0.989, 89)
@@ -65,3 +65,23 @@ def test_a_ball_that_rests_and_one_that_arrives_are_struck_by_one_jump():
             rows = np.stack([hits.before, hits.after, hits.impulse], axis=1)[np.argsort(hits.contact)]
             np.testing.assert_allclose(rows[0], [0.0, 0.0, up], rtol=0, atol=1e-12)
             np.testing.assert_allclose(rows[1], [u, -r * u, 2.0 * (up - (1 + r) * u)], rtol=1e-11)
+
+
+def mass_that_turns_negative(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.5 else -1.0
+
+
+def push(t, q, v, p, out):
+    out[0] = 2.0
+
+
+@pytest.mark.parametrize("h", [0.1, 0.17])
+def test_a_mass_that_fails_at_a_corner_ends_the_run_there(h):
+    system = System(n_q=1, mass=mass_that_turns_negative, force=push)
+    scene = Scene(system, 0.0, 0.0, (0.0, 1.0), corners=(0.5,))
+    with pytest.raises(SimulationError, match="positive definite.* at t = 0.5 s") as stopped:
+        simulate(scene, Located(h))
+    m = stopped.value.trajectory
+    assert m.status == Status.NOT_FINITE
+    assert m.t[-1] == pytest.approx(0.5, abs=1e-12)
+    np.testing.assert_allclose(m.q[:, 0], m.t**2, atol=1e-12)

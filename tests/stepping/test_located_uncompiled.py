@@ -1,10 +1,6 @@
 """Steps with located impacts where nothing is built: the kernels as plain Python move everything alike."""
 
-from pathlib import Path
-
-import lcpstep
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 # Impacts and forces of several contacts, more events in a step than may be, joints, a mass that changes; all orders
 MOTIONS = """
@@ -33,13 +29,7 @@ for scene, n, order in (
 
 
 def test_kernels_of_located_move_alike_where_they_are_not_built(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    built, plain = (
-        python(MOTIONS, cwd=folder, PYTHONPATH=str(folder), NUMBA_DISABLE_JIT="1").splitlines()
-        for folder in (Path(lcpstep.__file__).parents[1], tmp_path)
-    )
-    assert plain[0].endswith(".py")
-    assert not built[0].endswith(".py")
-    assert plain[1:] == built[1:]
-    assert len(plain) == 10
-    assert "plastic impact" in plain[1]
+    built, plain = both_ways(tmp_path, MOTIONS)
+    assert plain == built
+    assert len(plain) == 9
+    assert "plastic impact" in plain[0]

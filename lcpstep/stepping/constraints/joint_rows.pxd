@@ -5,7 +5,7 @@ from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, after, inf, max
 from libc.math cimport sqrt
 
-cdef double NEGLIGIBLE, EPSILON
+cdef double NEGLIGIBLE, EPSILON, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
 
 
@@ -28,6 +28,7 @@ cdef class Elimination:
 
 @cython.locals(regular=bint)
 cdef void factorise_joints(Elimination e, double* W, Py_ssize_t stride, Py_ssize_t first) noexcept nogil
+cdef bint arrived(double worst, double before, double slack) noexcept nogil
 cdef void diagonalise(Elimination e) noexcept nogil
 cdef void rotate(double* B, double* V, Py_ssize_t p, Py_ssize_t q, Py_ssize_t n) noexcept nogil
 cdef void solve_joints(Elimination e, double* out) noexcept nogil

@@ -26,6 +26,8 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
+CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
+STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
 EPSILON = 2.220446049250313e-16
 REFINEMENTS = 20
 SWEEPS = 30
@@ -204,3 +206,8 @@ def distribute(
     for k in range(n_a):
         p[ids[k]] = solution[k]
     joint_impulses(e, ids, n_a, n_k, p)
+
+
+def arrived(worst: float, before: float, slack: float) -> bool:
+    """Whether Newton's iteration for positions is at its end: gaps within the slack, or no smaller for rounding."""
+    return worst <= slack or 0.5 * before < worst <= STALLED * slack

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from lcpstep.stepping.steps import LATE as LATE
+
 # Why the loop returned
 FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION, STOPPED = range(8)
 # Kinds of events, the values of `trajectory.Kind`
@@ -14,5 +16,4 @@ INERTIA = 2  # in their place: M alone
 
 EPS = 2.0**-52
 SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
-LATE = 1e-9  # of a step: what rounding may take from the last one's end
 ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size

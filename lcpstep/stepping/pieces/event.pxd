@@ -1,4 +1,3 @@
-from lcpstep.kernels.dynamics cimport external_force
 from lcpstep.kernels.linear cimport grow_factor, solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -8,10 +7,9 @@ from lcpstep.stepping.pieces.codes cimport CORNER, FINISHED, GROUND, LCP_FAILED,
 from lcpstep.stepping.pieces.impulses cimport strike
 from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.magnitudes cimport speed_terms
-from lcpstep.stepping.pieces.smooth cimport free_acceleration, lift, refactor, respond
+from lcpstep.stepping.pieces.smooth cimport lift, refactor, renew_forces, respond
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport idle, stick, turn
-from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t event(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
 cdef void straighten(Model m, Plan plan, Work w, Py_ssize_t d) noexcept nogil

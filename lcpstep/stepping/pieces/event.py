@@ -5,7 +5,6 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -15,10 +14,9 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.smooth import free_acceleration, lift, refactor, respond
+    from lcpstep.stepping.pieces.smooth import lift, refactor, renew_forces, respond
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, stick, turn
-    from lcpstep.stepping.pieces.times import within
 
 
 def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
@@ -46,13 +44,8 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
             straighten(m, plan, w, d)
         if n_s > 1:
             straighten_all(m, w, n_s)
-    if plan.trapezoidal and not plan.steady:
-        external_force(m, within(plan, w, now), w.q, w.v, w.force)
-        w.force_evaluations += 1
-    elif not plan.trapezoidal:
-        if not free_acceleration(m, w, within(plan, w, now), w.q, w.v, w.free):
-            return NOT_FINITE
-        w.force_evaluations += 1
+    if not renew_forces(m, plan, w, now):
+        return NOT_FINITE
     if record.keeps_events():
         keep(w, record, now, 1.0)
     return FINISHED

@@ -5,10 +5,12 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport clear, product
 from lcpstep.pointers cimport abs, after, inf, max
 from lcpstep.stepping.constraints.directions cimport divide_by_mass
-from lcpstep.stepping.constraints.joint_rows cimport Elimination, factorise_joints, solve_joints
+from lcpstep.stepping.constraints.joint_rows cimport (
+    CONTRADICTION, Elimination, arrived, factorise_joints, solve_joints
+)
 from lcpstep.stepping.pieces.codes cimport ROUNDING
 
-cdef double HELPS, STALLED, CONTRADICTION
+cdef double HELPS
 cdef Py_ssize_t PROJECTIONS, VECTORS
 
 

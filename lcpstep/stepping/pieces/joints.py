@@ -20,13 +20,17 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import Doubles, abs, after, inf, max
     from lcpstep.stepping.constraints.directions import divide_by_mass
-    from lcpstep.stepping.constraints.joint_rows import Elimination, factorise_joints, solve_joints
+    from lcpstep.stepping.constraints.joint_rows import (
+        CONTRADICTION,
+        Elimination,
+        arrived,
+        factorise_joints,
+        solve_joints,
+    )
     from lcpstep.stepping.pieces.codes import ROUNDING
 
 PROJECTIONS = 50  # of Newton
 HELPS = 0.25  # of a joint's gap: what an iteration may leave of it without a new Jacobian
-STALLED = 1e4  # of the slack: how much rounding in the joints' own arithmetic may leave
-CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 VECTORS = 8  # of a number for each joint
 
 
@@ -136,7 +140,7 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
         for k in range(j.n_j):
             if not abs(j.stretch[k]) <= worst:
                 worst, j.culprit = abs(j.stretch[k]), k
-        if worst <= slack or 0.5 * before < worst <= STALLED * slack:
+        if arrived(worst, before, slack):
             return True
         if not worst < inf:
             return False

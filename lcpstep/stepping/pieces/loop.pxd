@@ -38,9 +38,8 @@ cdef class Steps:
     cdef Py_ssize_t piece(self, double t) noexcept nogil
     @cython.locals(pausing=bint)
     cdef Py_ssize_t struck(self, double t, Py_ssize_t c) noexcept nogil
-    @cython.locals(turns=bint)
-    cdef bint begin_interval(self, double t) noexcept nogil
-    cdef void pass_corner(self, double t) noexcept nogil
+    cdef Py_ssize_t begin_interval(self, double t) noexcept nogil
+    cdef bint pass_corner(self, double t) noexcept nogil
     cdef void look_ahead(self, double t) noexcept nogil
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     cdef Py_ssize_t find(self, double t) noexcept nogil

@@ -147,11 +147,12 @@ class Steps:
             if self.w.sigma >= self.w.end:
                 if self.w.end >= self.plan.h:
                     return FINISHED
-                c = CORNER if self.begin_interval(t) else NOBODY
-            if c == NOBODY:
+                code = self.begin_interval(t)
+                c = self.found
+            if c == NOBODY and code == FINISHED:
                 code = self.piece(t)
                 c = self.found if code == FINISHED else NOBODY
-            if c != NOBODY:
+            if c != NOBODY and code == FINISHED:
                 code = self.struck(t, c)
             if code != FINISHED and code != AGAIN:
                 return code
@@ -178,26 +179,29 @@ class Steps:
         code = self.strike(t, c)
         return STOPPED if pausing and code == FINISHED else code
 
-    def begin_interval(self, t: float) -> bool:
+    def begin_interval(self, t: float) -> int:
         """The smooth interval from w.sigma to the next corner or the end of the step.
 
-        Whether it begins at a corner at which velocities of gaps may jump.
+        `found` is CORNER if it begins at one at which velocities of gaps may jump.
         """
-        now, turns = t + self.w.sigma, False
+        now, self.found = t + self.w.sigma, NOBODY
         if now >= self.w.high - self.plan.margin:
             self.w.low, self.w.high = find_corners(self.plan, now)
-            turns = obstacles_move(self.m) or self.plan.joined
-            self.pass_corner(now)
+            if obstacles_move(self.m) or self.plan.joined:
+                self.found = CORNER
+            if not self.pass_corner(now):
+                return NOT_FINITE
         self.w.end = self.plan.h
         if t + self.plan.h > self.w.high + self.plan.margin:
             self.w.end = max(self.w.high - t, self.w.sigma)
         self.look_ahead(t + self.w.end)
-        return turns
+        return FINISHED
 
     # --- what the orders differ in -----------------------------------------------------------------------------
 
-    def pass_corner(self, t: float) -> None:
-        """What is kept of the forces at time t, at which they may jump."""
+    def pass_corner(self, t: float) -> bool:
+        """What is kept of the forces at time t, at which they may jump; False where the mass matrix fails."""
+        return True
 
     def look_ahead(self, t: float) -> None:
         """What is to be known of the end t of a smooth interval."""

@@ -9,14 +9,14 @@ from lcpstep.stepping.pieces.jointed cimport turn_with_joints
 from lcpstep.stepping.pieces.loop cimport AGAIN, Steps, finite
 from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish
 from lcpstep.stepping.pieces.race cimport race
-from lcpstep.stepping.pieces.smooth cimport free_acceleration
+from lcpstep.stepping.pieces.smooth cimport renew_forces
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport idle
 from lcpstep.stepping.pieces.times cimport at_corner, within
 
 
 cdef class QuadraticSteps(Steps):
-    cdef void pass_corner(self, double t) noexcept nogil
+    cdef bint pass_corner(self, double t) noexcept nogil
     cdef void look_ahead(self, double t) noexcept nogil
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     cdef Py_ssize_t find(self, double t) noexcept nogil
@@ -29,5 +29,4 @@ cdef bint take_in_turn(Model m, Plan plan, Work w, Record record, double t) noex
 cdef Py_ssize_t room(Plan plan, Work w, Record record) noexcept nogil
 @cython.locals(wanted=bint)
 cdef bint racing(Work w, Record record, double t) noexcept nogil
-cdef void turn_forces(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef void next_forces(Model m, Plan plan, Work w, double t) noexcept nogil

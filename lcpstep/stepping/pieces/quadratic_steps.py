@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
     from lcpstep.stepping.pieces.race import race
-    from lcpstep.stepping.pieces.smooth import free_acceleration
+    from lcpstep.stepping.pieces.smooth import renew_forces
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle
     from lcpstep.stepping.pieces.times import at_corner, within
@@ -37,9 +37,11 @@ class QuadraticSteps(Steps):
         super().__init__(m, plan, w, record)
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
-    def pass_corner(self, t: float) -> None:
+    def pass_corner(self, t: float) -> bool:
         """Forces on the far side of a corner."""
-        turn_forces(self.m, self.plan, self.w, within(self.plan, self.w, t))
+        if self.w.joined:
+            turn_with_joints(self.w, within(self.plan, self.w, t))
+        return renew_forces(self.m, self.plan, self.w, t)
 
     def look_ahead(self, t: float) -> None:
         """Forces, and accelerations of obstacles, at the end of a smooth interval."""
@@ -110,17 +112,6 @@ def racing(w: Work, record: Record, t: float) -> bool:
     """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
     wanted = record.next_time < record.n_times and record.times[record.next_time] <= t + w.end
     return w.n_c > 1 and w.closed_now == 0 and not wanted
-
-
-def turn_forces(m: Model, plan: Plan, w: Work, t: float) -> None:
-    """Forces and accelerations at the base of a piece, at a time just after a corner."""
-    if plan.trapezoidal and not plan.steady:
-        external_force(m, t, w.q, w.v, w.force)
-    elif not plan.trapezoidal:
-        if w.joined:
-            turn_with_joints(w, t)
-        free_acceleration(m, w, t, w.q, w.v, w.free)
-    w.force_evaluations += 1
 
 
 def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:

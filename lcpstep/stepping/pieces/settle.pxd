@@ -1,6 +1,6 @@
 cimport cython
 from libc.math cimport pow
-from lcpstep.kernels.dynamics cimport external_force, gap_rates
+from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, product
@@ -13,7 +13,7 @@ from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.magnitudes cimport speed_terms
 from lcpstep.stepping.pieces.refine cimport solve_chosen
 from lcpstep.stepping.pieces.smooth cimport (
-    free_acceleration, gap_bias, measure, put_on_surface, refactor, respond
+    gap_bias, measure, put_on_surface, refactor, renew_forces, respond
 )
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport release, stick

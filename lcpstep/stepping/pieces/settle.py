@@ -18,7 +18,7 @@ import cython
 if not cython.compiled:
     from math import pow
 
-    from lcpstep.kernels.dynamics import external_force, gap_rates
+    from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
@@ -39,11 +39,11 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.refine import solve_chosen
     from lcpstep.stepping.pieces.smooth import (
-        free_acceleration,
         gap_bias,
         measure,
         put_on_surface,
         refactor,
+        renew_forces,
         respond,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -155,13 +155,8 @@ def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
             w.q_try[i] = w.q[i] - (t - at) * w.v[i]
         record.keep(at, 0.0, w.q_try, w.v_try, w.impulse)
         record.next_time += 1
-    if plan.trapezoidal and not plan.steady:
-        external_force(m, within(plan, w, t), w.q, w.v, w.force)
-        w.force_evaluations += 1
-    elif not plan.trapezoidal:
-        if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
-            return NOT_FINITE
-        w.force_evaluations += 1
+    if not renew_forces(m, plan, w, t):
+        return NOT_FINITE
     if record.keeps_events():
         keep(w, record, t, 1.0)
     return FINISHED

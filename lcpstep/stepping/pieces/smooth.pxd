@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
+from lcpstep.kernels.dynamics cimport bias, external_force, gap_rates, gaps, mass, total_force
 from lcpstep.kernels.linear cimport (
     factorise, grow_factor, positive_definite, solve, solve_definite, solve_factored,
 )
@@ -20,6 +20,7 @@ cdef void invert(Model m, Plan plan, Work w, double rest, Py_ssize_t place) noex
 @cython.locals(place=Py_ssize_t)
 cdef Py_ssize_t accelerate(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef bint free_acceleration(Model m, Work w, double t, double* q, double* v, double* out) noexcept nogil
+cdef bint renew_forces(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef void mobility(Model m, Work w, Py_ssize_t c) noexcept nogil
 cdef void respond(Model m, Work w) noexcept nogil
 cdef bint refactor(Model m, Work w, double t) noexcept nogil

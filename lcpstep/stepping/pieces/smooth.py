@@ -15,7 +15,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
+    from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, mass, total_force
     from lcpstep.kernels.linear import (
         factorise,
         grow_factor,
@@ -97,7 +97,10 @@ def accelerate(m: Model, plan: Plan, w: Work, t: float) -> int:
 
 
 def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
-    """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M."""
+    """M^-1 f(t, q, v) of a general system; leaves the factors of a mass matrix that changes in w.M.
+
+    False where that is not positive definite.
+    """
     if not m.mass.given:
         total_force(m, t, q, v, w.force)
         for i in range(w.n_q):
@@ -112,6 +115,18 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
     solve_definite(w.M, out, w.n_q)
     if w.joined:
         join_acceleration(w, t, q, v, out)
+    return True
+
+
+def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
+    """Forces at time t, the base of a piece, or their acceleration without contact; False where the mass fails."""
+    if plan.trapezoidal and not plan.steady:
+        external_force(m, within(plan, w, t), w.q, w.v, w.force)
+        w.force_evaluations += 1
+    elif not plan.trapezoidal:
+        if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+            return False
+        w.force_evaluations += 1
     return True
 
 

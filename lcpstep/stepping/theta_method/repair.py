@@ -25,12 +25,11 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, max
     from lcpstep.stepping.constraints.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import divide_by_mass, mobilities
-    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
+    from lcpstep.stepping.constraints.joint_rows import arrived, distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
 
 PROJECTIONS = 20  # of Newton
-STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
 
 
 def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
@@ -48,7 +47,7 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
             worst = max(worst, -c.gaps[i])
         for i in range(c.n_j):
             worst = max(worst, abs(c.joint_gaps[i]))
-        if worst <= plan.slack or 0.5 * before < worst <= STALLED * plan.slack:
+        if arrived(worst, before, plan.slack):
             return FINISHED
         if not worst < inf:
             return PROJECTION_FAILED

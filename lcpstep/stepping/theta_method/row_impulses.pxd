@@ -6,12 +6,13 @@ from lcpstep.kernels.vectors cimport copy, finite, largest, product
 from lcpstep.pointers cimport abs, after, max
 from lcpstep.stepping.constraints.coulomb cimport solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities
-from lcpstep.stepping.constraints.joint_rows cimport distribute, eliminate
+from lcpstep.stepping.constraints.joint_rows cimport CONTRADICTION, distribute, eliminate
+from lcpstep.stepping.theta_method.implicit cimport REFRESH
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
-cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE, REFRESH
-cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH, CONTRADICTION
+cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
+cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(

@@ -19,7 +19,8 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
+    from lcpstep.stepping.constraints.joint_rows import CONTRADICTION, distribute, eliminate
+    from lcpstep.stepping.theta_method.implicit import REFRESH
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
 
@@ -27,8 +28,6 @@ CONVERGED = 1e-12  # change of the velocity, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
 ROUNDING = 1e-13  # of these terms: what is left of it is no motion
 NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
-CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
-REFRESH = 5  # iterations with one A, see `implicit`
 
 
 def impulses(
