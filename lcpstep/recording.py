@@ -90,11 +90,17 @@ class States(NamedTuple):
     mode: Array
     length: Array
 
+    def and_then(self, t: float, q: Array, v: Array, impulse: Array, mode: float = 0.0) -> States:
+        """These, and one more."""
+        more = np.array([t]), q[None], v[None], impulse[None], np.array([mode]), np.zeros(1)
+        return States(*(np.concatenate(pair) for pair in zip(self, more, strict=True)))
+
 
 class Recorder:
     """Buffers of one run, and what they held when they were emptied.
 
     record    what kernels write into `rows`, `lines` of the log and `curves` (dense output) through
+    taken     events taken out of the buffers
     expected : states of the whole run, where that is known; they are not moved again, then
     """
 
@@ -117,6 +123,7 @@ class Recorder:
         self.record = Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves
         )
+        self.taken = 0
         self._states: list[Columns] = []
         self._expected = min(expected, EXPECTED)
         self._free = 0  # rows of the last of them that are not filled
@@ -132,6 +139,7 @@ class Recorder:
             self._free -= rows
         self._parts["dense"].append(self.curves[:rows].copy())
         self._parts["events"].append(self.lines[:events].copy())
+        self.taken += events
         self.record.event = 0
 
     def _close(self, rows: int) -> None:
@@ -143,11 +151,9 @@ class Recorder:
         self._states.append(self.record.room_for(rows))
         self._free = rows
 
-    def take(self) -> int:
-        """Take over what kernels have written; how many events that were."""
-        events = int(self.record.event)
-        self.empty(self.record.row, events)
-        return events
+    def take(self) -> None:
+        """Take over what kernels have written."""
+        self.empty(self.record.row, int(self.record.event))
 
     def states(self) -> States:
         """All states kept so far."""

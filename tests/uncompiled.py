@@ -33,7 +33,9 @@ class Sources:
 
 def kernels(package="lcpstep"):
     """A package's kernel modules as plain Python, by their last names; those that are built stay where they are."""
-    before = {name: sys.modules.pop(name) for name in BUILT if name in sys.modules}
+    for name in BUILT:  # whatever else these load belongs to what is built
+        importlib.import_module(name)
+    before = {name: sys.modules.pop(name) for name in BUILT}
     sys.meta_path.insert(0, Sources)
     try:
         modules = {name: importlib.import_module(name) for name in BUILT if name.startswith(package)}

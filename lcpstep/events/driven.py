@@ -69,7 +69,7 @@ class EventDriven:
         """The motion of a system with modes; see `lcpstep.simulate`."""
         from lcpstep.events.hybrid.run import HybridRun
 
-        return HybridRun(self, scene).finish(kept, progress)
+        return HybridRun(self, scene, kept).finish(progress)
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""

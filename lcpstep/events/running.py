@@ -1,9 +1,8 @@
-"""A run of the event-driven method, from kernel calls to a trajectory: portions, buffers, and how it ended."""
+"""What event-driven runs share: buffers whose last row may still change, and states between kept ones."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,33 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.faults import cause
 from lcpstep.kernels.layout import TIME
-from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.kernels.tally import Tally
-from lcpstep.model import culprit, unrepeatable
-from lcpstep.pace import Pace
+from lcpstep.model import unrepeatable
 from lcpstep.recording import Kept, Recorder, States
-from lcpstep.trajectory import Counts, Status, Trajectory
+from lcpstep.running import Run
+from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within an interval that failed
 
 
-class Run(ABC):
-    """One run: the kernel's arrays, and the portions that it is fed in."""
+class EventRun(Run):
+    """One run from event to event."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
-        self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
+        super().__init__(method, scene, kept, recorder, PORTION)
         self.tally = Tally(method.max_events)
-        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
-
-    @property
-    @abstractmethod
-    def now(self) -> float:
-        """Time reached [s]."""
 
     @property
     @abstractmethod
@@ -46,46 +36,27 @@ class Run(ABC):
 
     @property
     @abstractmethod
-    def state(self) -> tuple[Array, Array]:
-        """Last known q and v."""
-
-    @property
-    @abstractmethod
     def evaluations(self) -> int:
         """How often forces were evaluated."""
-
-    @abstractmethod
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
 
     @abstractmethod
     def keep_now(self) -> None:
         """Write the current state into the recorder's buffers."""
 
-    @abstractmethod
-    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, from the kept ones."""
+    @property
+    def done(self) -> int:
+        """Steps taken."""
+        return int(self.tally.steps)
 
-    def status(self, code: int) -> Status:
-        """How the run ended, by what the kernel returned."""
-        return Status(code)
+    @property
+    def ahead(self) -> Array:
+        """Times at which a callback may be what has failed [s]."""
+        return np.linspace(self.now, self.interval_end, TRIALS)
 
-    def finish(self, progress: Callable[[float], None]) -> Trajectory:
-        """Run to the end of the span, or to where it cannot go on."""
-        code, raised = DONE, None
-        try:
-            while code in (DONE, BUFFER_FULL) and self.now < self.scene.t_span[1]:
-                code = self.advance(self.pace.goal(self.tally.steps))
-                raised = cause()
-                self.empty()
-                progress(self.now)
-        except KeyboardInterrupt:
-            message = f"interrupted {self.where}"
-            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, message)) from None
-        result = self.trajectory(self.status(code), self.message(code))
-        if result.status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result) from raised
-        return result
+    @property
+    def counts(self) -> Counts:
+        """Work done."""
+        return Counts(self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events)
 
     def empty(self) -> None:
         """Move the buffers' contents to the recorder, but for the last row, whose step may still be to come."""
@@ -99,44 +70,24 @@ class Run(ABC):
             kept[:1] = kept[last : last + 1]
         record.row, record.event = left, 0
 
-    def trajectory(self, status: Status, message: str) -> Trajectory:
-        """Everything computed so far."""
-        record, n_c = self.recorder.record, self.scene.n_c
+    def states(self) -> States:
+        """All states kept, and the last one where states are kept by steps or events."""
+        record = self.recorder.record
         nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
         if len(self.kept.times) == 0 and nothing:
             self.keep_now()
         self.recorder.take()
-        s = self.recorder.states()
-        return Trajectory(
-            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v,
-            impulse=np.ascontiguousarray(s.impulse[:, :n_c]),
-            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=message,
-            counts=Counts(
-                steps=self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events
-            ),
-            dense=self.dense_output(s), joint_impulse=np.ascontiguousarray(s.impulse[:, n_c:]),
-        )  # fmt: skip
+        return self.recorder.states()
 
-    @property
-    def where(self) -> str:
-        """Time and state reached, in words."""
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code != Status.STEP_TOO_SMALL:
+            return super().why(code)
         q, v = self.state
-        return f"at t = {self.now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
-
-    def message(self, code: int) -> str:
-        """How the run ended, in words."""
-        q, v = self.state
-        if code == Status.DONE:
-            return "reached the end of the span"
-        if code == Status.TOO_MANY_EVENTS:
-            return f"more than max_events = {self.method.max_events} events {self.where}"
-        if code == Status.STEP_TOO_SMALL:
-            tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
-            words = f"the tolerances {tolerances} cannot be met {self.where}"
-            names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
-            return f"{words}: {names} must be functions of time and state, and are not" if names else words
-        times = np.linspace(self.now, self.interval_end, TRIALS)
-        return f"{culprit(self.scene, times, q.copy(), v.copy())} {self.where}"
+        tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
+        words = f"the tolerances {tolerances} cannot be met {self.where}"
+        names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
+        return f"{words}: {names} must be functions of time and state, and are not" if names else words
 
 
 @dataclass(eq=False)

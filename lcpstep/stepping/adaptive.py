@@ -1,4 +1,4 @@
-"""Steps by a tolerance, as Python sees them: their sizes, the loop's portions, and what a run says that fails.
+"""Steps by a tolerance, as Python sees them: their sizes, and what a run says that fails.
 
 The control itself, what it aims at and where that comes from: `step_control`.
 """
@@ -6,25 +6,24 @@ The control itself, what it aims at and where that comes from: `step_control`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.faults import cause
+from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.model import failing
-from lcpstep.pace import Pace
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
+from lcpstep.trajectory import Status
 
 # Why the loop returned, besides its method's own reasons: at the end of the span, to have its buffers emptied, for
 # good, and for what Python makes
-REACHED, PAUSED, TOO_SMALL, WANTED = 0, -1, -2, -3
+REACHED, PAUSED, TOO_SMALL, WANTED = int(Status.DONE), BUFFER_FULL, int(Status.STEP_TOO_SMALL), -3
 LEVELS = 52  # halvings of the longest step, at most
 NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 FIRST = 1e-6  # of the span: the first step
-LOOK = 4096  # steps between two looks at the outside world, at most
+LOOK = 4096  # attempts between two looks at the outside world, at most
 LOOKS_AHEAD = 17  # at the callbacks where no step is short enough
 
 
@@ -39,28 +38,6 @@ def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
     first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
     return h_max, coarse << finest, finest, first
-
-
-def run(control: Any, numbers: int, arrive: Callable[[], None], progress: Callable[[float], None]) -> int:
-    """The whole span; 0, or why it could not be reached. `arrive` is called where buffers are to be emptied.
-
-    control : a `step_control.Control`;  numbers : that a step computes with
-    """
-    pace = Pace(LOOK, numbers)
-    try:
-        while True:
-            control.until = pace.goal(control.tried)
-            code = int(control.advance())
-            cause()
-            if code == WANTED:
-                control.prepare()
-                continue
-            arrive()
-            progress(control.time)
-            if code != PAUSED:
-                return code
-    finally:
-        arrive()
 
 
 def too_small(method: Any, scene: Scene, t: float, q: Any, v: Any, where: str) -> str:

@@ -81,13 +81,9 @@ class Located:
         require(scene, f"Located with {variant}", joints=joints, friction=True)
         if self.order == "exact":
             require_linear(scene)
-        if self.tolerance is not None:
-            from lcpstep.stepping.pieces.adapted import AdaptedRun
+        from lcpstep.stepping.pieces.run import LocatedRun
 
-            return AdaptedRun(self, scene, kept).finish(progress)
-        from lcpstep.stepping.pieces.run import Run
-
-        return Run(self, scene, kept).finish(progress)
+        return LocatedRun(self, scene, kept).finish(progress)
 
 
 def require_linear(scene: Scene) -> None:

@@ -87,14 +87,10 @@ class Moreau:
                 raise LcpStepError(
                     f"tolerance: scenes with sparse matrices take steps of one size; expected None for {scene.name!r}"
                 )
-            return sparse.Run(self, scene, kept).finish(progress)
-        if self.tolerance is not None:
-            from lcpstep.stepping.adapted_run import AdaptedRun
+            return sparse.SparseRun(self, scene, kept).finish(progress)
+        from lcpstep.stepping.moreau_run import MoreauRun
 
-            return AdaptedRun(self, scene, kept).finish(progress)
-        from lcpstep.stepping.moreau_run import Run
-
-        return Run(self, scene, kept).finish(progress)
+        return MoreauRun(self, scene, kept).finish(progress)
 
 
 def is_sparse(scene: Scene) -> bool:

@@ -10,7 +10,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.theta_loop cimport run
 
-cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, FINISHED, LOG_FULL, ROWS, SAVED
+cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, FINISHED, BUFFER_FULL, ROWS, SAVED
 cdef double LATE
 
 

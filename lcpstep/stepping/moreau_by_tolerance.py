@@ -22,7 +22,7 @@ import numpy as np
 from lcpstep.stepping.adaptive import LEVELS, PAUSED, REACHED, WANTED
 from lcpstep.stepping.step_control import Control
 from lcpstep.stepping.steps import LATE
-from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL
+from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
@@ -129,7 +129,7 @@ class Attempts(Control):
                 self.restore()
                 self.apart_q = self.apart_v = 0.0
                 code = self.halves(t, h, slow)
-        self.full = code == LOG_FULL and self.event > 0
+        self.full = code == BUFFER_FULL and self.event > 0
         self.failed = code != FINISHED
         self.far_q, self.far_v = largest(self.s.q, 0.0, n), largest(self.s.v, 0.0, n)
         return code

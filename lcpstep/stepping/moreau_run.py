@@ -1,35 +1,32 @@
-"""A run of `Moreau` in steps of one size, from a scene to a trajectory.
+"""A run of `Moreau`, from a scene to a trajectory.
 
-The loop over steps is a kernel (`theta_method.theta_loop`); this file prepares what it works in, feeds it in
-portions, hands complementarity problems to an outside solver where one is named, and says in words how a run ended.
+The loop over steps is a kernel (`theta_method.theta_loop`); this file prepares what it works in, hands
+complementarity problems to an outside solver where one is named, and says in words why a run ended early.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.faults import cause
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
-from lcpstep.lcp import solve_lcp
-from lcpstep.model import culprit, models
-from lcpstep.pace import Pace
-from lcpstep.recording import Kept, Recorder
+from lcpstep.model import models
+from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.constraints.coulomb import ContactProblem
+from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, divided, largest, unresolved
+from lcpstep.stepping.step_run import StepRun
+from lcpstep.stepping.steps import RESTING, largest, number
 from lcpstep.stepping.theta_method import theta_loop as loop
-from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL, MAX_ITERATIONS, NEED_LCP
+from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
 from lcpstep.stepping.theta_method.plan import Plan
-from lcpstep.trajectory import Counts, Status, Trajectory
+from lcpstep.trajectory import Counts, Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
@@ -39,88 +36,62 @@ PORTION = 65536  # steps between two looks at the outside world, at most
 STATES = 8192  # kept in these, at most: what a processor has at hand while it is written and read
 
 
-class Run:
-    """One run: what the kernels work in, and the portions that they are fed in."""
+class MoreauRun(StepRun):
+    """One run: what the kernels work in."""
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
-        self.method, self.scene, self.kept = method, scene, kept
         self.model, joints, tangents = models(scene)
         self.rows = rows(scene, joints, tangents, method.projected)
         self.constant = all(m.flat for m in (self.model, joints, tangents)) and self.model.linear
         self.constant = self.constant and not method.projected
-        self.state = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
-        self.stretches = list(divided(scene.t_span, method.h))
+        self.place = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
         portion = min(PORTION, STATES * kept.every) if kept.every > 0 else PORTION
         # A portion keeps at most its steps, the given times, and the first and last state.
-        room = STATES if kept.every > 0 else PORTION
-        expected = 1 + self.stretches[-1][3] // kept.every if kept.every > 0 else len(kept.times)
-        self.recorder = Recorder(scene.n_q, self.rows.n, kept, room + len(kept.times) + 2, expected=expected)
+        room = (STATES if kept.every > 0 else PORTION) + len(kept.times) + 2
+        steps = number(scene.t_span, method.h)
+        expected = 1 + steps // kept.every if kept.every > 0 else len(kept.times)
+        recorder = Recorder(scene.n_q, self.rows.n, kept, room, expected=expected)
+        super().__init__(method, scene, kept, recorder, portion)
         size = largest(scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
-        self.events = 0
-        self.pace = Pace(portion, scene.n_q + self.rows.n)
-        self.t0, self.first = scene.t_span[0], 0
         self.plan = self.plan_for(self.stretches[0][0])
 
-    def finish(self, progress: Callable[[float], None]) -> Trajectory:
-        """Run to the end of the span, or to where it cannot go on."""
-        t_start, error = self.scene.t_span[0], None
-        try:
-            side = start_side(self.scene, t_start)
-            loop.begin_at(self.model, self.state, self.rows, self.recorder.record, t_start, side)
-            status = self.advance(progress)
-            if status == Status.NOT_FINITE:
-                error = cause()
-        except KeyboardInterrupt:
-            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(status)
-        if status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result) from error
-        return result
+    def begin(self) -> int:
+        """The initial state; a code."""
+        t = self.scene.t_span[0]
+        loop.begin_at(self.model, self.place, self.rows, self.recorder.record, t, start_side(self.scene, t))
+        if self.method.tolerance is not None:
+            control = Attempts(
+                self.model, self.plan, self.place, self.rows, self.recorder.record, self.plan_for,
+                self.scene.t_span, self.method.h, self.method.tolerance, 2 if self.method.theta == 0.5 else 1,
+            )  # fmt: skip
+            self.controlled_by(control)
+        return Status.DONE
 
-    def advance(self, progress: Callable[[float], None]) -> Status:
-        """The whole run in steps of one size, and a last one where that does not divide the span."""
-        status = Status.DONE
-        for h, t0, first, last in self.stretches:
-            if status == Status.DONE:
-                if first > 0:
-                    self.plan = self.plan_for(h)
-                self.t0, self.first = t0, first
-                status = self.portions(last, progress)
-        return status
+    def take(self, last: int) -> int:
+        """Steps up to the one before `last`; why the kernel returned."""
+        external, solved, code = self.method.lcp != "lemke", False, NEED_LCP
+        while code == NEED_LCP:
+            code = loop.go(
+                self.model, self.plan, self.place, self.rows, self.recorder.record, self.t0, self.first, last,
+                external, solved,
+            )  # fmt: skip
+            solved = code == NEED_LCP and self.solve_outside()
+            if code == NEED_LCP and not solved:
+                return Status.LCP_FAILED
+        return int(code)
 
     def plan_for(self, h: float) -> Plan:
         """What steps of size h multiply with."""
         made = plan(self.model, self.rows, h, self.method.theta, self.slack, self.constant)
         if self.constant and self.rows.n > self.rows.n_c:
-            loop.prepare(self.model, made, self.state, self.rows, self.scene.t_span[0])
+            loop.prepare(self.model, made, self.place, self.rows, self.scene.t_span[0])
         return made
-
-    def portions(self, last: int, progress: Callable[[float], None]) -> Status:
-        """Steps up to the one before `last`, all of one size."""
-        s, external, solved, code = self.state, self.method.lcp != "lemke", False, FINISHED
-        while s.steps < last:
-            goal = min(last, self.pace.goal(s.steps))
-            while s.steps < goal:
-                record = self.recorder.record
-                code = loop.go(
-                    self.model, self.plan, s, self.rows, record, self.t0, self.first, goal, external, solved
-                )
-                solved = code == NEED_LCP and self.solve_outside()
-                if code == NEED_LCP and not solved:
-                    code = int(Status.LCP_FAILED)
-                if code == LOG_FULL:
-                    self.empty()
-                elif code not in (FINISHED, NEED_LCP):
-                    break
-            self.empty()
-            progress(self.now)
-            if code not in (FINISHED, LOG_FULL, NEED_LCP):  # be it in the last step of the portion
-                return Status(code)
-        return Status.DONE
 
     def solve_outside(self) -> bool:
         """Hand the problem at hand to the named solver; whether it was solved."""
+        from lcpstep.lcp import solve_lcp
+
         arrays, n = self.rows.problem.arrays, len(self.active)
         W, b = arrays["mobility"][: n * n].reshape(n, n), arrays["rate"][:n]
         solution = solve_lcp(W, b, method=self.method.lcp)
@@ -130,68 +101,61 @@ class Run:
     @property
     def active(self) -> list[int]:
         """Contacts that are active in the step at hand."""
-        x = self.state.arrays
+        x = self.place.arrays
         return np.flatnonzero(x["g"] + 0.5 * self.plan.h * x["u"] <= self.plan.slack).tolist()
 
     @property
     def now(self) -> float:
         """Time of the current state [s]."""
-        return self.t0 + self.plan.h * (self.state.steps - self.first)
+        return self.t0 + self.plan.h * (self.steps - self.first)
 
-    def empty(self) -> None:
-        """Move what the kernels have written to the recorder's keeping."""
-        self.events += self.recorder.take()
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return int(self.place.steps)
 
-    def trajectory(self, status: Status) -> Trajectory:
-        """Everything computed so far."""
-        self.empty()
-        kept, s = self.recorder.states(), self.state
-        t, q, v, impulses = kept.t, kept.q, kept.v, kept.impulse
-        if len(self.kept.times) == 0 and self.now > t[-1]:
-            now = s.arrays
-            t, q, v = np.append(t, self.now), np.vstack([q, now["q"]]), np.vstack([v, now["v"]])
-            impulses = np.vstack([impulses, now["impulse"]])
-        if len(t) > 0 and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
-            t[-1] = self.scene.t_span[1]
-        impulse, friction, joint = np.split(
-            impulses, [self.rows.n_c, impulses.shape[1] - self.rows.n_j], axis=1
-        )
-        return Trajectory(
-            scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status),
-            counts=Counts(steps=s.steps, lcp_calls=s.problems, force_evaluations=s.forces, events=self.events),
-            dense=self.between(t, q, v), joint_impulse=joint, friction_impulse=friction,
-        )  # fmt: skip
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        return self.place.arrays["q"], self.place.arrays["v"]
 
-    def between(self, t: Array, q: Array, v: Array) -> interpolation.Between:
+    @property
+    def ahead(self) -> tuple[float, float]:
+        """Times at which a callback may be what has failed [s]."""
+        return self.now, self.now + self.plan.h
+
+    @property
+    def counts(self) -> Counts:
+        """Work done."""
+        s = self.place
+        return Counts(s.steps, s.problems, s.forces, self.recorder.taken)
+
+    def with_last(self, s: States) -> States:
+        """The states, and the one that has been reached."""
+        return s.and_then(self.now, *self.state, self.place.arrays["impulse"])
+
+    def dense(self, s: States) -> interpolation.Between:
         """How states between kept ones follow from them."""
-        return interpolation.Linear(t, q, v, self.kept.all)
+        if self.control is not None and self.method.theta == 0.5:  # long steps are parabolas
+            return interpolation.Parabolic(s.t, s.q, s.v, self.kept.all)
+        return interpolation.Linear(s.t, s.q, s.v, self.kept.all)
 
-    def message(self, status: Status) -> str:
-        """How the run ended, in words."""
-        if status == Status.DONE:
-            return "reached the end of the span"
-        s, now = self.state, self.now
-        q, v = s.arrays["q"], s.arrays["v"]
-        where = f"at t = {now:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
-        if status == Status.INTERRUPTED:
-            return f"interrupted {where}"
-        if status == Status.LCP_FAILED:
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.LCP_FAILED:
             words = f"{self.method.lcp} found no solution for the contacts {self.active}"
-            return f"{no_way_out(self.scene, now + self.plan.h, q, self.active) or words} {where}"
-        if status == Status.JOINTS_FAILED:
+            q = self.state[0]
+            return f"{no_way_out(self.scene, self.now + self.plan.h, q, self.active) or words} {self.where}"
+        if code == Status.JOINTS_FAILED:
             joints = np.flatnonzero(self.rows.arrays["failed"]).tolist()
-            return f"joints {joints} contradict each other in step {s.steps} {where}"
-        if status == Status.PROJECTION_FAILED:
-            return (
-                f"no position near satisfies all joints and contacts in step {s.steps} {where}; "
-                "try a smaller h"
-            )
-        if status == Status.NEWTON_FAILED:
-            return (
-                f"Newton's iteration did not converge within {MAX_ITERATIONS} steps {where}; try a smaller h"
-            )
-        return f"{culprit(self.scene, (now, now + self.plan.h), q, v)} {where}"
+            return f"joints {joints} contradict each other in step {self.steps} {self.where}"
+        if code == Status.PROJECTION_FAILED:
+            words = f"no position near satisfies all joints and contacts in step {self.steps}"
+            return f"{words} {self.where}; try a smaller h"
+        if code == Status.NEWTON_FAILED:
+            words = f"Newton's iteration did not converge within {MAX_ITERATIONS} steps"
+            return f"{words} {self.where}; try a smaller h"
+        return super().why(code)
 
 
 def rows(scene: Scene, joints: Model, tangents: Model, projected: bool) -> Rows:

@@ -108,7 +108,7 @@ class Control:
             else:
                 self.restore()
             if verdict == GIVEN_UP:
-                return TOO_SMALL if code == REACHED else code
+                return code if code > REACHED else TOO_SMALL  # or its events never fit into the buffers
             if self.failed:
                 return WANTED
         return PAUSED

@@ -44,6 +44,12 @@ def unresolved(span: tuple[float, float], h: float) -> float:
     return max(WHOLE * h, 4.0 * RESOLUTION * max(abs(span[0]), abs(span[1])))
 
 
+def number(span: tuple[float, float], h: float) -> int:
+    """How many steps a span is divided into."""
+    *_, last = divided(span, h)
+    return last[3]
+
+
 def divided(span: tuple[float, float], h: float) -> Iterator[tuple[float, float, int, int]]:
     """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
     start, end = span

@@ -79,7 +79,7 @@ def push(t, q, v, p, out):
 def test_a_mass_that_fails_at_a_corner_ends_the_run_there(h):
     system = System(n_q=1, mass=mass_that_turns_negative, force=push)
     scene = Scene(system, 0.0, 0.0, (0.0, 1.0), corners=(0.5,))
-    with pytest.raises(SimulationError, match="positive definite.* at t = 0.5 s") as stopped:
+    with pytest.raises(SimulationError, match=r"positive definite.* at t = 0.5 s") as stopped:
         simulate(scene, Located(h))
     m = stopped.value.trajectory
     assert m.status == Status.NOT_FINITE

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, model, recording, simulate
+from lcpstep import Moreau, model, simulate
+from lcpstep.kernels import record
 from lcpstep.stepping import moreau_run
 from tests.uncompiled import kernels
 
@@ -19,7 +20,7 @@ def uncompiled(monkeypatch):
     def start():
         monkeypatch.setattr(model, "kernels", plain.model)
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
-        monkeypatch.setattr(recording, "Record", plain.record.Record)
+        monkeypatch.setattr(record, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)
         monkeypatch.setattr(moreau_run, "Rows", plain.moving.Rows)

@@ -17,7 +17,7 @@ from lcpstep.events.flight.loop import advance
 from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import Oscillator, oscillator_of
 from lcpstep.events.flight.reach import reach
-from lcpstep.events.running import PORTION, Between, Run, without_impulses
+from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.model import Model
 from lcpstep.model import model
@@ -53,7 +53,7 @@ def recorder(scene: Scene, kept: Kept) -> Recorder:
     return Recorder(1, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK)
 
 
-class ClosedForm(Run):
+class ClosedForm(EventRun):
     """A run in closed form."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, m: Model, o: Oscillator) -> None:
@@ -91,7 +91,7 @@ class ClosedForm(Run):
         """Write the current state into the recorder's buffers."""
         keep_now(self.flight)
 
-    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the flights that start there."""
         complete = self.kept.all or self.kept.on_events
         return Flights(without_impulses(s), complete, self.scene, self.model, self.given)

@@ -19,7 +19,6 @@ from lcpstep.events.general.state import Mechanism
 from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.status import DONE
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
@@ -60,7 +59,7 @@ def start(scene: Scene, method: Any) -> Mechanism:
     return smooth.mechanism
 
 
-class General(running.Run):
+class General(running.EventRun):
     """A run with any number of contacts and joints."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
@@ -100,7 +99,7 @@ class General(running.Run):
         """Write the current state into the recorder's buffers."""
         keep_state(self.system, self.recorder.record)
 
-    def dense_output(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""
         F = self.recorder.dense()
         return Moved(running.without_impulses(s), self.kept.all, self.system.constant, F)
@@ -109,8 +108,8 @@ class General(running.Run):
         """How the run ended, by what the kernel returned."""
         return STATUS.get(code) or Status(code)
 
-    def message(self, code: int) -> str:
-        """How the run ended, in words."""
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
         s, where = self.system, self.where
         closed, members = s.contact.closed_ones(), s.contact.members(s.n_members)
         if code == NO_IMPULSES:
@@ -125,8 +124,7 @@ class General(running.Run):
             if self.tally.events <= self.method.max_events:
                 bound = "events without end at one time"
             return f"{bound}; the last at contacts {s.contact.latest()}, closed are {closed}, {where}"
-        words = super().message(code)
-        return words if code == DONE else f"{words}; closed contacts {closed}"
+        return f"{super().why(code)}; closed contacts {closed}"
 
 
 @dataclass(eq=False)

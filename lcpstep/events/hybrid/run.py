@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
+from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid import loop
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
-from lcpstep.faults import cause
-from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.model import hybrid_culprit
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept
+from lcpstep.running import Portions
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
@@ -43,42 +41,38 @@ def prepared(scene: HybridScene, method: Any, rows: int, switches: int) -> Motio
     return motion
 
 
-class HybridRun:
-    """One run: the kernel's arrays, and the portions that it is fed in."""
+class HybridRun(Portions):
+    """One run: the kernel's arrays, and what has been taken out of them."""
 
-    def __init__(self, method: Any, scene: HybridScene) -> None:
-        self.method, self.scene = method, scene
+    def __init__(self, method: Any, scene: HybridScene, kept: Kept) -> None:
+        super().__init__(method, scene, kept, Pace(PORTION, scene.system.n_x))
         self.motion = prepared(scene, method, ROWS, SWITCHES)
         _check_start(scene, self.motion.m)
-        self.pace = Pace(PORTION, scene.system.n_x)
         self.parts: list[tuple[Array, Array, Array]] = []
 
-    def finish(self, kept: Kept, progress: Callable[[float], None]) -> HybridTrajectory:
-        """Run to the end of the span, or to where it cannot go on."""
-        code, t_end = BUFFER_FULL, self.scene.t_span[1]
-        try:
-            while code == BUFFER_FULL or (code == Status.DONE and self.now < t_end):
-                code = loop.run(self.motion, self.pace.goal(self.motion.steps))
-                self.parts.append(self.motion.take())
-                error = cause()
-                progress(self.now)
-        except KeyboardInterrupt:
-            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, kept)) from None
-        result = self.trajectory(Status(code), kept)
-        if result.status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result) from error
-        return result
+    def advance(self, goal: int) -> int:
+        """Call the kernel, for `done` to become `goal` at most; why it returned."""
+        return int(loop.run(self.motion, goal))
+
+    @property
+    def done(self) -> int:
+        """Steps taken."""
+        return int(self.motion.steps)
 
     @property
     def now(self) -> float:
-        """Time reached."""
-        return self.motion.now
+        """Time reached [s]."""
+        return float(self.motion.now)
 
-    def trajectory(self, status: Status, kept: Kept) -> HybridTrajectory:
+    def empty(self) -> None:
+        """Take over what the kernel has written."""
+        self.parts.append(self.motion.take())
+
+    def trajectory(self, code: int) -> HybridTrajectory:
         """Everything computed so far."""
-        n, motion = self.scene.system.n_x, self.motion
+        n, motion, status = self.scene.system.n_x, self.motion, Status(code)
         last = np.concatenate([[self.now, 0.0, motion.mode], motion.state])[None]
-        self.parts.append(motion.take())
+        self.empty()
         of_rows, dense, logs = zip(*self.parts, strict=True)
         rows = np.concatenate([*of_rows, last])
         pieces = Pieces(
@@ -96,7 +90,7 @@ class HybridRun:
             ),
             pieces=pieces,
         )  # fmt: skip
-        return chosen(whole, kept)
+        return chosen(whole, self.kept)
 
     def _switches(self, log: Array) -> Any:
         n, names = self.scene.system.n_x, np.array(self.scene.system.names)

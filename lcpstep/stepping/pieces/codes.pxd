@@ -1,12 +1,13 @@
 cdef enum:
     FINISHED = 0
-    BUFFER_FULL = 1
     NOT_FINITE = 2
     LCP_FAILED = 3
-    TOO_MANY_EVENTS = 4
-    JOINTS_FAILED = 5
-    NO_POSITION = 6
-    STOPPED = 7
+    TOO_MANY_EVENTS = 5
+    JOINTS_FAILED = 7
+    PROJECTION_FAILED = 8
+    BUFFER_FULL = -1
+    STOPPED = -2
+    AGAIN = -3
 
 cdef enum:
     IMPACT = 0

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from lcpstep.kernels.status import BUFFER_FULL as BUFFER_FULL
 from lcpstep.stepping.steps import LATE as LATE
+from lcpstep.trajectory import Kind, Status
 
-# Why the loop returned
-FINISHED, BUFFER_FULL, NOT_FINITE, LCP_FAILED, TOO_MANY_EVENTS, JOINTS_FAILED, NO_POSITION, STOPPED = range(8)
-# Kinds of events, the values of `trajectory.Kind`
-IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
+# Why the loop returned: a status of the run,
+FINISHED, NOT_FINITE, LCP_FAILED = int(Status.DONE), int(Status.NOT_FINITE), int(Status.LCP_FAILED)
+TOO_MANY_EVENTS, JOINTS_FAILED = int(Status.TOO_MANY_EVENTS), int(Status.JOINTS_FAILED)
+PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
+# or to have the record emptied, at an event, and (within the loop alone) for another round of it, in which nothing is
+# known yet of the piece that begins
+STOPPED, AGAIN = -2, -3
+IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in Kind)  # kinds of events
 OPEN, CLOSED = 0, 1  # values of Work.status
 GROUND, LEFT = 1, 2  # of Work.grounded: the piece begins at gap zero; and the contact has just lost its force
 NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity jumps at a corner

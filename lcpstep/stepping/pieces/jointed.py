@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import LEAD, TIME, Record
     from lcpstep.kernels.vectors import add, clear, copy
     from lcpstep.pointers import Doubles, after, max, min
-    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, NO_POSITION
+    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, PROJECTION_FAILED
     from lcpstep.stepping.pieces.joints import accelerate, put, reduce, take, turn
     from lcpstep.stepping.pieces.state import Work
 
@@ -44,7 +44,7 @@ def reduce_mobility(w: Work, c: int) -> None:
 def put_on_joints(w: Work, t: float, slack: float, q: Doubles) -> None:
     """The position q onto the joints."""
     if not put(w.joints, w.M, t, q, w.v, slack):
-        w.joints.failed = NO_POSITION
+        w.joints.failed = PROJECTION_FAILED
 
 
 def settle_velocity(w: Work, t: float) -> None:

@@ -6,7 +6,8 @@ from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, max
 from lcpstep.stepping.pieces.carried cimport put_kept_back
 from lcpstep.stepping.pieces.codes cimport (
-    BUFFER_FULL, CLOSED, CORNER, EPS, FINISHED, GROUND, NOBODY, NOT_FINITE, OPEN, STOPPED, TOO_MANY_EVENTS,
+    AGAIN, BUFFER_FULL, CLOSED, CORNER, EPS, FINISHED, GROUND, NOBODY, NOT_FINITE, OPEN, STOPPED,
+    TOO_MANY_EVENTS,
 )
 from lcpstep.stepping.pieces.corners cimport find_corners, obstacles_move
 from lcpstep.stepping.pieces.glide cimport glide
@@ -17,8 +18,6 @@ from lcpstep.stepping.pieces.settle cimport endless, settle
 from lcpstep.stepping.pieces.smooth cimport free_acceleration, measure, respond
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.times cimport just_after, within
-
-cdef Py_ssize_t AGAIN
 
 
 cdef class Steps:

@@ -18,6 +18,7 @@ if not cython.compiled:
     from lcpstep.pointers import abs, max
     from lcpstep.stepping.pieces.carried import put_kept_back
     from lcpstep.stepping.pieces.codes import (
+        AGAIN,
         BUFFER_FULL,
         CLOSED,
         CORNER,
@@ -72,9 +73,6 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
         keep(w, record, t, 0.0)
         record.next_time = 1
     return FINISHED
-
-
-AGAIN = 8  # another round of the loop, in which nothing is known yet of the piece that begins
 
 
 class Steps:

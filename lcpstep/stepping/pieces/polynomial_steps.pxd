@@ -4,11 +4,12 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, max, min
 from lcpstep.stepping.pieces.codes cimport (
+    AGAIN,
     CLOSED, CORNER, EPS, FINISHED, GROUND, LCP_FAILED, LEFT, NOBODY, NOT_FINITE, ROUNDING, SAME_TIME,
 )
 from lcpstep.stepping.pieces.impulses cimport strike
 from lcpstep.stepping.pieces.keep cimport keep
-from lcpstep.stepping.pieces.loop cimport AGAIN, Steps, finite
+from lcpstep.stepping.pieces.loop cimport Steps, finite
 from lcpstep.stepping.pieces.magnitudes cimport speed_terms
 from lcpstep.stepping.pieces.piece cimport penetrates
 from lcpstep.stepping.pieces.polynomial cimport (

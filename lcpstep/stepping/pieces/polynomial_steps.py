@@ -14,6 +14,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import (
+        AGAIN,
         CLOSED,
         CORNER,
         EPS,
@@ -28,7 +29,7 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
+    from lcpstep.stepping.pieces.loop import Steps, finite
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.piece import penetrates
     from lcpstep.stepping.pieces.polynomial import (

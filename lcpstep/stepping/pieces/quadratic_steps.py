@@ -13,10 +13,10 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.pointers import min
-    from lcpstep.stepping.pieces.codes import FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
+    from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
     from lcpstep.stepping.pieces.event import event
     from lcpstep.stepping.pieces.jointed import turn_with_joints
-    from lcpstep.stepping.pieces.loop import AGAIN, Steps, finite
+    from lcpstep.stepping.pieces.loop import Steps, finite
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
     from lcpstep.stepping.pieces.race import race
     from lcpstep.stepping.pieces.smooth import renew_forces

@@ -1,29 +1,29 @@
-"""A run of `Located`: it prepares the kernels' arrays, feeds the loop in portions, and says in words how it ended."""
+"""A run of `Located`: what its loop works in, and why it ended early, in words."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.faults import cause
+from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
-from lcpstep.model import culprit, joint_model, model
-from lcpstep.pace import Pace
-from lcpstep.recording import Kept, Recorder
+from lcpstep.model import joint_model, model
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.stepping import adaptive
 from lcpstep.stepping.interpolation import Bent
-from lcpstep.stepping.pieces import codes
+from lcpstep.stepping.located_by_tolerance import Attempts
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
-from lcpstep.stepping.pieces.prepare import at_rest, displaced, plan, start
+from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, displaced, plan, start
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
-from lcpstep.stepping.steps import divided, unresolved
-from lcpstep.trajectory import Counts, Status, Trajectory
+from lcpstep.stepping.pieces.state import Plan
+from lcpstep.stepping.step_run import StepRun
+from lcpstep.trajectory import Counts, Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -31,146 +31,144 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 PORTION = 16384  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within a step that failed
-STATUS = {
-    codes.FINISHED: Status.DONE,
-    codes.BUFFER_FULL: Status.DONE,
-    codes.NOT_FINITE: Status.NOT_FINITE,
-    codes.LCP_FAILED: Status.LCP_FAILED,
-    codes.TOO_MANY_EVENTS: Status.TOO_MANY_EVENTS,
-    codes.JOINTS_FAILED: Status.JOINTS_FAILED,
-    codes.NO_POSITION: Status.PROJECTION_FAILED,
-}
 
 
-class Run:
-    """One run: the loop with its state, and the portions that it is fed in."""
+class LocatedRun(StepRun):
+    """One run: the loop with its state."""
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
-        self.method, self.scene, self.kept = method, scene, kept
         self.model = at_rest(model(scene), method.order == 2 and scene.n_j == 0)
         joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
-        self.recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
-        steps = QuadraticSteps if method.order == 2 else PolynomialSteps
-        self.steps = steps(self.model, p, self.work, self.recorder.record)
-        self.events = 0  # taken out of the buffers
-        self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
-        self.t0, self.first = scene.t_span[0], 0
+        recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
+        super().__init__(method, scene, kept, recorder, PORTION)
+        kind = QuadraticSteps if method.order == 2 else PolynomialSteps
+        self.loop = kind(self.model, p, self.work, self.recorder.record)
+        self.finite: tuple[float, Array, Array] | None = (
+            None  # the last state known, after a step that failed
+        )
 
-    def finish(self, progress: Callable[[float], None]) -> Trajectory:
-        """Run to the end of the span, or to where it cannot go on."""
-        try:
-            status = STATUS[self.steps.begin(self.scene.t_span[0])]
-            if status == Status.DONE:
-                status = self.even(progress)
-            error = cause() if status == Status.NOT_FINITE else None
-        except KeyboardInterrupt:
-            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(status)
-        if status == Status.NOT_FINITE:
-            raise SimulationError(result.message, result) from error
-        return result
+    def begin(self) -> int:
+        """The initial state; a code."""
+        code = int(self.loop.begin(self.scene.t_span[0]))
+        p, tolerance = self.plan, self.method.tolerance
+        # Steps that make no error are of one size
+        if tolerance is not None and not (p.plain and p.steady and tolerance >= adaptive.NOISE):
+            self.plan, order = Plan(p.fields | {"many": MANY_EXACTLY}), int(self.method.order)
+            span, h = self.scene.t_span, self.method.h
+            self.controlled_by(Attempts(self.loop, self.plan_for, span, h, tolerance, order))
+        return code
 
-    def even(self, progress: Callable[[float], None]) -> Status:
-        """The whole run in steps of one size, and a last one where that does not divide the span."""
-        status = Status.DONE
-        for h, t0, first, last in divided(self.scene.t_span, self.method.h):
-            if status == Status.DONE:
-                if h != self.steps.plan.h:
-                    self.steps.plan = plan(self.scene, self.model, self.method, h)
-                status = self.portions(t0, first, last, progress)
-        return status
+    @property
+    def plan(self) -> Plan:
+        """Constants of steps of one size."""
+        return self.loop.plan
 
-    def portions(self, t0: float, first: int, last: int, progress: Callable[[float], None]) -> Status:
-        """Steps first .. last - 1 of the run, all of one size."""
-        self.t0, self.first = t0, first
-        code = codes.FINISHED
-        while self.work.steps < last and code in (codes.FINISHED, codes.BUFFER_FULL):
-            goal = min(last, self.pace.goal(self.work.steps))
-            self.work.events_left = self.method.max_events - self.events
-            code = self.steps.run(t0, first, goal)
-            self.empty()
-            progress(self.now)
-        return STATUS[code]
+    @plan.setter
+    def plan(self, p: Plan) -> None:
+        self.loop.plan = p
+
+    def plan_for(self, h: float) -> Plan:
+        """Constants of steps of size h."""
+        return plan(self.scene, self.model, self.method, h)
+
+    def advance(self, goal: int) -> int:
+        """Call the kernel, for `done` to become `goal` at most; why it returned."""
+        self.work.events_left = self.method.max_events - self.recorder.taken
+        return super().advance(goal)
+
+    def take(self, last: int) -> int:
+        """Steps up to the one before `last`; why the kernel returned."""
+        return int(self.loop.run(self.t0, self.first, last))
+
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return int(self.work.steps)
 
     @property
     def now(self) -> float:
         """Time of the current state [s]."""
-        t = self.t0 + self.steps.plan.h * (self.work.steps - self.first)
+        if self.finite is not None:
+            return self.finite[0]
+        return self.reached
+
+    @property
+    def reached(self) -> float:
+        """Time of the step at hand [s]."""
+        t = self.t0 + self.plan.h * (self.work.steps - self.first)
         return float(t + self.work.sigma * self.work.under_way)
+
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        if self.finite is not None:
+            return self.finite[1:]
+        c, c_t = displaced(self.scene, self.model, self.reached)
+        return self.work.view("q") - c, self.work.view("v") - c_t
+
+    @property
+    def ahead(self) -> Array:
+        """Times at which a callback may be what has failed [s]."""
+        return np.linspace(self.now, self.reached + self.plan.h, TRIALS)
+
+    @property
+    def counts(self) -> Counts:
+        """Work done."""
+        w = self.work
+        return Counts(w.steps, w.lcp_calls, w.force_evaluations, self.recorder.taken)
 
     def empty(self) -> None:
         """Move what the kernel's buffers hold to the recorder's keeping."""
         if self.model.carried:
-            self.steps.put_back()
-        self.events += self.recorder.take()
+            self.loop.put_back()
+        super().empty()
 
-    def trajectory(self, status: Status) -> Trajectory:
-        """Everything computed so far."""
-        self.empty()
-        kept, w = self.recorder.states(), self.work
-        c, c_t = displaced(self.scene, self.model, self.now)
-        q_now, v_now, impulse_now = w.view("q") - c, w.view("v") - c_t, w.view("impulse").copy()
-        t, q, v, impulse, jumps = kept.t, kept.q, kept.v, kept.impulse, kept.mode > 0.0
-        if len(self.kept.times) == 0 and self.now > t[-1]:
-            t, q, v = np.append(t, self.now), np.vstack([q, q_now]), np.vstack([v, v_now])
-            impulse, jumps = np.vstack([impulse, impulse_now]), np.append(jumps, True)
-        finite = np.isfinite(q).all() and np.isfinite(v).all()
-        bad: Any = (
-            [] if finite else np.flatnonzero(~(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
-        )
-        if len(bad):  # the step that failed has left its numbers behind
-            t, q, v, impulse = t[: bad[0]], q[: bad[0]], v[: bad[0]], impulse[: bad[0]]
-        last = (float(t[-1]), q[-1], v[-1]) if len(bad) and len(t) else (self.now, q_now, v_now)
-        if len(t) and abs(t[-1] - self.scene.t_span[1]) <= unresolved(self.scene.t_span, self.method.h):
-            t[-1] = self.scene.t_span[1]
-        impulse, joint = np.split(impulse, [self.scene.n_c], axis=1)
-        return Trajectory(
-            scene=self.scene, method=self.method, t=t, q=q, v=v, impulse=impulse,
-            impacts=self.recorder.events(self.scene.t_span[1]), status=status, message=self.message(status, *last),
-            counts=Counts(
-                steps=w.steps, lcp_calls=w.lcp_calls, force_evaluations=w.force_evaluations, events=self.events,
-            ),
-            dense=self.between(t, q, v, jumps[: len(t)], *last[1:]),
-            joint_impulse=joint,
-        )  # fmt: skip
+    def with_last(self, s: States) -> States:
+        """The states, and the one that has been reached."""
+        return s.and_then(self.now, *self.state, self.work.view("impulse"), 1.0)
 
-    def between(
-        self, t: Array, q: Array, v: Array, jumps: NDArray[np.bool_], q_end: Array, v_end: Array
-    ) -> Callable[[Array], tuple[Array, Array]]:
+    def states(self) -> States:
+        """All states kept; a step that failed may have left its numbers behind."""
+        s = super().states()
+        if np.isfinite(s.q).all() and np.isfinite(s.v).all():
+            return s
+        n = int(np.argmin(np.isfinite(s.q).all(axis=1) & np.isfinite(s.v).all(axis=1)))
+        if n > 0:
+            self.finite = float(s.t[n - 1]), s.q[n - 1], s.v[n - 1]
+        return States(*(x[:n] for x in s))
+
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time: from the kept ones where these tell, by another run where they do not.
 
         Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
         """
-        if self.method.order == 2 and (self.method.tolerance is None or self.steps.plan.plain):
-            return Bent(t, q, v, self.kept.all, jumps)
-        return Again(self.method, self.scene, q_end, v_end)
+        if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
+            return Bent(s.t, s.q, s.v, self.kept.all, s.mode > 0.0)
+        return Again(self.method, self.scene, *self.state)
 
-    def message(self, status: Status, t: float, q: Array, v: Array) -> str:
-        """How the run ended with its last finite state, in words."""
-        cut = self.work.cut
-        if status == Status.DONE and cut == 0:
-            return "reached the end of the span"
-        if status == Status.DONE:
-            events = f"events without end, or more than max_per_step = {self.method.max_per_step} in a step"
-            return f"reached the end of the span; {cut} times one plastic impact stood for {events}"
-        where = f"at t = {t:.9g} s, q = {q.tolist()}, v = {v.tolist()}"
-        if status == Status.INTERRUPTED:
-            return f"interrupted {where}"
-        if status == Status.TOO_MANY_EVENTS:
-            return f"more than max_events = {self.method.max_events} events {where}"
-        if status == Status.JOINTS_FAILED:
-            return f"joint {self.work.joints.culprit} contradicts others {where}"
-        if status == Status.PROJECTION_FAILED:
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        text, cut = super().message(code), self.work.cut
+        if code != Status.DONE or cut == 0:
+            return text
+        events = f"events without end, or more than max_per_step = {self.method.max_per_step} in a step"
+        return f"{text}; {cut} times one plastic impact stood for {events}"
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.JOINTS_FAILED:
+            return f"joint {self.work.joints.culprit} contradicts others {self.where}"
+        if code == Status.PROJECTION_FAILED:
             joint = self.work.joints.culprit
-            return f"no position near satisfies joint {joint} {where}; try a smaller h"
-        if status == Status.LCP_FAILED:
+            return f"no position near satisfies joint {joint} {self.where}; try a smaller h"
+        if code == Status.LCP_FAILED:
             n = self.work.members
             contacts = sorted(self.work.view("chosen")[:n].tolist())
             words = f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together"
-            return f"{no_way_out(self.scene, t, q, contacts) or words} {where}"
-        return f"{culprit(self.scene, np.linspace(t, self.now + self.steps.plan.h, TRIALS), q, v)} {where}"
+            return f"{no_way_out(self.scene, self.now, self.state[0], contacts) or words} {self.where}"
+        return super().why(code)
 
 
 @dataclass(frozen=True, eq=False)

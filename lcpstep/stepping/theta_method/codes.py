@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from lcpstep.kernels.status import BUFFER_FULL as BUFFER_FULL
 from lcpstep.trajectory import Kind, Status
 
 FINISHED, NOT_FINITE, LCP_FAILED = int(Status.DONE), int(Status.NOT_FINITE), int(Status.LCP_FAILED)
 NEWTON_FAILED, JOINTS_FAILED = int(Status.NEWTON_FAILED), int(Status.JOINTS_FAILED)
 PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
-LOG_FULL, NEED_LCP = -1, -2  # empty the record; solve the problem at hand
+NEED_LCP = -2  # solve the problem at hand
 # Kinds of events
 IMPACT, STICK, RELEASE = int(Kind.IMPACT), int(Kind.STICK), int(Kind.RELEASE)
 MAX_ITERATIONS = 25  # of Newton, per step

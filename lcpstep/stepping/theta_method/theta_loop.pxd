@@ -9,7 +9,7 @@ from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.row_impulses cimport constant_rows
 from lcpstep.stepping.theta_method.theta_step cimport take_step
 
-cdef Py_ssize_t FINISHED, LOG_FULL, NOT_FINITE
+cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
 cdef double LATE
 
 cdef void begin(Model m, State s, Rows c, Record record, double t, double side) noexcept nogil

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.stepping.steps import LATE
-from lcpstep.stepping.theta_method.codes import FINISHED, LOG_FULL, NOT_FINITE
+from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
@@ -53,7 +53,7 @@ def run(
     single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1 and c.n == 1 and not c.projected
     while s.steps < last:
         if record.full(2 * s.n_c):
-            return LOG_FULL
+            return BUFFER_FULL
         if single and s.closed[0] == 0 and not solved:
             coast(m, plan, s, record, t0, first, record.untimed_until(plan.h, t0, first, last))
             if not (finite(s.g, 1) and finite(s.u, 1)):

@@ -1,0 +1,156 @@
+"""A run of any method: fed to its kernels in portions, its buffers emptied between them, and how it ended in words.
+
+A method gives a class that inherits `Run`, with `advance` (its kernel), `now`, `state` and `ahead` (where it is, and
+goes next), `dense` (states between the kept ones), `why` (what its own statuses mean) and `counts`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import checks
+from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.faults import cause
+from lcpstep.kernels.status import BUFFER_FULL
+from lcpstep.model import culprit
+from lcpstep.pace import Pace
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.trajectory import Counts, Status, Trajectory
+
+Array = NDArray[np.float64]
+
+
+class Portions(ABC):
+    """Whatever is fed to a kernel in portions, until it is over."""
+
+    def __init__(self, method: Any, scene: Any, kept: Kept, pace: Pace) -> None:
+        self.method, self.scene, self.kept, self.pace = method, scene, kept, pace
+
+    @abstractmethod
+    def advance(self, goal: int) -> int:
+        """Call the kernel, for `done` to become `goal` at most; a `Status`, or BUFFER_FULL: why it returned."""
+
+    @property
+    @abstractmethod
+    def done(self) -> int:
+        """Steps taken, or attempted."""
+
+    @property
+    @abstractmethod
+    def now(self) -> float:
+        """Time reached [s]."""
+
+    @abstractmethod
+    def empty(self) -> None:
+        """Take over what the kernel has written."""
+
+    @abstractmethod
+    def trajectory(self, code: int) -> Any:
+        """Everything computed so far; `code`: why the kernel returned, or INTERRUPTED."""
+
+    def begin(self) -> int:
+        """The initial state; a code as of `advance`."""
+        return Status.DONE
+
+    @property
+    def over(self) -> bool:
+        """Whether the end of the span is reached."""
+        return bool(self.now >= self.scene.t_span[1])
+
+    def finish(self, progress: Callable[[float], None]) -> Any:
+        """Run to the end of the span, or to where it cannot go on."""
+        try:
+            code = self.begin()
+            while code == BUFFER_FULL or (code == Status.DONE and not self.over):
+                code = self.advance(self.pace.goal(self.done))
+                cause()  # an interrupt that a callback heard goes on its way
+                self.empty()
+                progress(self.now)
+            raised = cause()
+        except KeyboardInterrupt:
+            raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
+        result = self.trajectory(code)
+        if result.status == Status.NOT_FINITE:
+            raise SimulationError(result.message, result) from raised
+        return result
+
+
+class Run(Portions):
+    """One run of a scene in coordinates.
+
+    Parameters
+    ----------
+    method, scene, kept : the question
+    recorder : its buffers;  most : steps between two looks at the outside world
+    """
+
+    def __init__(self, method: Any, scene: Any, kept: Kept, recorder: Recorder, most: int) -> None:
+        super().__init__(method, scene, kept, Pace(most, scene.n_q + recorder.record.n_c))
+        self.recorder = recorder
+
+    @property
+    @abstractmethod
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+
+    @property
+    @abstractmethod
+    def ahead(self) -> Iterable[float]:
+        """Times at which a callback may be what has failed [s]."""
+
+    @property
+    @abstractmethod
+    def counts(self) -> Counts:
+        """Work done."""
+
+    @abstractmethod
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones."""
+
+    def empty(self) -> None:
+        """Move what the kernels have written to the recorder's keeping."""
+        self.recorder.take()
+
+    def states(self) -> States:
+        """All states kept, and the last one where states are kept by steps or events."""
+        self.empty()
+        return self.recorder.states()
+
+    def status(self, code: int) -> Status:
+        """How the run ended, by what the kernel returned."""
+        return Status(code)
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.TOO_MANY_EVENTS:
+            return f"more than max_events = {self.method.max_events} events {self.where}"
+        q, v = self.state
+        return f"{culprit(self.scene, self.ahead, q.copy(), v.copy())} {self.where}"
+
+    def trajectory(self, code: int) -> Any:
+        """Everything computed so far."""
+        s, n_c, first = self.states(), self.scene.n_c, self.recorder.record.n_c - self.scene.n_j
+        impulse, friction, joint = s.impulse[:, :n_c], s.impulse[:, n_c:first], s.impulse[:, first:]
+        return Trajectory(
+            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=np.ascontiguousarray(impulse),
+            impacts=self.recorder.events(self.scene.t_span[1]), status=self.status(code), message=self.message(code),
+            counts=self.counts, dense=self.dense(s), joint_impulse=np.ascontiguousarray(joint),
+            friction_impulse=np.ascontiguousarray(friction),
+        )  # fmt: skip
+
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        if code == Status.DONE:
+            return "reached the end of the span"
+        return f"interrupted {self.where}" if code == Status.INTERRUPTED else self.why(code)
+
+    @property
+    def where(self) -> str:
+        """Time and state reached, in words."""
+        q, v = self.state
+        return f"at t = {self.now:.9g} s, q = {checks.shown(q)}, v = {checks.shown(v)}"

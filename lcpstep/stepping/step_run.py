@@ -1,0 +1,108 @@
+"""What runs by steps share: steps of one size, and a last one where that does not divide the span; or steps that a
+control chooses by a tolerance (`step_control`).
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any
+
+from lagrangian import Scene
+from lcpstep.faults import cause
+from lcpstep.pace import Pace
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.running import Run
+from lcpstep.stepping.adaptive import LOOK, REACHED, WANTED, too_small
+from lcpstep.stepping.steps import divided, unresolved
+from lcpstep.trajectory import Status
+
+
+class StepRun(Run):
+    """One run by steps.
+
+    plan       what steps of size plan.h multiply with
+    t0, first  time of a step, and its number
+    control    a `step_control.Control`, of steps by a tolerance
+    """
+
+    plan: Any
+    control: Any = None
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder, most: int) -> None:
+        super().__init__(method, scene, kept, recorder, most)
+        self.stretches, self.stretch = list(divided(scene.t_span, method.h)), 0
+        self.t0, self.first, self.arrived = scene.t_span[0], 0, False
+
+    @property
+    @abstractmethod
+    def steps(self) -> int:
+        """Steps taken."""
+
+    @abstractmethod
+    def take(self, last: int) -> int:
+        """Call the kernel, for steps up to the one before `last`; why it returned."""
+
+    @abstractmethod
+    def plan_for(self, h: float) -> Any:
+        """What steps of size h multiply with."""
+
+    @abstractmethod
+    def with_last(self, s: States) -> States:
+        """The states, and the one that has been reached."""
+
+    def controlled_by(self, control: Any) -> None:
+        """Go on in steps that this control chooses."""
+        self.control, self.pace = control, Pace(LOOK, self.scene.n_q + self.recorder.record.n_c)
+
+    @property
+    def done(self) -> int:
+        """Steps taken, or attempted."""
+        return self.steps if self.control is None else int(self.control.tried)
+
+    @property
+    def over(self) -> bool:
+        """Whether the end of the span is reached."""
+        return self.arrived if self.control is not None else self.steps >= self.stretches[-1][3]
+
+    def advance(self, goal: int) -> int:
+        """Call the kernel, for `done` to become `goal` at most; why it returned."""
+        if self.control is not None:
+            return self.attempt(goal)
+        if self.steps >= self.stretches[self.stretch][3] and not self.over:
+            self.stretch += 1
+        h, self.t0, self.first, last = self.stretches[self.stretch]
+        if h != self.plan.h:
+            self.plan = self.plan_for(h)
+        return self.take(min(last, goal))
+
+    def attempt(self, goal: int) -> int:
+        """The same of steps that the control chooses."""
+        self.control.until, code = goal, WANTED
+        while code == WANTED:
+            code = int(self.control.advance())
+            cause()  # an interrupt goes on its way
+            if code == WANTED:
+                self.control.prepare()
+        self.arrived = code == REACHED
+        return code
+
+    def empty(self) -> None:
+        """Move what the kernels have written to the recorder's keeping."""
+        if self.control is not None:
+            self.t0, self.first, self.plan.h = self.control.time, self.steps, self.control.step
+        super().empty()
+
+    def states(self) -> States:
+        """All states kept, and the last one where states are kept by steps or events."""
+        s, end = super().states(), self.scene.t_span[1]
+        if len(self.kept.times) == 0 and self.now > s.t[-1]:
+            s = self.with_last(s)
+        if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):
+            s.t[-1] = end
+        return s
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.STEP_TOO_SMALL:
+            return too_small(self.method, self.scene, self.now, *self.state, self.where)
+        return super().why(code)
