@@ -4,7 +4,7 @@ from lcpstep.events.general.held cimport note, right_hand_side
 from lcpstep.events.general.impact cimport speed_noise
 from lcpstep.events.general.state cimport Mechanism, NOISE
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.dynamics cimport gaps
+from lcpstep.kernels.dynamics cimport gap_rounding, gaps
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs
 
@@ -26,3 +26,4 @@ cdef bint observe(Mechanism s, double tau) noexcept nogil
 cdef void remember(Mechanism s) noexcept nogil
 cdef double multiplier_noise(Mechanism s) noexcept nogil
 cdef double way_back(Mechanism s, Py_ssize_t c, double a, double b, double g_b) noexcept nogil
+cdef double gap_noise(Mechanism s, Py_ssize_t c) noexcept nogil

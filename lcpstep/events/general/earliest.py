@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
 
@@ -53,7 +53,7 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
                 tau = a
             else:
                 tau = first_contact(s, c, a, b, left_end, right_end)
-            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
+            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < -gap_noise(s, c):
                 if left_end[1] > speed_noise(s, c):
                     tau = way_back(s, c, a, b, right_end[0])
                 if tau == NONE:
@@ -174,6 +174,11 @@ def observe(s: Mechanism, tau: float) -> bool:
 def remember(s: Mechanism) -> None:
     """What was observed last is the left end of the next interval."""
     copy(s.left.gap, s.contact.gap, 4 * s.n_c)
+
+
+def gap_noise(s: Mechanism, c: int) -> float:
+    """Rounding of a gap, at the state last observed."""
+    return gap_rounding(s.model, s.contact.G, s.q, c, 0.0)
 
 
 def multiplier_noise(s: Mechanism) -> float:

@@ -12,6 +12,7 @@ from lcpstep.events.general.ends import IMPACT, NO_IMPULSES, RELEASE, STICK
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
 
 if not cython.compiled:
+    from lcpstep.events.general.balance import balanced_forces
     from lcpstep.events.general.chatter import close_chatter
     from lcpstep.events.general.cycle import FOR_EVER, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
@@ -188,7 +189,7 @@ def forces(s: Mechanism, t: float) -> int:
         closed += s.contact.closed[c]
     if s.constant and closed == 0 and s.bare:
         return DONE
-    code = contact_forces(s, t)
+    code = contact_forces(s, t) if s.constant else balanced_forces(s, t)
     if code == DONE:
         s.bare = closed == 0
     return code

@@ -34,6 +34,8 @@ if not cython.compiled:
 PARTS = 4  # scan intervals of a step
 REFINEMENTS = 3  # of an event's time by repeated steps
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
+BALANCED = 1e-4  # the same where the multiplier has been no more than this share of what it will be
+LOOKS, FURTHER = 2, 10.0  # how often, and by how much further each time, unless they tell
 
 
 def step(s: Mechanism) -> int:
@@ -53,7 +55,8 @@ def step(s: Mechanism) -> int:
             if not observe(s, b):
                 return NOT_FINITE
             tau = first_event(s, a, b)
-            copy(s.left.gap, s.right.gap, 4 * s.n_c)
+            if tau == NONE:
+                copy(s.left.gap, s.right.gap, 4 * s.n_c)
             a = b
     s.found, s.seen_to = tau, a
     return DONE
@@ -115,17 +118,36 @@ def shorten(s: Mechanism, c: int, tau: float, kind: int) -> float:
 
 
 def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
-    """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative."""
-    ahead = tau + LOOK_AHEAD * s.length
-    observe(s, ahead)
-    t, before = s.t0 + ahead, s.n_held
+    """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative.
+
+    Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
+    c, one looks further.
+    """
+    before, solved, found = s.n_held, True, False
+    balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
+    ahead = (BALANCED if balanced else LOOK_AHEAD) * s.length
+    first = ahead
     for m in range(before):  # the rows held are needed for the rest of the interval
         s.kept[m] = s.row[m]
-    if not measure(s, t):
-        return False
-    solved = contact_forces(s, t) == DONE
+    for d in range(s.n_c):
+        s.left.multiplier[d] = s.contact.closed[d]
+    for look in range(LOOKS + 1):
+        if solved and not found:
+            for d in range(s.n_c):
+                s.contact.closed[d] = 1 if s.left.multiplier[d] == 1.0 else 0
+            solved = forces_at(s, before, tau + (ahead if look < LOOKS else first))
+            found = s.contact.closed[c] == 0
+            ahead = min(ahead * FURTHER, 0.5 * (end - tau))
     if s.contact.closed[c] == 1:
         s.contact.held_until[c] = s.t0 + end
+    return solved
+
+
+def forces_at(s: Mechanism, before: int, ahead: float) -> bool:
+    """The same at a time after the base, from the motion with the rows in `kept`, which stay held."""
+    observe(s, ahead)
+    t = s.t0 + ahead
+    solved = measure(s, t) and contact_forces(s, t) == DONE
     for m in range(before):
         s.row[m] = s.kept[m]
     s.n_held = before
