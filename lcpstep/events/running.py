@@ -78,10 +78,10 @@ class Run(ABC):
                 raised = cause()
                 self.empty()
                 progress(self.now)
+            result = self.trajectory(self.status(code), self.message(code))
         except KeyboardInterrupt:
             message = f"interrupted {self.where}"
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED, message)) from None
-        result = self.trajectory(self.status(code), self.message(code))
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result) from raised
         return result

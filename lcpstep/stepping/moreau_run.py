@@ -72,9 +72,9 @@ class Run:
             status = self.advance(progress)
             if status == Status.NOT_FINITE:
                 error = cause()
+            result = self.trajectory(status)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(status)
         if status == Status.NOT_FINITE:
             raise SimulationError(result.message, result) from error
         return result
