@@ -30,7 +30,7 @@ class Run(ABC):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
         self.method, self.scene, self.kept, self.recorder = method, scene, kept, recorder
-        self.tally = Tally(method.max_events)
+        self.tally, self.closed = Tally(method.max_events), False  # closed: the last state has been kept
         self.pace = Pace(PORTION, scene.n_q + scene.n_c + scene.n_j)
 
     @property
@@ -102,8 +102,9 @@ class Run(ABC):
         """Everything computed so far."""
         record, n_c = self.recorder.record, self.scene.n_c
         nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
-        if len(self.kept.times) == 0 and nothing:
+        if len(self.kept.times) == 0 and nothing and not self.closed:
             self.keep_now()
+        self.closed = True
         self.recorder.take()
         s = self.recorder.states()
         return Trajectory(
