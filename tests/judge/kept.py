@@ -135,4 +135,14 @@ KEPT: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven",),
     ),
+    "feet that strike one after another, loosely": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.28)), q0=(0.0, 0.0), v0=(-0.0531, 0.371), t_span=(11000.0, 11000.35), h=0.01,
+            G=((1.0, -0.5), (1.0, -0.3), (1.0, -0.1), (1.0, 0.1), (1.0, 0.3), (1.0, 0.5)),
+            offset=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), restitution=(0.0, 1.0, 0.0, 0.99, 0.87, 0.46),
+            C=((0.154, 0.0), (0.0, 0.043)), constant=(-9.81, 0.0), sine=(0.0478, -0.000571), force_omega=8.77,
+            general=True, spread=0.12, pendulum=1.17, b=(-0.178, -1.3), family='feet',
+        ),
+        ("event-driven-loose",),
+    ),
 }  # fmt: skip
