@@ -198,7 +198,17 @@ def closing_walls(t, q, v, p, out):
     out[1] = (-0.05 + 0.1 * t, 0.1, 0.0)
 
 
-@pytest.mark.parametrize("method", [EventDriven(), Located(0.01), Located(0.01, 4), Moreau(0.01), Moreau(0.01, 1.0), Moreau(0.01, tolerance=1e-3)])
+@pytest.mark.parametrize(
+    "method",
+    [
+        EventDriven(),
+        Located(0.01),
+        Located(0.01, 4),
+        Moreau(0.01),
+        Moreau(0.01, 1.0),
+        Moreau(0.01, tolerance=1e-3),
+    ],
+)
 def test_walls_that_leave_no_room_are_named(method):
     """The slit is closed after a second, whatever moves in it; the third contact has no part in that."""
 
