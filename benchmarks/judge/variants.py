@@ -103,7 +103,7 @@ def heavier(d: Description, rng: Any) -> Variant:
 
 
 def in_units(d: Description, length: float, time: float, mass: float) -> Description:
-    """The same in other units: every length, time and mass is so many times as large a number; powers of two are exact."""
+    """The same in other units: every length, time and mass is so many times as large a number."""
     units = {
         "M": mass, "K": mass / time**2, "C": mass / time, "q0": length, "v0": length / time, "t_span": time,
         "offset": length, "amplitude": length, "frame": length, "round": length, "joint_offset": length,

@@ -1,4 +1,4 @@
-"""A scene in other units of length, time and mass gives the same events: nothing in the methods has a size of its own."""
+"""A scene in other units of length, time and mass gives the same events: methods have no size of their own."""
 
 import numpy as np
 import pytest
