@@ -17,6 +17,7 @@ if not cython.compiled:
         first_event,
         observe,
         remember,
+        turns_unseen,
     )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
@@ -31,7 +32,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, min
 
-PARTS = 4  # scan intervals of a step
+PARTS, MOST_PARTS = 4, 4096  # scan intervals of a step, and where gaps turn faster than the motion
 REFINEMENTS = 3  # of an event's time by repeated steps
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 BALANCED = 1e-4  # the same where the multiplier has been no more than this share of what it will be
@@ -47,17 +48,27 @@ def step(s: Mechanism) -> int:
     if code != DONE:
         return code
     h = s.length = s.smooth.length
+    s.found, s.seen_to = NONE, 0.0
     find_landings(s, h)
-    tau, a = NONE, 0.0
-    for part in range(1, PARTS + 1):
-        if tau == NONE and s.n_c > 0:
-            b = h * part / PARTS
-            if not observe(s, b):
-                return NOT_FINITE
+    return scan(s, h) if s.n_c > 0 else DONE
+
+
+def scan(s: Mechanism, h: float) -> int:
+    """The first event within the step of size h, into `found`; parts in which a gap turns unseen are halved."""
+    tau, a, part, parts = NONE, 0.0, 0, PARTS
+    while tau == NONE and part < parts:
+        b = h * (part + 1) / parts
+        if not observe(s, b):
+            return NOT_FINITE
+        if parts < MOST_PARTS and turns_unseen(s, b - a):
+            part, parts = 2 * part, 2 * parts
+        else:
             tau = first_event(s, a, b)
             if tau == NONE:
                 copy(s.left.gap, s.right.gap, 4 * s.n_c)
-            a = b
+            a, part = b, part + 1
+            while parts > PARTS and part % 2 == 0:
+                part, parts = part // 2, parts // 2
     s.found, s.seen_to = tau, a
     return DONE
 
