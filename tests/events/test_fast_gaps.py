@@ -122,7 +122,7 @@ def along_it(t, q, v, p, out):
 
 @pytest.mark.parametrize("seed", range(40))
 def test_a_body_without_forces_meets_the_first_crest_that_it_comes_to(seed):
-    """Its motion is one line, whose steps are as long as the scan allows; the gap turns up to eight times between looks."""
+    """Its motion is one line, whose steps are as long as the scan allows; the gap turns eight times between looks."""
     rng = np.random.default_rng(seed)
     height, k, phase = (
         10.0 ** rng.uniform(-3.0, 0.0),
