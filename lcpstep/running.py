@@ -72,9 +72,9 @@ class Portions(ABC):
                 self.empty()
                 progress(self.now)
             raised = cause()
+            result = self.trajectory(code)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(code)
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result) from raised
         return result

@@ -10,8 +10,10 @@ import time
 import numpy as np
 import pytest
 
-from lcpstep import cli
+from lagrangian import scenes
+from lcpstep import EventDriven, Moreau, SimulationInterrupted, cli, simulate
 from lcpstep.cli import interrupt
+from lcpstep.recording import Recorder
 from tests.processes import environment
 
 READY = "import sys; from lcpstep.cli import command; print('ready', flush=True); command()"
@@ -39,6 +41,23 @@ SLOW_LOOPS = {
     "event-driven": "simulate elastic-gas --method event-driven --t-end 1e5",
     "time-stepping": "basin cam-follower --rpm 358.5 --grid 300 300 --method moreau --h 1e-6",
 }
+
+
+@pytest.mark.parametrize("method", [Moreau(1e-3), EventDriven()], ids=["moreau", "event-driven"])
+def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, monkeypatch):
+    states, scene = Recorder.states, scenes.bouncing_ball()
+    whole, calls = simulate(scene, method), []
+
+    def hit(self):
+        calls.append(self)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return states(self)
+
+    monkeypatch.setattr(Recorder, "states", hit)
+    with pytest.raises(SimulationInterrupted) as caught:
+        simulate(scene, method)
+    np.testing.assert_array_equal(caught.value.trajectory.t, whole.t)
 
 
 def interrupted(words, folder, after):

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import REFERENCE, WAYS, Finding, run
+from benchmarks.judge.runs import REFERENCE, WAYS, Finding, Hung, run
 from benchmarks.judge.vary import varied
 
 SHARE, SEVERAL = 0.25, 2
@@ -45,18 +45,22 @@ def judged(
             if name in without:
                 continue
             tell(name)
-            r = run(d, name)
-            if name in methods:
-                endings[name] = r.status
-                findings += check(d, r)
-                rng = chance(d, name, 1)
-                if compared and rng.random() < share:
-                    findings += varied(d, r, rng, SEVERAL)
-            if name == REFERENCE:
-                if r.usable and compared:
-                    reference = Reference(d, r)
-            elif reference is not None and r.status != "NOT_FINITE":
-                findings += agrees(reference, r)
+            try:
+                r = run(d, name)
+                if name in methods:
+                    endings[name] = r.status
+                    findings += check(d, r)
+                    rng = chance(d, name, 1)
+                    if compared and rng.random() < share:
+                        findings += varied(d, r, rng, SEVERAL)
+                if name == REFERENCE:
+                    if r.usable and compared:
+                        reference = Reference(d, r)
+                elif reference is not None and r.status != "NOT_FINITE":
+                    findings += agrees(reference, r)
+            except Hung as error:
+                endings[name] = "hang"
+                findings.append(Finding(name, "hang", str(error)))
     return Verdict(endings, findings)
 
 

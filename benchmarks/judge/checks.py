@@ -9,11 +9,11 @@ import numpy as np
 
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.runs import CPU_EACH, Finding, Run, run
 from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
 
-CPU, CPU_EACH = 0.5, 1e-4  # seconds of a run, and of each of its steps and events
+CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
 ROUNDING = 1e-9  # of the size of what is compared
 EXACT = ("event-driven", "located-exact")
 

@@ -1,7 +1,8 @@
 """Workers that can be killed: machine code cannot be interrupted, and a scene may make it run for ever or crash.
 
-A worker sets a timer on its own CPU time before every run; the system ends the process when that has run
-out. Who is waiting sees the end of the pipe, knows what the worker was at, and starts another.
+A worker sets timers on its own CPU time before every run: the first interrupts it, and where machine code does not
+hear that, the second has the system end the process. Who is waiting sees the end of the pipe, knows what the worker
+was at, and starts another.
 """
 
 from __future__ import annotations
@@ -155,7 +156,7 @@ def _replaced(w: _Worker, limit: float, share: float, lost: Any) -> _Worker:
     index, scene, methods, without = w.task
     w.process.join(1.0)
     code = w.stop()
-    kind = "hang" if code in (-signal.SIGPROF, -signal.SIGKILL) else "crash"
+    kind = "hang" if code in (-signal.SIGVTALRM, -signal.SIGKILL) else "crash"
     text = (
         f"no end within {limit:g} s of CPU time" if kind == "hang" else f"the process ended with code {code}"
     )

@@ -16,6 +16,7 @@ from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errors import LcpStepError, SimulationError
 
 MAX_EVENTS = 50_000
+CPU_EACH = 1e-4  # seconds of each step and event
 REFERENCE = "event-driven"
 
 
@@ -27,22 +28,40 @@ class Finding(NamedTuple):
     text: str
 
 
+class Hung(Exception):
+    """A run that has used its CPU time and has hardly come on."""
+
+
 class Clock:
-    """Bound on the CPU time of one run, of which machine code cannot be told: the system then ends the process."""
+    """Bound on the CPU time of one run, which is interrupted; where machine code hears nothing, the process ends.
+
+    A run by a tolerance takes as many steps as it needs, which nobody knows before: it is cut short, and no more,
+    if it has come on by steps and events that are worth the time.
+    """
 
     limit = 0.0  # seconds of a run, and of every so many steps of a long one; 0: none
     steps = 1e5
+    deaf = 2.0  # seconds that it may take to hear the interrupt
 
     def __init__(self, steps: float) -> None:
-        self.seconds = Clock.limit * max(1.0, steps / Clock.steps)
+        self.seconds, self.rang = Clock.limit * max(1.0, steps / Clock.steps), False
 
-    def __enter__(self) -> None:
+    def __enter__(self) -> Clock:
         if Clock.limit:
+            signal.signal(signal.SIGPROF, self.ring)
             signal.setitimer(signal.ITIMER_PROF, self.seconds)
+            signal.setitimer(signal.ITIMER_VIRTUAL, self.seconds + self.deaf)
+        return self
+
+    def ring(self, *_: object) -> None:
+        """Interrupt the run."""
+        self.rang = True
+        raise KeyboardInterrupt
 
     def __exit__(self, *error: object) -> None:
         if Clock.limit:
             signal.setitimer(signal.ITIMER_PROF, 0.0)
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
 
 
 @dataclass(frozen=True)
@@ -85,7 +104,7 @@ WAYS = {
 
 @dataclass(frozen=True)
 class Run:
-    """How a run went: DONE, another status, or "refused"; `motion` is what there is of it."""
+    """How a run went: DONE, another status, "refused" or "cut short"; `motion` is what there is of it."""
 
     method: str
     status: str
@@ -117,11 +136,15 @@ class Run:
 
 def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     """One run; an exception that the library does not announce is an ending of its own, "raised"."""
-    scene, way = d.scene(), WAYS[name]
+    scene, way, clock = d.scene(), WAYS[name], Clock(d.length / (d.h * factor))
     started = time.process_time()
     try:
-        with Clock(d.length / (d.h * factor)):
+        with clock:
             motion = simulate(scene, way.make(d.h, factor), keep=keep)
+    except KeyboardInterrupt as interrupt:
+        if not clock.rang:
+            raise
+        return _cut_short(name, getattr(interrupt, "trajectory", None), _since(started))
     except SimulationError as error:
         return Run(name, error.trajectory.status.name, str(error), error.trajectory, _since(started))
     except LcpStepError as error:
@@ -129,6 +152,14 @@ def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     except Exception as error:  # whatever it is, it is reported
         return Run(name, "raised", f"{type(error).__name__}: {error}", None, _since(started))
     return Run(name, motion.status.name, motion.message, motion, _since(started))
+
+
+def _cut_short(name: str, motion: Any, cpu: float) -> Run:
+    """A run whose time was up; Hung where it has not come on."""
+    work = 0 if motion is None else motion.counts.steps + motion.counts.events
+    if cpu > CPU_EACH * work:
+        raise Hung(f"{work} steps and events within {cpu:.3g} s of CPU time")
+    return Run(name, "cut short", f"after {work} steps and events", None, cpu)
 
 
 def _since(started: float) -> float:

@@ -102,6 +102,23 @@ def heavier(d: Description, rng: Any) -> Variant:
     return Variant("masses rescaled", scene)
 
 
+def in_units(d: Description, length: float, time: float, mass: float) -> Description:
+    """The same in other units: every length, time and mass is so many times as large a number."""
+    units = {
+        "M": mass, "K": mass / time**2, "C": mass / time, "q0": length, "v0": length / time, "t_span": time,
+        "offset": length, "amplitude": length, "frame": length, "round": length, "joint_offset": length,
+        "constant": mass * length / time**2, "cosine": mass * length / time**2, "sine": mass * length / time**2,
+        "b": 1.0 / length,
+    }  # fmt: skip
+    rows = {name: numbers(unit * np.array(x)) for name, unit in units.items() if (x := getattr(d, name))}
+    bend = [x if r > 0.0 else x / length for x, r in zip(d.bend, d.round, strict=True)]
+    return replace(
+        d, **rows, h=time * d.h, omega=d.omega / time, force_omega=d.force_omega / time, bend=numbers(bend),
+        joint_bend=numbers(np.array(d.joint_bend) / length), spread=mass * length**2 * d.spread,
+        pendulum=mass * length**2 / time**2 * d.pendulum,
+    )  # fmt: skip
+
+
 def as_general(d: Description, rng: Any) -> Variant:
     """A linear system whose forces the library sees as a function of the state."""
     return Variant("as a general system", replace(d, general=True))

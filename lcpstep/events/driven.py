@@ -43,9 +43,9 @@ class EventDriven:
     joints, their impulses are part of it. Impacts at different times follow one another, however near. So balls of
     a cradle that touch share the blow, and balls a thousandth of a micrometre apart hand it on. Where the motion is
     known exactly, gaps that differ by rounding close at the same instant unless the order of their impacts makes no
-    difference (elastic beads of one mass); otherwise a gap below the tolerance counts as closed. This law is solvable
-    for any contacts and loses energy for any restitutions, while the outcome of impacts in turn depends on an order
-    that nothing but a gap can tell.
+    difference (elastic beads of one mass); at the start of an integrated motion a gap below the tolerance counts as
+    closed. This law is solvable for any contacts and loses energy for any restitutions, while the outcome of impacts
+    in turn depends on an order that nothing but a gap can tell.
 
     Joints that depend on others are left out, and the others carry what all would; contacts that do so share their
     forces in one of the possible ways. Joints and lasting contacts are put back onto g = 0, u = 0 after each step.

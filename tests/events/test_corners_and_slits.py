@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Located, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.gaps import closing_in
 
 GRAVITY = 9.81
@@ -198,9 +198,19 @@ def closing_walls(t, q, v, p, out):
     out[1] = (-0.05 + 0.1 * t, 0.1, 0.0)
 
 
-@pytest.mark.parametrize("method", [EventDriven(), Located(0.01), Located(0.01, 4)])
+@pytest.mark.parametrize(
+    "method",
+    [
+        EventDriven(),
+        Located(0.01),
+        Located(0.01, 4),
+        Moreau(0.01),
+        Moreau(0.01, 1.0),
+        Moreau(0.01, tolerance=1e-3),
+    ],
+)
 def test_walls_that_leave_no_room_are_named(method):
-    """The slit is closed after half a second, whatever moves in it; the third contact has no part in that."""
+    """The slit is closed after a second, whatever moves in it; the third contact has no part in that."""
 
     def motion(t, q, v, p, out):
         closing_walls(t, q, v, p, out)
@@ -210,7 +220,7 @@ def test_walls_that_leave_no_room_are_named(method):
         G=[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0]], offset=(0.05, 0.0, 0.0), restitution=0.0, motion=motion
     )
     scene = Scene(
-        LinearSystem(M=np.eye(2), force=(1.0, -9.81)), (-0.05, 0.0), (0.0, 0.0), (0.0, 1.0), contacts
+        LinearSystem(M=np.eye(2), force=(1.0, -9.81)), (-0.05, 0.0), (0.0, 0.0), (0.0, 1.5), contacts
     )
     m = simulate(scene, method)
     assert m.status is Status.LCP_FAILED

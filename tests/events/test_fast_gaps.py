@@ -110,3 +110,32 @@ def test_a_shaken_floor_of_several_general_contacts_is_not_flown_through():
     t = np.linspace(0.0, 10.0, 20_001)
     assert (run.at(t)[0][:, 0] - 0.01 * np.sin(100.0 * t)).min() > -1e-8  # the bias is differenced
     np.testing.assert_allclose(run.impacts.time[:4], impacts(0.01, 100.0, 4), atol=1e-9)
+
+
+def corrugated(t, q, v, p, out):
+    out[0] = q[1] - p[0] * math.cos(p[1] * q[0] + p[2])
+
+
+def along_it(t, q, v, p, out):
+    out[0, 0], out[0, 1] = p[0] * p[1] * math.sin(p[1] * q[0] + p[2]), 1.0
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_body_without_forces_meets_the_first_crest_that_it_comes_to(seed):
+    """Its motion is one line, whose steps are as long as the scan allows; the gap turns eight times between looks."""
+    rng = np.random.default_rng(seed)
+    height, k, phase = (
+        10.0 ** rng.uniform(-3.0, 0.0),
+        2.0 * np.pi * 10.0 ** rng.uniform(0.0, 3.2),
+        rng.uniform(0.0, 6.28),
+    )
+    y = height * rng.uniform(1.2, 6.0)
+    fall = y / rng.uniform(0.3, 1.0)
+    contacts = Contacts(1, corrugated, along_it)
+    scene = Scene(
+        LinearSystem(M=np.eye(2)), (0.0, y), (1.0, -fall), (0.0, 1.0), contacts, p=(height, k, phase)
+    )
+    t = np.linspace(0.0, 1.0, 400_001)
+    first = t[np.argmax(y - fall * t - height * np.cos(k * t + phase) <= 0.0)]
+    struck = simulate(scene, EventDriven(1e-10, 1e-10, max_events=3), keep="impacts").impacts
+    assert struck.time[0] == pytest.approx(first, abs=3e-6)

@@ -74,3 +74,19 @@ def test_unlike_beads_that_meet_by_threes_depend_on_no_numbering(method):
         scene = Scene(LinearSystem(M=np.diag([1.0, 3.0, 2.0])), q0, v0, (0.0, 1.0), contacts)
         after.append(simulate(scene, method).v[-1])
     np.testing.assert_allclose(after[0], after[1], atol=1e-12)
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_planes_that_close_within_the_tolerance_strike_one_after_the_other(first):
+    """A gap of 3e-7 is no rounding, whatever the tolerance: here it decides by how much the velocities change."""
+    M, G, r = np.array([[1.0, 0.2], [0.2, 0.7]]), ROWS, np.array([0.3, 0.5])
+    offset = OFFSET + 3e-7 * (np.arange(2) != first)
+    scene = corner([0, 1], force=nothing)
+    contacts = LinearContacts(G=G, offset=offset, restitution=r)
+    run = simulate(Scene(scene.system, scene.q0, scene.v0, scene.t_span, contacts), EventDriven(1e-6, 1e-6))
+    v, M = np.array(scene.v0), 1e3 * M
+    for c in [first, 1 - first] * 20:
+        if G[c] @ v < -1e-15:
+            x = np.linalg.solve(M, G[c])
+            v = v - x * (1.0 + r[c]) * (G[c] @ v) / (G[c] @ x)
+    np.testing.assert_allclose(run.at(0.37 + 1e-5)[1], v, rtol=0, atol=1e-6)

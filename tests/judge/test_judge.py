@@ -1,18 +1,20 @@
 """The judge sees what is wrong, and only that."""
 
+import os
+import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from benchmarks.judge import agree
+from benchmarks.judge import agree, runs
 from benchmarks.judge.agree import disturbed
 from benchmarks.judge.case import judged
 from benchmarks.judge.checks import check, within_a_step
 from benchmarks.judge.describe import Description
 from benchmarks.judge.pool import answers
 from benchmarks.judge.report import Tally, report
-from benchmarks.judge.runs import run
+from benchmarks.judge.runs import Clock, run
 from benchmarks.judge.shrink import shrunk
 from benchmarks.judge.variants import VARIANTS
 from benchmarks.judge.vary import base, same, varied
@@ -105,15 +107,38 @@ def test_a_disturbed_scene_keeps_what_is_closed():
     assert after[1] != before[1]
 
 
+ELASTIC = replace(BALL, restitution=1.0, q0=(1e-3,), v0=(0.0,), t_span=(0.0, 900.0))
+
+
+class Deaf(Description):
+    """A scene whose run ends the process, as the system does where machine code does not return."""
+
+    def scene(self):
+        os.kill(os.getpid(), signal.SIGVTALRM)
+
+
+def test_a_run_that_is_long_is_no_anomaly():
+    (answer,) = answers([(7, ELASTIC)], ["event-driven"], 1, limit=1e-3)
+    assert answer.endings == {"event-driven": "cut short"}
+    assert answer.findings == []
+
+
 def test_a_run_without_end_is_reported_and_the_rest_goes_on():
-    elastic = replace(BALL, restitution=1.0, q0=(1e-3,), v0=(0.0,), t_span=(0.0, 900.0))
-    (answer,) = answers([(7, elastic)], ["event-driven"], 1, limit=1e-3)
+    (answer,) = answers([(7, Deaf(**vars(BALL)))], ["event-driven"], 1)
     assert answer.index == 7
     assert answer.endings == {"event-driven": "hang"}
     assert kinds(answer.findings) == {"hang"}
     tally = Tally()
     tally.add(answer)
     assert "| hang | event-driven | 1 | ball 1 |" in report(tally)
+
+
+def test_a_run_that_does_not_come_on_is_an_anomaly(monkeypatch):
+    monkeypatch.setattr(Clock, "limit", 1e-3)
+    monkeypatch.setattr(runs, "CPU_EACH", 0.0)
+    verdict = judged(ELASTIC, ["event-driven"])
+    assert verdict.endings == {"event-driven": "hang"}
+    assert kinds(verdict.findings) == {"hang"}
 
 
 def test_anomalies_are_made_small():

@@ -4,12 +4,12 @@ from lcpstep.events.general.held cimport note, right_hand_side
 from lcpstep.events.general.impact cimport speed_noise
 from lcpstep.events.general.state cimport Mechanism, NOISE
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.dynamics cimport gaps
+from lcpstep.kernels.dynamics cimport gap_rounding, gaps
 from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs
+from lcpstep.pointers cimport abs, max
 
-cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS, HALVINGS
-cdef double NONE, NEVER
+cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
+cdef double NONE, NEVER, UNSEEN
 
 cdef double first_event(Mechanism s, double a, double b) noexcept nogil
 cdef double first_contact(
@@ -25,4 +25,5 @@ cdef double root(
 cdef bint observe(Mechanism s, double tau) noexcept nogil
 cdef void remember(Mechanism s) noexcept nogil
 cdef double multiplier_noise(Mechanism s) noexcept nogil
-cdef double way_back(Mechanism s, Py_ssize_t c, double a, double b, double g_b) noexcept nogil
+cdef bint turns_unseen(Mechanism s, double d) noexcept nogil
+cdef double gap_noise(Mechanism s, Py_ssize_t c) noexcept nogil

@@ -1,10 +1,10 @@
 """Which contact closes, or opens, first, as kernels.
 
 Gaps are looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to
-change its sign at most once, that change splits the gap velocity into monotone parts, whose changes of sign split the
-gap into monotone parts; so a gap that dips below zero and returns is found. A closed contact opens where its
-multiplier turns negative. Source of the polishing: Newton's method safeguarded by bisection, W. Press et al.,
-Numerical Recipes, section 9.4.
+change its sign at most once (`turns_unseen` says which is not), that change splits the gap velocity into monotone
+parts, whose changes of sign split the gap into monotone parts; so a gap that dips below zero and returns is found. A
+closed contact opens where its multiplier turns negative. Source of the polishing: Newton's method safeguarded by
+bisection, W. Press et al., Numerical Recipes, section 9.4.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ if not cython.compiled:
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max
 
 MEETS, LANDS, OPENS, NEVER_LEFT = range(4)  # what a contact does
 GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
 NONE, NEVER = -1.0, -2.0  # in place of a root's time: not known; there is none
 MAX_ITERATIONS = 100
-HALVINGS = 50  # of an interval in which a gap has opened and closed again
+UNSEEN = 0.02  # of a gap: what its turns may hide
 
 
 def first_event(s: Mechanism, a: float, b: float) -> float:
@@ -53,11 +53,8 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
                 tau = a
             else:
                 tau = first_contact(s, c, a, b, left_end, right_end)
-            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < 0.0:
-                if left_end[1] > speed_noise(s, c):
-                    tau = way_back(s, c, a, b, right_end[0])
-                if tau == NONE:
-                    tau, kind = a, NEVER_LEFT
+            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < -gap_noise(s, c):
+                tau, kind = a, NEVER_LEFT
         if tau != NONE and (found == NONE or tau < found):
             found, s.event_contact, s.event_kind = tau, c, kind
     return found
@@ -111,17 +108,25 @@ def first_in_half(
     return NONE
 
 
-def way_back(s: Mechanism, c: int, a: float, b: float, g_b: float) -> float:
-    """When the gap of contact c falls to zero that has opened at a, and is closed at b, whatever it does between."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        if not a < middle < b or not observe(s, middle):
-            return NONE
-        g = s.contact.gap[c]
-        if g > 0.0:
-            return root(s, GAP, c, middle, g, b, g_b)
-        b, g_b = middle, g
-    return NONE
+def turns_unseen(s: Mechanism, d: float) -> bool:
+    """Whether a gap has turned more often in an interval of length d than its ends in `left` and `contact` show.
+
+    Gaps, speeds and accelerations at the ends of one that is short enough agree,
+    g_b = g_a + d (u_a + u_b) / 2 - d^2 (alpha_b - alpha_a) / 12, but for what is little beside the gap.
+    """
+    for c in range(s.n_c):
+        if s.contact.closed[c] == 0 and s.contact.lands[c] == NONE:
+            g_a, g_b, rises = (
+                s.left.gap[c],
+                s.contact.gap[c],
+                0.5 * d * (s.left.speed[c] + s.contact.speed[c]),
+            )
+            bends = d * d * (s.contact.curve[c] - s.left.curve[c]) / 12.0
+            unseen = abs(g_b - g_a - rises + bends)
+            rounding = gap_noise(s, c) + NOISE * (abs(rises) + abs(bends))
+            if unseen > max(UNSEEN * max(abs(g_a), abs(g_b)), rounding):
+                return True
+    return False
 
 
 def root(s: Mechanism, level: int, c: int, a: float, f_a: float, b: float, f_b: float) -> float:
@@ -174,6 +179,11 @@ def observe(s: Mechanism, tau: float) -> bool:
 def remember(s: Mechanism) -> None:
     """What was observed last is the left end of the next interval."""
     copy(s.left.gap, s.contact.gap, 4 * s.n_c)
+
+
+def gap_noise(s: Mechanism, c: int) -> float:
+    """Rounding of a gap, at the state last observed."""
+    return gap_rounding(s.model, s.contact.G, s.q, c, 0.0)
 
 
 def multiplier_noise(s: Mechanism) -> float:

@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.events.general.equations cimport bias_of
 from lcpstep.events.general.held cimport constrain, contradiction, hold, hold_contacts, hold_joints, note, solve_held
 from lcpstep.events.general.problem cimport CHECKED, solve_contacts
 from lcpstep.events.general.state cimport Mechanism, NOISE
@@ -14,3 +15,4 @@ cdef void open_contacts(Mechanism s, double t) noexcept nogil
 cdef double terms(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(shifting=bint)
 cdef void unload(Mechanism s) noexcept nogil
+cdef double passed_on(Mechanism s, Py_ssize_t c) noexcept nogil

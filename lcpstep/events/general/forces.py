@@ -13,6 +13,7 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
+    from lcpstep.events.general.equations import bias_of
     from lcpstep.events.general.held import (
         constrain,
         contradiction,
@@ -87,8 +88,33 @@ def open_contacts(s: Mechanism, t: float) -> None:
             size += abs(s.W[m * k + b] * s.contact.z[b])
         if s.contact.z[m] > 0.0:
             s.contact.loaded[c], s.contact.multiplier[c] = 1, s.contact.z[m]
-        elif alpha > NOISE * size and not s.contact.held_until[c] > t:
+        elif alpha > NOISE * size and not s.contact.held_until[c] > t and alpha > NOISE * passed_on(s, c):
             s.contact.closed[c] = 0
+
+
+def passed_on(s: Mechanism, c: int) -> float:
+    """Size of the terms of other gap accelerations, as far as contact c shares them: R_c = sum y_m R_m + a rest.
+
+    What rounding leaves of those held at zero, two rows that are nearly parallel pass on many times as large.
+    """
+    i, size, acting = s.n_j + c, 0.0, s.trial
+    for j in range(s.n_q):
+        acting[j] = abs(s.a_free[j])
+        for b in range(s.n_members):
+            acting[j] += abs(s.MR[(s.n_j + s.contact.member[b]) * s.n_q + j] * s.contact.z[b])
+    hold_joints(s)
+    for d in range(s.n_c):
+        if s.contact.loaded[d] == 1:
+            hold(s, s.n_j + d)
+    for m in range(s.n_held):
+        s.change[m] = s.D[s.row[m] * s.n_r + i]
+    solve_held(s, s.n_held, s.change)
+    for m in range(s.n_held):
+        terms_m = abs(bias_of(s, s.row[m]))
+        for j in range(s.n_q):
+            terms_m += abs(s.R[s.row[m] * s.n_q + j]) * acting[j]
+        size += abs(s.change[m]) * terms_m
+    return size
 
 
 def terms(s: Mechanism, c: int) -> float:

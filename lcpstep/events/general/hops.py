@@ -15,8 +15,9 @@ if not cython.compiled:
     from math import pow, sqrt
 
     from lcpstep.events.general.earliest import NEVER, NONE, observe
+    from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.parabolas import first_root, hop
-    from lcpstep.events.general.state import Mechanism
+    from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import largest
     from lcpstep.pointers import abs, inf, max, min, nan
@@ -34,7 +35,7 @@ REMAINDER = 331776.0 / (9.0 * 1625702400.0)
 LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
-STEADY = 1e-9  # of the velocities: a gap velocity that changes by more at a corner does not do so by rounding
+STEADY = 1e-9  # of its terms: a gap velocity that changes by more at a corner does not do so by rounding
 MAX_ITERATIONS = 60
 
 
@@ -187,6 +188,6 @@ def carry(s: Mechanism) -> None:
     """Beyond the corner low hops go on from what `reach_corner` has found, unless the surface jumps there."""
     for c in range(s.n_c):
         u = s.right.speed[c]
-        steady = abs(s.contact.speed[c] - u) <= STEADY * largest(s.v, 1.0, s.n_q)
+        steady = abs(s.contact.speed[c] - u) <= STEADY * speed_noise(s, c) / NOISE
         if s.contact.lands[c] == NEVER and s.right.gap[c] > 0.0 and steady:
             s.contact.gap[c], s.contact.speed[c], s.contact.carried[c] = s.right.gap[c], u, 1

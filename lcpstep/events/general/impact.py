@@ -151,9 +151,12 @@ def apply(s: Mechanism) -> None:
 
 
 def speed_noise(s: Mechanism, c: int) -> float:
-    """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included."""
+    """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included.
+
+    Contact forces may have held against what the others would have made of it in the step before.
+    """
     i, size = s.n_j + c, abs(s.contact.rate[c])
     for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j] * s.v[j])
+        size += abs(s.R[i * s.n_q + j]) * (abs(s.v[j]) + s.length * abs(s.a_free[j]))
     s.contact.terms[c] = max(size, s.contact.terms[c])
     return NOISE * s.contact.terms[c]

@@ -12,6 +12,7 @@ from lcpstep.events.general.ends import IMPACT, NO_IMPULSES, RELEASE, STICK
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
 
 if not cython.compiled:
+    from lcpstep.events.general.balance import balanced_forces
     from lcpstep.events.general.chatter import close_chatter
     from lcpstep.events.general.cycle import FOR_EVER, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
@@ -19,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.general.held import constrain, hold_contacts, note
     from lcpstep.events.general.impact import speed_noise, strike
     from lcpstep.events.general.keep import keep_event, log
-    from lcpstep.events.general.motion import lift, rebase, touching
+    from lcpstep.events.general.motion import lift, rebase, rounding_of_gap
     from lcpstep.events.general.parabolas import polish, synchronise
     from lcpstep.events.general.state import JUMP, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
@@ -127,14 +128,13 @@ def approaches(s: Mechanism) -> bool:
 
 
 def has_come(s: Mechanism, c: int) -> bool:
-    """Whether a gap that is not exactly zero counts as closed; under constant forces only if rounding may be why.
-
-    And if the order of impacts matters: beads that meet by threes are followed one after another, which is exact.
+    """Whether a gap that is not exactly zero counts as closed: if rounding may be why, and, under constant forces, if
+    the order of impacts matters: beads that meet by threes are followed one after another, which is exact.
     """
     if not s.constant:
-        return s.contact.gap[c] <= touching(s, c)
+        return s.contact.gap[c] <= rounding_of_gap(s, c)
     u, i = s.contact.speed[c], s.n_j + c
-    if not u < 0.0 or s.contact.gap[c] > touching(s, c):
+    if not u < 0.0 or s.contact.gap[c] > rounding_of_gap(s, c):
         return s.contact.gap[c] < 0.0
     for d in range(s.n_c):
         k, u_d = s.n_j + d, s.contact.speed[d]
@@ -188,7 +188,7 @@ def forces(s: Mechanism, t: float) -> int:
         closed += s.contact.closed[c]
     if s.constant and closed == 0 and s.bare:
         return DONE
-    code = contact_forces(s, t)
+    code = contact_forces(s, t) if s.constant else balanced_forces(s, t)
     if code == DONE:
         s.bare = closed == 0
     return code

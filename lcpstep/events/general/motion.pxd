@@ -9,6 +9,7 @@ cdef void state_at(Mechanism s, double tau) noexcept nogil
 cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef double rounding_of_gap(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double speed_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double least_effect(Mechanism s, Py_ssize_t c, double* x) noexcept nogil
 cdef void press(Mechanism s, double tau) noexcept nogil

@@ -48,14 +48,19 @@ def gap_tolerance(s: Mechanism, c: int) -> float:
 
 
 def touching(s: Mechanism, c: int) -> float:
-    """The gap below which contact c is closed: rounding, and the tolerance where gaps are not followed exactly."""
+    """The gap below which contact c is closed at the start: rounding, and the tolerance where gaps are not exact."""
+    rounding = rounding_of_gap(s, c)
+    return rounding if s.constant else max(rounding, gap_tolerance(s, c))
+
+
+def rounding_of_gap(s: Mechanism, c: int) -> float:
+    """What rounding may leave of the gap of contact c, of the way included by which it has come in the last step."""
     way = 0.0
     if s.length > 0.0:
         for j in range(s.n_q):
             way += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
         way *= s.length
-    rounding = gap_rounding(s.model, s.contact.G, s.q, c, way)
-    return rounding if s.constant else max(rounding, gap_tolerance(s, c))
+    return gap_rounding(s.model, s.contact.G, s.q, c, way)
 
 
 def speed_tolerance(s: Mechanism, c: int) -> float:

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, remember
+from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, remember, turns_unseen
 from lcpstep.events.general.equations cimport measure, measure_on
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project
@@ -13,14 +13,18 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, min
 
-cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, REFINEMENTS
-cdef double LOOK_AHEAD
+cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, MOST_PARTS, REFINEMENTS
+cdef Py_ssize_t LOOKS
+cdef double LOOK_AHEAD, BALANCED, FURTHER
 
 cdef Py_ssize_t step(Mechanism s) noexcept nogil
+cdef Py_ssize_t scan(Mechanism s, double h) noexcept nogil
 cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef void make_dense(Mechanism s, double tau) noexcept nogil
 cdef double shorten(Mechanism s, Py_ssize_t c, double tau, Py_ssize_t kind) noexcept nogil
-@cython.locals(solved=bint)
+@cython.locals(solved=bint, found=bint, balanced=bint)
 cdef bint look_ahead(Mechanism s, Py_ssize_t c, double tau, double end) noexcept nogil
+@cython.locals(solved=bint)
+cdef bint forces_at(Mechanism s, Py_ssize_t before, double ahead) noexcept nogil
 cdef void take_over(Mechanism s, Record record, Tally tally, double t, double tau) noexcept nogil
 cdef Py_ssize_t pass_end(Mechanism s, Record record, Tally tally) noexcept nogil

@@ -17,6 +17,7 @@ if not cython.compiled:
         first_event,
         observe,
         remember,
+        turns_unseen,
     )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
@@ -31,9 +32,11 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, min
 
-PARTS = 4  # scan intervals of a step
+PARTS, MOST_PARTS = 4, 4096  # scan intervals of a step, and where gaps turn faster than the motion
 REFINEMENTS = 3  # of an event's time by repeated steps
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
+BALANCED = 1e-4  # the same where the multiplier has been no more than this share of what it will be
+LOOKS, FURTHER = 2, 10.0  # how often, and by how much further each time, unless they tell
 
 
 def step(s: Mechanism) -> int:
@@ -45,16 +48,27 @@ def step(s: Mechanism) -> int:
     if code != DONE:
         return code
     h = s.length = s.smooth.length
+    s.found, s.seen_to = NONE, 0.0
     find_landings(s, h)
-    tau, a = NONE, 0.0
-    for part in range(1, PARTS + 1):
-        if tau == NONE and s.n_c > 0:
-            b = h * part / PARTS
-            if not observe(s, b):
-                return NOT_FINITE
+    return scan(s, h) if s.n_c > 0 else DONE
+
+
+def scan(s: Mechanism, h: float) -> int:
+    """The first event within the step of size h, into `found`; parts in which a gap turns unseen are halved."""
+    tau, a, part, parts = NONE, 0.0, 0, PARTS
+    while tau == NONE and part < parts:
+        b = h * (part + 1) / parts
+        if not observe(s, b):
+            return NOT_FINITE
+        if parts < MOST_PARTS and turns_unseen(s, b - a):
+            part, parts = 2 * part, 2 * parts
+        else:
             tau = first_event(s, a, b)
-            copy(s.left.gap, s.right.gap, 4 * s.n_c)
-            a = b
+            if tau == NONE:
+                copy(s.left.gap, s.right.gap, 4 * s.n_c)
+            a, part = b, part + 1
+            while parts > PARTS and part % 2 == 0:
+                part, parts = part // 2, parts // 2
     s.found, s.seen_to = tau, a
     return DONE
 
@@ -115,17 +129,36 @@ def shorten(s: Mechanism, c: int, tau: float, kind: int) -> float:
 
 
 def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
-    """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative."""
-    ahead = tau + LOOK_AHEAD * s.length
-    observe(s, ahead)
-    t, before = s.t0 + ahead, s.n_held
+    """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative.
+
+    Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
+    c, one looks further.
+    """
+    before, solved, found = s.n_held, True, False
+    balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
+    ahead = (BALANCED if balanced else LOOK_AHEAD) * s.length
+    first = ahead
     for m in range(before):  # the rows held are needed for the rest of the interval
         s.kept[m] = s.row[m]
-    if not measure(s, t):
-        return False
-    solved = contact_forces(s, t) == DONE
+    for d in range(s.n_c):
+        s.left.multiplier[d] = s.contact.closed[d]
+    for look in range(LOOKS + 1):
+        if solved and not found:
+            for d in range(s.n_c):
+                s.contact.closed[d] = 1 if s.left.multiplier[d] == 1.0 else 0
+            solved = forces_at(s, before, tau + (ahead if look < LOOKS else first))
+            found = s.contact.closed[c] == 0
+            ahead = min(ahead * FURTHER, 0.5 * (end - tau))
     if s.contact.closed[c] == 1:
         s.contact.held_until[c] = s.t0 + end
+    return solved
+
+
+def forces_at(s: Mechanism, before: int, ahead: float) -> bool:
+    """The same at a time after the base, from the motion with the rows in `kept`, which stay held."""
+    observe(s, ahead)
+    t = s.t0 + ahead
+    solved = measure(s, t) and contact_forces(s, t) == DONE
     for m in range(before):
         s.row[m] = s.kept[m]
     s.n_held = before
