@@ -112,14 +112,14 @@ class Attempts(Control):
         self.from_time, self.to_time, self.h = self.base(), self.goal(), self.step_size(self.level)
         start, end, until = self.into, self.ends(), inf
         entire, agreed = end == self.h, False
-        for _ in range(TRIALS):
+        for trial in range(TRIALS):
             self.compare(start, end, entire, until)
             agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
             if agreed:
                 break
             self.restore()
             until = self.two.time
-            early = self.alike or self.saved.closed_now > 0
+            early = trial < TRIALS - 2 and (self.alike or self.saved.closed_now > 0)
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
         if entire:
