@@ -1,11 +1,9 @@
 cimport cython
 from lcpstep.kernels.dynamics cimport gap_rates
-from lcpstep.kernels.linear cimport grow_factor, solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport max
-from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, LEFT, OPEN, WHOLE
+from lcpstep.stepping.pieces.codes cimport GROUND, LEFT, OPEN, WHOLE
 from lcpstep.stepping.pieces.contact_forces cimport hold
 from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.polynomial cimport Polynomial, acceleration, biases
@@ -25,7 +23,3 @@ cdef bint look_ahead(
 cdef bint decide(
     Model m, Plan plan, Work w, Record record, double at, double* q, double* v, double t
 ) noexcept nogil
-@cython.locals(dependent=bint)
-cdef void bear_on_independent(Work w) noexcept nogil
-@cython.locals(first=Py_ssize_t)
-cdef void shift_force(Work w, Py_ssize_t c, Py_ssize_t n_k) noexcept nogil

@@ -3,9 +3,6 @@
 Where a force vanishes it does not say whether its contact opens, the first derivative that is not zero does. There
 the problem is that of the accelerations a little later: a force of order k in time, beside others that are not zero,
 has the sign of its k-th derivative then.
-
-Forces of contacts that depend on each other are not unique. Along the piece they are those of independent ones, so
-these have to bear all at its base: any load on a cone is borne by independent ones of its rays (C. Caratheodory).
 """
 
 from __future__ import annotations
@@ -14,12 +11,11 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, max
-    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
+    from lcpstep.pointers import Doubles
+    from lcpstep.stepping.pieces.codes import GROUND, LEFT, OPEN, WHOLE
     from lcpstep.stepping.pieces.contact_forces import hold
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
@@ -87,40 +83,8 @@ def decide(
         respond(m, w)
     if not hold(m, plan, w, record, WHOLE, t):
         return False
-    if w.closed_now > 1:
-        bear_on_independent(w)
     for c in range(n_c):
         w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0
     if record.event > before and (record.keeps_events()):
         keep(w, record, t, 1.0)
     return True
-
-
-def bear_on_independent(w: Work) -> None:
-    """Shift contact forces until those that bear any are independent."""
-    dependent = True
-    while dependent:
-        n_k, dependent = 0, False
-        for c in range(w.n_c):
-            if w.status[c] == CLOSED and w.force_now[c] > 0.0 and not dependent:
-                w.held[n_k] = c
-                dependent = not grow_factor(w.W, w.n_c, w.problem, w.n_c, w.held, w.doubt, n_k)
-                if dependent:
-                    shift_force(w, c, n_k)
-                n_k += 1
-
-
-def shift_force(w: Work, c: int, n_k: int) -> None:
-    """Shift the force of contact c to those that it depends on, the first n_k held, until it or one of these has none."""
-    first, least = -1, w.force_now[c]
-    for k in range(n_k):
-        w.change[k] = w.W[w.held[k] * w.n_c + c]
-    solve_factored(w.problem, w.n_c, n_k, w.change)
-    for k in range(n_k):
-        d = w.held[k]
-        if w.change[k] < 0.0 and w.force_now[d] < -w.change[k] * least:
-            first, least = d, -w.force_now[d] / w.change[k]
-    for k in range(n_k):
-        w.force_now[w.held[k]] = max(0.0, w.force_now[w.held[k]] + least * w.change[k])
-    w.force_now[c] -= least
-    w.force_now[c if first < 0 else first] = 0.0

@@ -12,6 +12,9 @@ cdef Py_ssize_t SOLVED, REFINEMENTS
 
 cdef bint solve_chosen(Model m, Plan plan, Work w, double* W, Py_ssize_t place, Py_ssize_t n) noexcept nogil
 cdef bint solve_unrefined(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef void bear_on_independent(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef (Py_ssize_t, Py_ssize_t) first_dependent(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef void shift(Work w, double* W, Py_ssize_t n, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil
 cdef bint solve_several(Work w, double* W, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
 cdef bint all_pressed(Work w, double* W, Py_ssize_t n) noexcept nogil
 cdef bint right(Work w, double* inverse, bint factored, Py_ssize_t n) noexcept nogil

@@ -8,6 +8,9 @@ log10(mass ratio) digits. What is left of
 is therefore formed from the bodies' own data, forces summed before they are divided by masses, and W gives but the
 correction. That all contacts are pressed is tried first, since it is so in most piles and costs a sixth of the
 solver; and again where W is too rough for the solver. Contacts that depend on others get no correction of their own.
+
+Impulses of contacts that depend on each other are not unique. Those that bear any are made independent (C. Caratheodory:
+a load within a cone is borne by independent rays): such answers last from piece to piece, and runs agree on them.
 Source: N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 """
 
@@ -56,7 +59,47 @@ def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
     for i in range(n):
         for j in range(n):
             w.problem[i * n + j] = W[w.chosen[i] * w.n_c + w.chosen[j]]
-    return solve_small(w.problem, w.b, w.z, n, w.lcp) == SOLVED
+    if solve_small(w.problem, w.b, w.z, n, w.lcp) != SOLVED:
+        return False
+    bear_on_independent(w, W, n)
+    return True
+
+
+def bear_on_independent(w: Work, W: Doubles, n: int) -> None:
+    """Shift impulses until the contacts that bear any are independent."""
+    k, n_k = first_dependent(w, W, n)
+    while k >= 0:
+        shift(w, W, n, k, n_k)
+        k, n_k = first_dependent(w, W, n)
+
+
+def first_dependent(w: Work, W: Doubles, n: int) -> tuple[int, int]:
+    """The first contact with z > 0 that depends on such before it, or -1; how many these are, their factor as ever."""
+    n_k = 0
+    for k in range(n):
+        if w.z[k] > 0.0:
+            w.held[n_k], w.place[n_k] = w.chosen[k], k
+            if not grow_factor(W, w.n_c, w.problem, n, w.held, w.doubt, n_k):
+                return k, n_k
+            n_k += 1
+    return -1, n_k
+
+
+def shift(w: Work, W: Doubles, n: int, k: int, n_k: int) -> None:
+    """Shift z[k] to the first n_k that are held, on which its contact depends, until it or one of these is zero."""
+    emptied, most = k, w.z[k]
+    for i in range(n_k):
+        w.change[i] = W[w.held[i] * w.n_c + w.chosen[k]]
+    solve_factored(w.problem, n, n_k, w.change)
+    for i in range(n_k):
+        j = w.place[i]
+        if w.z[j] < -w.change[i] * most:
+            emptied, most = j, -w.z[j] / w.change[i]
+    for i in range(n_k):
+        j = w.place[i]
+        w.z[j] = max(0.0, w.z[j] + w.change[i] * most)
+    w.z[k] -= most
+    w.z[emptied] = 0.0
 
 
 def solve_several(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int) -> bool:
