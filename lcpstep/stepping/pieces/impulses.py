@@ -32,7 +32,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.corners import choose_jumping
     from lcpstep.stepping.pieces.jointed import answer_impulse
     from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
-    from lcpstep.stepping.pieces.refine import solve_chosen
+    from lcpstep.stepping.pieces.refine import NONE, solve_chosen
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, idle, release, stick, turn
 
@@ -64,7 +64,7 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
         elif first == CORNER:
             w.b[k] = w.rate[c]
-    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s):
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
         return -1
     if jump(plan, w, n_s) == 0.0:
         idle(w)

@@ -9,8 +9,8 @@ is therefore formed from the bodies' own data, forces summed before they are div
 correction. That all contacts are pressed is tried first, since it is so in most piles and costs a sixth of the
 solver; and again where W is too rough for the solver. Contacts that depend on others get no correction of their own.
 
-Impulses of contacts that depend on each other are not unique. Those that bear any are made independent (C. Caratheodory:
-a load within a cone is borne by independent rays): such answers last from piece to piece, and runs agree on them.
+Impulses of contacts that depend on each other are not unique. Those that bear any are made independent (`independent`),
+and go on bearing as long as none of the others closes by more than rounding: so answers last from piece to piece.
 Source: N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 """
 
@@ -26,19 +26,23 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import EPS, INERTIA
+    from lcpstep.stepping.pieces.codes import EPS, INERTIA, ROUNDING
+    from lcpstep.stepping.pieces.independent import bear_on_independent
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.state import Plan, Work
 
+NONE, FORCES, IMPULSES = range(3)  # what a guess is of
 REFINEMENTS = 6
 SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
 EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
 PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
-def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int) -> bool:
+def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
 
-    w.z comes as a guess. False where there is no answer; the chosen are then noted as the culprits.
+    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then noted
+    as the culprits.
     """
     w.lcp_calls += 1
     w.members = n
@@ -50,8 +54,10 @@ def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int) 
     if plan.joined:
         return solve_unrefined(w, W, n)
     if place != INERTIA:
-        return solve_several(w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n)
-    return solve_several(w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n)
+        return solve_several(
+            m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess
+        )
+    return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)
 
 
 def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
@@ -65,50 +71,19 @@ def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
     return True
 
 
-def bear_on_independent(w: Work, W: Doubles, n: int) -> None:
-    """Shift impulses until the contacts that bear any are independent."""
-    k, n_k = first_dependent(w, W, n)
-    while k >= 0:
-        shift(w, W, n, k, n_k)
-        k, n_k = first_dependent(w, W, n)
-
-
-def first_dependent(w: Work, W: Doubles, n: int) -> tuple[int, int]:
-    """The first contact with z > 0 that depends on such before it, or -1; how many these are, their factor as ever."""
-    n_k = 0
-    for k in range(n):
-        if w.z[k] > 0.0:
-            w.held[n_k], w.place[n_k] = w.chosen[k], k
-            if not grow_factor(W, w.n_c, w.problem, n, w.held, w.doubt, n_k):
-                return k, n_k
-            n_k += 1
-    return -1, n_k
-
-
-def shift(w: Work, W: Doubles, n: int, k: int, n_k: int) -> None:
-    """Shift z[k] to the first n_k that are held, on which its contact depends, until it or one of these is zero."""
-    emptied, most = k, w.z[k]
-    for i in range(n_k):
-        w.change[i] = W[w.held[i] * w.n_c + w.chosen[k]]
-    solve_factored(w.problem, n, n_k, w.change)
-    for i in range(n_k):
-        j = w.place[i]
-        if w.z[j] < -w.change[i] * most:
-            emptied, most = j, -w.z[j] / w.change[i]
-    for i in range(n_k):
-        j = w.place[i]
-        w.z[j] = max(0.0, w.z[j] + w.change[i] * most)
-    w.z[k] -= most
-    w.z[emptied] = 0.0
-
-
-def solve_several(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int) -> bool:
-    """The same for any number: the guess if it is still right, or all pressed, else the solver's answer; refined.
+def solve_several(
+    m: Model, plan: Plan, w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, guess: int
+) -> bool:
+    """The same for any number: the guess if it is still right, who was pressed, all, or the solver's answer; refined.
 
     `inverse` is A^-1 or, if `factored`, Cholesky's factor of A.
     """
     if right(w, inverse, factored, n):
         return True
+    if n > 1 and guess != NONE:
+        n_k = still_pressed(m, plan, w, W, n, guess)
+        if n_k > 0:
+            return refine(w, W, inverse, factored, n, n_k, True)
     if n > 1 and all_pressed(w, W, n):
         return refine(w, W, inverse, factored, n, n, True)
     solved = solve_unrefined(w, W, n)
@@ -133,6 +108,46 @@ def all_pressed(w: Work, W: Doubles, n: int) -> bool:
     for k in range(n):
         least = min(least, w.z[k])
     return least > PULLS * largest
+
+
+def still_pressed(m: Model, plan: Plan, w: Work, W: Doubles, n: int, guess: int) -> int:
+    """Rows of the factor of those that the guess presses, if they alone are the answer to rounding, which goes to w.z.
+
+    Else 0, and the guess is as it was.
+    """
+    n_k = factor_pressed(w, W, n, False)
+    for i in range(n_k):
+        w.change[i] = -w.b[w.place[i]]
+    solve_factored(w.problem, n, n_k, w.change)
+    largest = 0.0
+    for i in range(n_k):
+        largest = max(largest, w.change[i])
+    for i in range(n_k):
+        if not w.change[i] > PULLS * largest:
+            return 0
+    i = 0
+    for k in range(n):
+        if i < n_k and w.place[i] == k:
+            i += 1
+        elif w.z[k] > 0.0 or closes(m, plan, w, W, k, n_k, guess):
+            return 0
+    for i in range(n_k):
+        w.z[w.place[i]] = w.change[i]
+    return n_k
+
+
+def closes(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, guess: int) -> bool:
+    """Whether the k-th chosen contact closes by more than rounding while n_k are pressed, by w.change."""
+    c, u, size = w.chosen[k], w.b[k], 0.0
+    for i in range(n_k):
+        change = W[c * w.n_c + w.held[i]] * w.change[i]
+        u += change
+        size += abs(change)
+    if u >= 0.0:
+        return False
+    size += acceleration_terms(m, w, c) if guess == FORCES else speed_terms(plan, w, c)
+    return -u > ROUNDING * size
+
 
 
 def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
