@@ -159,6 +159,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         c, p = w.chosen[k], w.z[k]
         w.p[c] = p
         w.impulse[c] += p
+        w.pushed[c] += p
         if w.joined:
             answer_force(w, c, p)
         for i in range(w.n_q):

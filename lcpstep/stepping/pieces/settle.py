@@ -72,6 +72,7 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
     for c in range(w.n_c):
         p = w.z[c]
         w.impulse[c] += p
+        w.pushed[c] += p
         if p > 0.0:
             if w.joined:
                 answer_impulse(w, c, p)

@@ -168,6 +168,7 @@ def shift(w: Work, tau: float) -> None:
         w.v[i] += tau * w.a[i]
     for c in range(w.n_c):
         w.impulse[c] += tau * w.force_now[c]
+        w.pushed[c] += tau * w.force_now[c]
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
         else:
@@ -253,6 +254,7 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
     for c in range(w.n_c):
         w.impulse[c] += 0.5 * tau * w.force_now[c]
+        w.pushed[c] += 0.5 * tau * w.force_now[c]
     if w.joined:
         reach_joints(w, t_next, tau, plan.slack)
     if w.closed_now > 0:
