@@ -34,7 +34,15 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
     from lcpstep.stepping.pieces.refine import NONE, solve_chosen
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, idle, release, stick, turn
+    from lcpstep.stepping.pieces.switches import (
+        AT_ONCE_FAST,
+        COLLAPSE,
+        SHORT_TOGETHER,
+        idle,
+        release,
+        stick,
+        turn,
+    )
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together

@@ -54,9 +54,7 @@ def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, 
     if plan.joined:
         return solve_unrefined(w, W, n)
     if place != INERTIA:
-        return solve_several(
-            m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess
-        )
+        return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
     return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)
 
 
@@ -147,7 +145,6 @@ def closes(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, guess: i
         return False
     size += acceleration_terms(m, w, c) if guess == FORCES else speed_terms(plan, w, c)
     return -u > ROUNDING * size
-
 
 
 def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
