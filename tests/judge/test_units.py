@@ -1,4 +1,4 @@
-"""Scenes in other units of length, time and mass, by powers of two, which round nothing: runs are the same to the bit."""
+"""Scenes in other units of length, time and mass, by powers of two, which round nothing: the same runs."""
 
 from dataclasses import replace
 

@@ -24,7 +24,7 @@ def bear_on_independent(w: Work, W: Doubles, n: int) -> None:
 
 
 def first_dependent(w: Work, W: Doubles, n: int) -> tuple[int, int]:
-    """The first contact with z > 0 that depends on such before it, or -1; how many these are, their factor as ever."""
+    """The first contact with z > 0 that depends on such before it, or -1; how many these are, in the factor."""
     n_k = 0
     for k in range(n):
         if w.z[k] > 0.0:

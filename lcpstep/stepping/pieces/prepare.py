@@ -106,7 +106,7 @@ def displacement(scene: Scene, m: Model, h: float) -> float:
 
 
 def driven(scene: Scene, m: Model, method: Located) -> float:
-    """How far the forces at the start push in a step, as stiff springs let them [m]; harmonic ones at their largest."""
+    """How far forces push in a step, as stiff springs let them [m]; harmonic ones at their largest."""
     s, h = scene.system, min(method.h, longest(scene, m, method))
     q0, v0 = (np.array(x, dtype=float) for x in (scene.q0, scene.v0))
     a = Point(m).acceleration(scene.t_span[0], q0, v0)

@@ -9,8 +9,8 @@ is therefore formed from the bodies' own data, forces summed before they are div
 correction. That all contacts are pressed is tried first, since it is so in most piles and costs a sixth of the
 solver; and again where W is too rough for the solver. Contacts that depend on others get no correction of their own.
 
-Impulses of contacts that depend on each other are not unique. Those that bear any are made independent (`independent`),
-and go on bearing as long as none of the others closes by more than rounding: so answers last from piece to piece.
+Impulses of contacts that depend on each other are not unique. Those that bear any are made independent, see
+`independent`, and go on bearing while none of the others closes by more than rounding: so answers last.
 Source: N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 """
 
@@ -41,8 +41,8 @@ PULLS = 1e-10  # relative to the largest impulse: what an answer found without t
 def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
 
-    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then noted
-    as the culprits.
+    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then
+    noted as the culprits.
     """
     w.lcp_calls += 1
     w.members = n
@@ -109,7 +109,7 @@ def all_pressed(w: Work, W: Doubles, n: int) -> bool:
 
 
 def still_pressed(m: Model, plan: Plan, w: Work, W: Doubles, n: int, guess: int) -> int:
-    """Rows of the factor of those that the guess presses, if they alone are the answer to rounding, which goes to w.z.
+    """How many the guess presses, if they alone are the answer to rounding, which goes to w.z; their factor.
 
     Else 0, and the guess is as it was.
     """
