@@ -32,9 +32,10 @@ class Clock:
 
     limit = 0.0  # seconds of a run, and of every so many steps of a long one; 0: none
     steps = 1e5
+    evaluations = 0  # of forces by the reference: as many steps may be asked for by a tolerance
 
     def __init__(self, steps: float) -> None:
-        self.seconds = Clock.limit * max(1.0, steps / Clock.steps)
+        self.seconds = Clock.limit * max(1.0, steps / Clock.steps, Clock.evaluations / Clock.steps)
 
     def __enter__(self) -> None:
         if Clock.limit:
