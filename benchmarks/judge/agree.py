@@ -42,7 +42,7 @@ def disturbed(d: Description, share: float, size: float, seed: int) -> Descripti
     new = replace(
         d, q0=numbers(q0), v0=numbers(faster * np.array(d.v0)), constant=off(d.constant), cosine=off(d.cosine),
         sine=off(d.sine),
-        restitution=numbers([r if r == 1.0 else r * (1.0 - share * rng.uniform()) for r in d.rates()]),
+        restitution=numbers([min(r * (1.0 + share * rng.uniform(-1.0, 1.0)), 0.5 + 0.5 * r) for r in d.rates()]),
     )  # fmt: skip
     if not d.contacts:
         return new

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import REFERENCE, WAYS, Finding, Hung, run
+from benchmarks.judge.runs import REFERENCE, WAYS, Clock, Finding, Hung, run
 from benchmarks.judge.vary import varied
 
 SHARE, SEVERAL = 0.25, 2
@@ -37,7 +37,7 @@ def judged(
     `share`: of the runs that are held against others of the same question in other words; with 1 everything is done.
     `without`: methods that are left out, the reference too.
     """
-    endings, findings, reference = {}, [], None
+    endings, findings, reference, Clock.evaluations = {}, [], None, 0
     compared = d.length < LONG * d.h
     methods = list(methods)
     with np.errstate(all="ignore"):
@@ -55,6 +55,7 @@ def judged(
                         findings += varied(d, r, rng, SEVERAL)
                 if name == REFERENCE:
                     if r.usable and compared:
+                        Clock.evaluations = r.motion.counts.force_evaluations
                         reference = Reference(d, r)
                 elif reference is not None and r.status != "NOT_FINITE":
                     findings += agrees(reference, r)

@@ -95,7 +95,9 @@ def open_impulses(d: Description, r: Run, rounding: float) -> Iterator[Finding]:
         low = g[:-1] + 0.5 * h * u[:-1]
     else:
         low = np.minimum(g[:-1], g[1:])
-    reach = np.max(np.abs(u), axis=0) * np.max(h)
+    fast = np.max(np.abs(u), axis=0)
+    np.maximum.at(fast, m.impacts.contact, np.abs(m.impacts.before))
+    reach = fast * np.max(h)
     allowed = ROUNDING * sizes.length + 1e3 * EPS * sizes.place + 10.0 * allowed_gap(d, r, reach)
     bad = (m.impulse[1:] > 1e3 * rounding) & (low > allowed)
     if np.any(bad):

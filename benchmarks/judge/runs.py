@@ -41,10 +41,12 @@ class Clock:
 
     limit = 0.0  # seconds of a run, and of every so many steps of a long one; 0: none
     steps = 1e5
+    evaluations = 0  # of forces by the reference: as many steps may be asked for by a tolerance
     deaf = 2.0  # seconds that it may take to hear the interrupt
 
     def __init__(self, steps: float) -> None:
-        self.seconds, self.rang = Clock.limit * max(1.0, steps / Clock.steps), False
+        asked = max(1.0, steps / Clock.steps, Clock.evaluations / Clock.steps)
+        self.seconds, self.rang = Clock.limit * asked, False
 
     def __enter__(self) -> Clock:
         if Clock.limit:

@@ -53,6 +53,7 @@ def base(d: Description, r: Run) -> Base:
     events = r.motion.counts.events + r.motion.counts.steps
     floor = (1e-9 + 1e-14 * events + (10.0 + 0.1 * events) * r.tolerance) * size
     floor += r.tolerance + 1e3 * EPS * float(np.max(np.abs(q), initial=0.0))
+    floor += 1e2 * EPS * max(map(abs, d.t_span)) * float(np.max(np.abs(r.motion.v), initial=0.0))
     unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
     told = float(times[unclear[0]]) if len(unclear) else np.inf
     return Base(d, r, times, q, floor + NOISE * noise, told)

@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport COLUMNS, LEAD, Record
+from lcpstep.kernels.record cimport COLUMNS, Record
 from lcpstep.kernels.vectors cimport clear, copy, copy_indices, distance, largest
 from lcpstep.pointers cimport abs, after, inf, max, min, nan, whole
 from lcpstep.stepping.hidden_forces cimport hidden, late

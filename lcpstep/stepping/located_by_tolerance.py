@@ -19,7 +19,7 @@ from lcpstep.stepping.step_control import Control
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.record import COLUMNS, LEAD
+    from lcpstep.kernels.record import COLUMNS
     from lcpstep.kernels.vectors import clear, copy, distance, largest
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan, whole
     from lcpstep.stepping.hidden_forces import hidden, late
@@ -112,14 +112,14 @@ class Attempts(Control):
         self.from_time, self.to_time, self.h = self.base(), self.goal(), self.step_size(self.level)
         start, end, until = self.into, self.ends(), inf
         entire, agreed = end == self.h, False
-        for _ in range(TRIALS):
+        for trial in range(TRIALS):
             self.compare(start, end, entire, until)
             agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
             if agreed:
                 break
             self.restore()
             until = self.two.time
-            early = self.alike or self.saved.closed_now > 0
+            early = trial < TRIALS - 2 and (self.alike or self.saved.closed_now > 0)
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
         if entire:
@@ -257,7 +257,7 @@ class Attempts(Control):
         W = self.w.W
         if self.means and self.plan.constant:
             W = after(self.plan.WA, self.w.made_with * self.w.n_c * self.w.n_c)
-        place, n = LEAD + 2 * self.w.n_q, self.w.n_c
+        n = self.w.n_c
         for c in range(n):
             force[c] = self.w.force_now[c]
             if self.w.status[c] != CLOSED:
@@ -266,12 +266,7 @@ class Attempts(Control):
                     if self.w.status[d] == CLOSED:
                         pull += W[c * n + d] * self.w.force_now[d]
                 force[c] = -pull / W[c * n + c] if W[c * n + c] > 0.0 else nan
-            impulse[c] = self.w.impulse[c] - self.saved.impulse[c]
-            first = self.saved_row - 1 if self.saved_row > 0 else 0
-            if self.record.row > first:
-                impulse[c] -= self.row[place + c]
-            for k in range(first, self.record.row):
-                impulse[c] += self.record.rows[k * self.record.row_size + place + c]
+            impulse[c] = self.w.pushed[c]
         for k in range(self.saved_event, self.record.event):
             event = after(self.record.events, k * COLUMNS)
             if event[5] == RELEASE and event[3] > 0.0:
@@ -299,6 +294,7 @@ class Attempts(Control):
 
     def store(self) -> None:
         """Keep the state at the start of a step, and the last row."""
+        clear(self.w.pushed, self.w.n_c)
         copy_state(self.saved, self.w, self.n_numbers, self.n_marks, self.n_matrices)
         self.saved_row, self.saved_event, self.saved_time = (
             self.record.row,

@@ -6,7 +6,7 @@ from lcpstep.pointers cimport abs, after
 from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
 from lcpstep.stepping.pieces.jointed cimport answer_force
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.refine cimport keep_closed, solve_chosen
+from lcpstep.stepping.pieces.refine cimport FORCES, IMPULSES, keep_closed, solve_chosen
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport release, release_time, stick, turn
 

@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
     from lcpstep.stepping.pieces.jointed import answer_force
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.refine import keep_closed, solve_chosen
+    from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed, solve_chosen
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
 
@@ -40,7 +40,7 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
     place = answered(plan, w, place)
     W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
     MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
-    if not solve_chosen(m, plan, w, W, place, n_k):
+    if not solve_chosen(m, plan, w, W, place, n_k, FORCES):
         return False
     for i in range(n):
         w.a_try[i] = abs(w.free[i])
@@ -153,12 +153,13 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
     place = answered(plan, w, w.made_with)
     W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
     MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
-    if not solve_chosen(m, plan, w, W, place, n_k):
+    if not solve_chosen(m, plan, w, W, place, n_k, IMPULSES):
         return False
     for k in range(n_k):
         c, p = w.chosen[k], w.z[k]
         w.p[c] = p
         w.impulse[c] += p
+        w.pushed[c] += p
         if w.joined:
             answer_force(w, c, p)
         for i in range(w.n_q):

@@ -9,9 +9,11 @@ from lcpstep.stepping.pieces.codes cimport (
 from lcpstep.stepping.pieces.corners cimport choose_jumping
 from lcpstep.stepping.pieces.jointed cimport answer_impulse
 from lcpstep.stepping.pieces.magnitudes cimport faint, speed_terms
-from lcpstep.stepping.pieces.refine cimport solve_chosen
+from lcpstep.stepping.pieces.refine cimport NONE, solve_chosen
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, release, stick, turn
+from lcpstep.stepping.pieces.switches cimport (
+    AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, idle, release, stick, turn,
+)
 
 cdef double SHORT, SAME_SPEED, SMALL
 cdef Py_ssize_t IN_A_ROW
@@ -24,7 +26,7 @@ cdef bint at_this_instant(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t choose_connected(Work w, Py_ssize_t n_s) noexcept nogil
 @cython.locals(ends_in_time=bint)
 cdef bint closes(Model m, Plan plan, Work w, Py_ssize_t c, bint alone) noexcept nogil
-cdef void jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
+cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
 @cython.locals(touches=bint)
 cdef void push(Plan plan, Work w, Py_ssize_t d, double p) noexcept nogil
 cdef void after_impact(

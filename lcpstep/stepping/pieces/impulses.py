@@ -32,9 +32,17 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.corners import choose_jumping
     from lcpstep.stepping.pieces.jointed import answer_impulse
     from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
-    from lcpstep.stepping.pieces.refine import solve_chosen
+    from lcpstep.stepping.pieces.refine import NONE, solve_chosen
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, release, stick, turn
+    from lcpstep.stepping.pieces.switches import (
+        AT_ONCE_FAST,
+        COLLAPSE,
+        SHORT_TOGETHER,
+        idle,
+        release,
+        stick,
+        turn,
+    )
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
@@ -64,9 +72,10 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
         elif first == CORNER:
             w.b[k] = w.rate[c]
-    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s):
+    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
         return -1
-    jump(plan, w, n_s)
+    if jump(plan, w, n_s) == 0.0:
+        idle(w)
     for k in range(n_s):
         after_impact(m, plan, w, record, w.chosen[k], w.z[k], t)
     w.events += 1
@@ -165,14 +174,15 @@ def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
     ) or hop < COLLAPSE * SHORT * plan.h
 
 
-def jump(plan: Plan, w: Work, n_s: int) -> None:
-    """Velocities after the impulses z of the chosen contacts; what rounding leaves of zero is zero."""
-    n = w.n_q
+def jump(plan: Plan, w: Work, n_s: int) -> float:
+    """Velocities after the impulses z of the chosen contacts, what rounding leaves of zero is zero; the largest z."""
+    n, largest = w.n_q, 0.0
     for i in range(n):
         w.v_try[i] = abs(w.v[i])
     for k in range(n_s):
         c, p = w.chosen[k], w.z[k]
         if p > 0.0:
+            largest = max(largest, p)
             if w.joined:
                 answer_impulse(w, c, p)
             for i in range(n):
@@ -185,6 +195,7 @@ def jump(plan: Plan, w: Work, n_s: int) -> None:
     for k in range(n_s):
         if w.z[k] > 0.0:
             push(plan, w, w.chosen[k], w.z[k])
+    return largest
 
 
 def push(plan: Plan, w: Work, d: int, p: float) -> None:
@@ -207,6 +218,7 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
     """Note the impact of a contact; the velocity it leaves with, to the last digit."""
     r, before = m.restitution[c], min(w.before[c], 0.0)
     w.impulse[c] += p
+    w.pushed[c] += p
     if w.status[c] == CLOSED:
         if p > 0.0:
             w.rate[c] = 0.0

@@ -49,7 +49,7 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
     """
     n, n_c, share = w.n_q, w.n_c, 0.0
     for c in range(n_c):
-        w.change[c] = w.impulse[c] - w.impulse_from[c]
+        w.residual[c] = w.impulse[c] - w.impulse_from[c]  # which `settle_state` leaves alone
         w.impulse[c] = w.impulse_from[c]
     while record.next_time < record.n_times and record.times[record.next_time] < end:
         t = record.times[record.next_time]
@@ -61,13 +61,13 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
             w.q_try[i] = q + s * (v + 0.5 * s * a) + r * r * r * bent
             w.v_try[i] = v + s * a + r * r * (w.v[i] - v - tau * a)
         for c in range(n_c):
-            w.impulse[c] += (r - share) * w.change[c]
+            w.impulse[c] += (r - share) * w.residual[c]
         share = r
         settle_state(m, plan, w, t, w.q_try)
         record.keep(t, 0.0, w.q_try, w.v_try, w.impulse)
         record.next_time += 1
     for c in range(n_c):
-        w.impulse[c] += (1.0 - share) * w.change[c]
+        w.impulse[c] += (1.0 - share) * w.residual[c]
     if not plan.constant:  # `settle_state` has looked elsewhere
         gap_rates(m, within(plan, w, base + tau), w.q, w.v, w.G, w.gap_t)
         refactor(m, w, base + tau)

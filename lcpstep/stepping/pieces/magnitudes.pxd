@@ -2,7 +2,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.pointers cimport abs
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef double FAINT
+cdef double FAINT, LEAST
 
 cdef double speed_terms(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 cdef bint faint(Plan plan, Work w, Py_ssize_t c, double u) noexcept nogil

@@ -15,6 +15,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.state import Plan, Work
 
 FAINT = 1e-10  # of the velocities that have acted in a step: the end of a sequence of events at one instant
+LEAST = 1e-290  # numbers near the smallest ones have no relative rounding
 
 
 def speed_terms(plan: Plan, w: Work, c: int) -> float:
@@ -23,7 +24,7 @@ def speed_terms(plan: Plan, w: Work, c: int) -> float:
     Its rounding is measured against that: a speed that falls from impact to impact would never be found small
     beside itself.
     """
-    size = abs(w.gap_t[c])
+    size = LEAST + abs(w.gap_t[c])
     for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
         size += abs(w.G[c * w.n_q + i]) * (w.swing[i] + abs(w.v[i]) + plan.h * abs(w.free[i]))
     return size
@@ -37,7 +38,7 @@ def faint(plan: Plan, w: Work, c: int, u: float) -> bool:
 def acceleration_terms(m: Model, w: Work, c: int) -> float:
     """What the acceleration of a gap without contact forces is made of, signs left aside."""
     acting(m, w)
-    size = abs(w.bias[c])
+    size = LEAST + abs(w.bias[c])
     for i in range(w.n_q):
         size += abs(w.G[c * w.n_q + i]) * w.a_try[i]
     return size

@@ -23,9 +23,10 @@ cdef Py_ssize_t POLISHING
 cdef bint begin_piece(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
 cdef void flat_accelerations(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef void pressed(Plan plan, Work w, Py_ssize_t place) noexcept nogil
-cdef void fitted(Model m, Work w, double t, double rest) noexcept nogil
+cdef void fitted(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
 @cython.locals(some=bint)
-cdef bint needs_bias(Work w) noexcept nogil
+cdef bint needs_bias(Plan plan, Work w) noexcept nogil
+cdef bint from_ground(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 @cython.locals(found=Py_ssize_t)
 cdef (Py_ssize_t, double) first_contact(Plan plan, Work w, double rest, double t_end) noexcept nogil
 cdef (Py_ssize_t, double) polish(

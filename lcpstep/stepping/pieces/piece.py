@@ -59,7 +59,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
     w.unchanged = plan.steady and plan.plain and not closed
     if m.flat:
         flat_accelerations(m, plan, w, t)
-    elif needs_bias(w):
+    elif needs_bias(plan, w):
         gap_bias(m, w, within(plan, w, t), w.q, w.v)
         for c in range(n_c):
             w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
@@ -75,7 +75,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
         if closed:
             pressed(plan, w, place)
     else:
-        fitted(m, w, t, w.end - w.sigma)
+        fitted(m, plan, w, t, w.end - w.sigma)
     for c in range(n_c):
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = w.half[c] = 0.0
@@ -111,24 +111,29 @@ def pressed(plan: Plan, w: Work, place: int) -> None:
                 w.half[c] += 0.5 * WA[c * w.n_c + d] * force
 
 
-def fitted(m: Model, w: Work, t: float, rest: float) -> None:
-    """Gap quadratics that fit the gap at the end of the piece; from accelerations for contacts just left."""
+def fitted(m: Model, plan: Plan, w: Work, t: float, rest: float) -> None:
+    """Gap quadratics that fit the gap at the end of the piece; from accelerations where gaps tell less than these."""
     for i in range(w.n_q):
         w.q_try[i] = w.q[i] + rest * (w.v[i] + 0.5 * rest * w.a[i])
     gaps(m, t + rest, w.q_try, w.v, w.gap_try)
     for c in range(w.n_c):
-        if w.grounded[c] != 0:
+        if from_ground(plan, w, c):
             w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c])
         else:
             w.half[c] = (w.gap_try[c] - w.gap[c] - rest * w.rate[c]) / (rest * rest)
 
 
-def needs_bias(w: Work) -> bool:
+def needs_bias(plan: Plan, w: Work) -> bool:
     """Whether some contact is closed or has just been left."""
     some = False
     for c in range(w.n_c):
-        some = some or w.status[c] == CLOSED or w.grounded[c] != 0
+        some = some or w.status[c] == CLOSED or from_ground(plan, w, c)
     return some
+
+
+def from_ground(plan: Plan, w: Work, c: int) -> bool:
+    """Whether gap c has just been left, or is still no more than rounding of the positions that it is made of."""
+    return w.grounded[c] != 0 or w.gap[c] <= plan.slack
 
 
 def first_contact(plan: Plan, w: Work, rest: float, t_end: float) -> tuple[int, float]:

@@ -156,7 +156,9 @@ def follow(
             if not force_at(m, plan, w, z, now, NODES[k] * tau):
                 return NOT_FINITE
             for c in range(w.n_c):
-                w.impulse[c] += WEIGHTS[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
+                p = WEIGHTS[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
+                w.impulse[c] += p
+                w.pushed[c] += p
     state_at(m, plan, w, z, now, tau)
     copy(w.q, z.q, w.n_q)
     copy(w.v, z.v, w.n_q)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import LinearSystem, Scene
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.point import Point
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -25,6 +26,7 @@ SMALL = 8  # coordinates up to which matrices are made anew for the rest of a st
 # frozen acceleration of order two makes no error by that
 MANY, MANY_EXACTLY = 200, 20_000
 PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstacle
+NO_GAP = 1e-3  # of a tolerance
 
 
 def at_rest(m: Model, trapezoidal: bool) -> Model:
@@ -64,7 +66,6 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     if constant:
         AG[:] = (A_inverse[0] @ a["G"].T).T
         WA[:] = a["G"] @ AG[0].T
-    size = largest(scene.q0, a["offset"], h * np.asarray(scene.v0))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
@@ -72,13 +73,54 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": stiff,
         "steady": bool(trapezoidal and not stiff and unforced),
         "plain": bool(trapezoidal and m.flat and not moving), "constant": constant, "small": n_q <= SMALL,
-        "slack": ROUNDING * (size or 1.0), "per_step": method.max_per_step,
+        "slack": ROUNDING * size(scene, m, method), "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": longest(scene, m, method),
         "corners": np.array(scene.corners, dtype=np.float64), "period": scene.period,
         "margin": MARGIN * t_scale if len(np.asarray(scene.corners)) else 0.0,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip
+
+
+def size(scene: Scene, m: Model, method: Located) -> float:
+    """Lengths at hand at the start [m]: places, offsets, and what moves in a step; rounding is measured against it.
+
+    1 where nothing is there yet, and where gaps are functions, of which nothing is known but the places. By a
+    tolerance steps are shorter than h; what they may be wrong by is no gap.
+    """
+    own = largest(scene.q0, m.arrays["offset"], method.h * np.asarray(scene.v0))
+    if m.flat:
+        own = max(own, displacement(scene, m, min(method.h, longest(scene, m, method))))
+    if m.flat and method.tolerance is None:
+        own = max(own, driven(scene, m, method))
+    if method.tolerance is not None:
+        own = max(own, min(1.0, NO_GAP * method.tolerance / ROUNDING))
+    return own or 1.0
+
+
+def displacement(scene: Scene, m: Model, h: float) -> float:
+    """How far obstacles and the frame are from their places at the start, and how far they go in a time h [m]."""
+    contacts, motion, t = scene.contacts, np.zeros((scene.n_c, 3)), scene.t_span[0]
+    if isinstance(contacts, LinearContacts) and contacts.motion is not None:
+        contacts.motion(t, np.array(scene.q0), np.array(scene.v0), np.array(scene.p), motion)
+    found = largest(displaced(scene, m, t)[0], motion * [1.0, h, h * h])
+    return found if math.isfinite(found) else 0.0
+
+
+def driven(scene: Scene, m: Model, method: Located) -> float:
+    """How far forces push in a step, as stiff springs let them [m]; harmonic ones at their largest."""
+    s, h = scene.system, min(method.h, longest(scene, m, method))
+    q0, v0 = (np.array(x, dtype=float) for x in (scene.q0, scene.v0))
+    a = Point(m).acceleration(scene.t_span[0], q0, v0)
+    if m.linear:
+        M, f = m.arrays["M"], m.arrays["M"] @ a
+        if isinstance(s, LinearSystem) and isinstance(s.force, Harmonic):
+            f = sum(map(np.abs, s.force.terms(scene.n_q)))
+        implicit = h if method.order == 2 else 0.0
+        A = M + 0.5 * implicit * m.arrays["C"] + 0.25 * implicit**2 * m.arrays["K"]
+        a = np.abs(np.linalg.inv(A)) @ np.abs(f)
+    found = h * h * largest(a)
+    return found if math.isfinite(found) else 0.0
 
 
 def longest(scene: Scene, m: Model, method: Located) -> float:

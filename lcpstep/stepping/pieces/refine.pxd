@@ -4,16 +4,28 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport EPS, INERTIA
+from lcpstep.stepping.pieces.codes cimport EPS, INERTIA, ROUNDING
+from lcpstep.stepping.pieces.independent cimport bear_on_independent
+from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double SETTLED, EXACT, PULLS
-cdef Py_ssize_t SOLVED, REFINEMENTS
+cdef Py_ssize_t SOLVED, REFINEMENTS, NONE, FORCES, IMPULSES
 
-cdef bint solve_chosen(Model m, Plan plan, Work w, double* W, Py_ssize_t place, Py_ssize_t n) noexcept nogil
+cdef bint solve_chosen(
+    Model m, Plan plan, Work w, double* W, Py_ssize_t place, Py_ssize_t n, Py_ssize_t guess
+) noexcept nogil
 cdef bint solve_unrefined(Work w, double* W, Py_ssize_t n) noexcept nogil
-cdef bint solve_several(Work w, double* W, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
+cdef bint solve_several(
+    Model m, Plan plan, Work w, double* W, double* inverse, bint factored, Py_ssize_t n, Py_ssize_t guess
+) noexcept nogil
 cdef bint all_pressed(Work w, double* W, Py_ssize_t n) noexcept nogil
+cdef Py_ssize_t still_pressed(
+    Model m, Plan plan, Work w, double* W, Py_ssize_t n, Py_ssize_t guess
+) noexcept nogil
+cdef bint closes(
+    Model m, Plan plan, Work w, double* W, Py_ssize_t k, Py_ssize_t n_k, Py_ssize_t guess
+) noexcept nogil
 cdef bint right(Work w, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
 cdef void leftover(Work w, double* inverse, bint factored, Py_ssize_t n) noexcept nogil
 cdef Py_ssize_t factor_pressed(Work w, double* W, Py_ssize_t n, bint everybody) noexcept nogil

@@ -8,6 +8,9 @@ log10(mass ratio) digits. What is left of
 is therefore formed from the bodies' own data, forces summed before they are divided by masses, and W gives but the
 correction. That all contacts are pressed is tried first, since it is so in most piles and costs a sixth of the
 solver; and again where W is too rough for the solver. Contacts that depend on others get no correction of their own.
+
+Impulses of contacts that depend on each other are not unique. Those that bear any are made independent, see
+`independent`, and go on bearing while none of the others closes by more than rounding: so answers last.
 Source: N. Higham, Accuracy and Stability of Numerical Algorithms, chapter 12.
 """
 
@@ -23,19 +26,23 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import EPS, INERTIA
+    from lcpstep.stepping.pieces.codes import EPS, INERTIA, ROUNDING
+    from lcpstep.stepping.pieces.independent import bear_on_independent
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.state import Plan, Work
 
+NONE, FORCES, IMPULSES = range(3)  # what a guess is of
 REFINEMENTS = 6
 SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
 EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
 PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
-def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int) -> bool:
+def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
 
-    w.z comes as a guess. False where there is no answer; the chosen are then noted as the culprits.
+    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then
+    noted as the culprits.
     """
     w.lcp_calls += 1
     w.members = n
@@ -47,8 +54,8 @@ def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int) 
     if plan.joined:
         return solve_unrefined(w, W, n)
     if place != INERTIA:
-        return solve_several(w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n)
-    return solve_several(w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n)
+        return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
+    return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)
 
 
 def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
@@ -56,16 +63,25 @@ def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
     for i in range(n):
         for j in range(n):
             w.problem[i * n + j] = W[w.chosen[i] * w.n_c + w.chosen[j]]
-    return solve_small(w.problem, w.b, w.z, n, w.lcp) == SOLVED
+    if solve_small(w.problem, w.b, w.z, n, w.lcp) != SOLVED:
+        return False
+    bear_on_independent(w, W, n)
+    return True
 
 
-def solve_several(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int) -> bool:
-    """The same for any number: the guess if it is still right, or all pressed, else the solver's answer; refined.
+def solve_several(
+    m: Model, plan: Plan, w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, guess: int
+) -> bool:
+    """The same for any number: the guess if it is still right, who was pressed, all, or the solver's answer; refined.
 
     `inverse` is A^-1 or, if `factored`, Cholesky's factor of A.
     """
     if right(w, inverse, factored, n):
         return True
+    if n > 1 and guess != NONE:
+        n_k = still_pressed(m, plan, w, W, n, guess)
+        if n_k > 0:
+            return refine(w, W, inverse, factored, n, n_k, True)
     if n > 1 and all_pressed(w, W, n):
         return refine(w, W, inverse, factored, n, n, True)
     solved = solve_unrefined(w, W, n)
@@ -90,6 +106,45 @@ def all_pressed(w: Work, W: Doubles, n: int) -> bool:
     for k in range(n):
         least = min(least, w.z[k])
     return least > PULLS * largest
+
+
+def still_pressed(m: Model, plan: Plan, w: Work, W: Doubles, n: int, guess: int) -> int:
+    """How many the guess presses, if they alone are the answer to rounding, which goes to w.z; their factor.
+
+    Else 0, and the guess is as it was.
+    """
+    n_k = factor_pressed(w, W, n, False)
+    for i in range(n_k):
+        w.change[i] = -w.b[w.place[i]]
+    solve_factored(w.problem, n, n_k, w.change)
+    largest = 0.0
+    for i in range(n_k):
+        largest = max(largest, w.change[i])
+    for i in range(n_k):
+        if not w.change[i] > PULLS * largest:
+            return 0
+    i = 0
+    for k in range(n):
+        if i < n_k and w.place[i] == k:
+            i += 1
+        elif w.z[k] > 0.0 or closes(m, plan, w, W, k, n_k, guess):
+            return 0
+    for i in range(n_k):
+        w.z[w.place[i]] = w.change[i]
+    return n_k
+
+
+def closes(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, guess: int) -> bool:
+    """Whether the k-th chosen contact closes by more than rounding while n_k are pressed, by w.change."""
+    c, u, size = w.chosen[k], w.b[k], 0.0
+    for i in range(n_k):
+        change = W[c * w.n_c + w.held[i]] * w.change[i]
+        u += change
+        size += abs(change)
+    if u >= 0.0:
+        return False
+    size += acceleration_terms(m, w, c) if guess == FORCES else speed_terms(plan, w, c)
+    return -u > ROUNDING * size
 
 
 def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:

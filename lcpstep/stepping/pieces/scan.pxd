@@ -22,7 +22,7 @@ cdef double landing(
 cdef double lowest(
     Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c
 ) noexcept nogil
-@cython.locals(hop=bint, rests=bint)
+@cython.locals(hop=bint, rests=bint, touches=bint)
 cdef (Py_ssize_t, double) first_landing(
     Model m, Plan plan, Work w, Polynomial z, double t, double end
 ) noexcept nogil

@@ -94,8 +94,11 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
     """Which gap closes first in (0, end], and when; NOBODY and the end if none does, NOWHERE if one is not finite."""
     n_c, found, first = w.n_c, NOBODY, end
     for c in range(n_c):
-        if w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0:
-            return c, 0.0
+        touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0
+        if touches and (found == NOBODY or w.rate[c] < w.rate[found]):
+            found = c
+    if found != NOBODY:
+        return found, 0.0
     copy(z.gap_from, w.gap, n_c)
     copy(z.rate_from, w.rate, n_c)
     a = 0.0

@@ -11,7 +11,7 @@ from lcpstep.stepping.pieces.codes cimport (
 from lcpstep.stepping.pieces.jointed cimport answer_impulse, hold_joints, turn_with_joints
 from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.magnitudes cimport speed_terms
-from lcpstep.stepping.pieces.refine cimport solve_chosen
+from lcpstep.stepping.pieces.refine cimport NONE, solve_chosen
 from lcpstep.stepping.pieces.smooth cimport (
     gap_bias, measure, put_on_surface, refactor, renew_forces, respond
 )

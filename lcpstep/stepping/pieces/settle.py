@@ -37,7 +37,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.jointed import answer_impulse, hold_joints, turn_with_joints
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.refine import solve_chosen
+    from lcpstep.stepping.pieces.refine import NONE, solve_chosen
     from lcpstep.stepping.pieces.smooth import (
         gap_bias,
         measure,
@@ -72,6 +72,7 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
     for c in range(w.n_c):
         p = w.z[c]
         w.impulse[c] += p
+        w.pushed[c] += p
         if p > 0.0:
             if w.joined:
                 answer_impulse(w, c, p)
@@ -103,7 +104,7 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
             w.gap[c] = 0.0
         w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.rate[c]
         w.b[c] = w.gap[c] / span + w.rate[c] + span * w.alpha[c]
-    return solve_chosen(m, plan, w, w.W, INERTIA, n_c)
+    return solve_chosen(m, plan, w, w.W, INERTIA, n_c, NONE)
 
 
 def matters(m: Model, w: Work, lasting: bool) -> bool:

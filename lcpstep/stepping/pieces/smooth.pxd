@@ -6,7 +6,7 @@ from lcpstep.kernels.linear cimport (
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, REST, WHOLE
+from lcpstep.stepping.pieces.codes cimport CLOSED, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.jointed cimport (
     join_acceleration, meet_joints, put_on_joints, reach_joints, reduce_mobility, settle_velocity, take_joints,
 )

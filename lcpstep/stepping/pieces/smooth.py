@@ -27,7 +27,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, REST, WHOLE
+    from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
     from lcpstep.stepping.pieces.jointed import (
         join_acceleration,
         meet_joints,
@@ -183,6 +183,7 @@ def shift(w: Work, tau: float) -> None:
         w.v[i] += tau * w.a[i]
     for c in range(w.n_c):
         w.impulse[c] += tau * w.force_now[c]
+        w.pushed[c] += tau * w.force_now[c]
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
         else:
@@ -229,15 +230,16 @@ def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
 def newton_step(w: Work, x: Doubles) -> None:
     """X + M^-1 G^T z with G M^-1 G^T z = -r for the residuals r in w.gap_try of closed and violated contacts.
 
-    Those that depend on others get no z of their own.
+    Those that depend on others get no z of their own: violated ones on closed ones, whatever their numbers.
     """
     n_c, n_k = w.n_c, 0
-    for c in range(n_c):
-        if w.gap_try[c] != 0.0 or w.status[c] == CLOSED:
-            w.held[n_k] = c
-            if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
-                w.change[n_k] = -w.gap_try[c]
-                n_k += 1
+    for status in range(CLOSED, OPEN - 1, -1):
+        for c in range(n_c):
+            if w.status[c] == status and (status == CLOSED or w.gap_try[c] != 0.0):
+                w.held[n_k] = c
+                if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
+                    w.change[n_k] = -w.gap_try[c]
+                    n_k += 1
     solve_factored(w.problem, n_c, n_k, w.change)
     for k in range(n_k):
         for i in range(w.n_q):
@@ -268,6 +270,7 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
     for c in range(w.n_c):
         w.impulse[c] += 0.5 * tau * w.force_now[c]
+        w.pushed[c] += 0.5 * tau * w.force_now[c]
     if w.joined:
         reach_joints(w, t_next, tau, plan.slack)
     if w.closed_now > 0:

@@ -74,6 +74,7 @@ cdef class Work:
     cdef double* turns
     cdef double* hops
     cdef double* fall
+    cdef double* pushed
     cdef double* impulse
     cdef double* G
     cdef double* G_try

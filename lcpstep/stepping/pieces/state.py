@@ -19,7 +19,7 @@ VECTORS = [
 NUMBERS = [
     "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
     "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
-    "since", "next_zero", "turned", "turns", "hops", "fall",
+    "since", "next_zero", "turned", "turns", "hops", "fall", "pushed",
 ]  # fmt: skip
 MARKS = [
     "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
@@ -101,6 +101,7 @@ class Work:
     last            time of the last impact since the start of the step
     force_now       contact force
     older, older_time    the last positive contact force, and when
+    pushed          impulse since the step began that a tolerance looks at
     impulse         since the last kept state; those of the n_j joints follow
     p               impulses of the event at hand
     b, z            of the complementarity problem at hand, and its solution
@@ -225,7 +226,7 @@ class Work:
         self.since, self.next_zero = after(x, 22 * n), after(x, 23 * n)
         self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
         self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
-        self.impulse = after(x, 28 * n)
+        self.pushed, self.impulse = after(x, 28 * n), after(x, 29 * n)
 
     def place_marks(self, x: Indices) -> None:
         """Whole numbers per contact, in the order of MARKS."""

@@ -1,0 +1,69 @@
+"""Contacts that depend on each other: forces and impulses of several that do the same."""
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lcpstep import Located, simulate
+
+SPAN = (0.0, 1.0)
+FEET = np.array([[1.0, -0.5], [1.0, -0.2], [1.0, 0.1], [1.0, 0.4], [1.0, 0.5]])
+
+
+def swing(t, q, v, p, out):
+    out[0], out[1] = -9.81, 0.3 * np.sin(7.0 * t)
+
+
+def gaps(t, q, v, p, out):
+    for k in range(5):
+        out[k] = q[0] + p[k] * q[1]
+
+
+def normals(t, q, v, p, out):
+    for k in range(5):
+        out[k, 0], out[k, 1] = 1.0, p[k]
+
+
+def table(general):
+    """A table on five feet in a row, turned to and fro by a moment that no foot lets it follow."""
+    x = FEET[:, 1]
+    inertia = np.diag([1.0, 0.1])
+    named = {f"x{k}": x[k] for k in range(5)}
+    if general:
+        return Scene(
+            System(2, inertia, swing),
+            [0.0, 0.0],
+            [0.0, 0.0],
+            SPAN,
+            contacts=Contacts(5, gaps, normals),
+            parameters=named,
+        )
+    return Scene(
+        LinearSystem(M=inertia, force=swing), [0.0, 0.0], [0.0, 0.0], SPAN, contacts=LinearContacts(G=FEET)
+    )
+
+
+@pytest.mark.parametrize("general", [False, True])
+@pytest.mark.parametrize(
+    ("order", "tolerance", "error"), [(2, None, 1e-4), (4, None, 1e-7), (2, 1e-4, 2e-3), (4, 1e-6, 1e-7)]
+)
+def test_no_more_feet_bear_than_carry_the_table(general, order, tolerance, error):
+    """A tolerance holds positions and velocities; forces that move nothing are as exact as steps are short."""
+    m = simulate(table(general), Located(0.01 if tolerance is None else 0.2, order, tolerance=tolerance))
+    assert m.message == "reached the end of the span"
+    np.testing.assert_allclose(m.q, 0.0, rtol=0, atol=1e-15)
+    pressed = m.impulse[1:] > 0.0
+    assert np.max(np.sum(pressed, axis=1)) <= 3  # two at a time, and one in its turn within a step
+    assert m.counts.steps < 300
+    given = np.sum(m.impulse, axis=0) @ FEET
+    truth = [9.81, -0.3 * (1.0 - np.cos(7.0)) / 7.0]
+    np.testing.assert_allclose(given, truth, rtol=0, atol=error)
+
+
+def test_steps_by_a_tolerance_do_not_depend_on_what_is_kept():
+    scene = table(general=False)
+    at = np.linspace(*SPAN, 23)
+    method = Located(0.2, tolerance=1e-5)
+    full, some = simulate(scene, method), simulate(scene, method, keep=at)
+    assert full.counts.steps == some.counts.steps
+    np.testing.assert_allclose(np.sum(some.impulse, axis=0), np.sum(full.impulse, axis=0), rtol=0, atol=1e-13)
