@@ -23,6 +23,7 @@ from lcpstep.analysis.grid_error import APART, finer_method, on_other_grids, spr
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
 from lcpstep.analysis.listed import listed
 from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
+from lcpstep.analysis.starts import random_starts as random_starts
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods, periods
@@ -215,14 +216,6 @@ def with_new(known: Attractors, more: Attractors) -> Attractors:
 
     new = [a for a in more.found if not is_known(a)]
     return replace(known, found=(*known.found, *new))
-
-
-def random_starts(box: ArrayLike, n: int, seed: int) -> Array:
-    """N states drawn uniformly from a box (2, 2 n_q) of lowest and highest ones, (n, 2 n_q)."""
-    box = np.asarray(box, dtype=float)
-    if box.ndim != 2 or len(box) != 2 or not np.all(box[0] <= box[1]):
-        raise ValueError(f"box: expected the lowest and the highest states, got {box.tolist()}")
-    return np.random.default_rng(seed).uniform(box[0], box[1], (checks.count("n", n), box.shape[1]))
 
 
 def return_time(states: Array, longest: int, tolerance: float) -> int:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from lagrangian import HybridScene
-from lcpstep.analysis.attractors import POINTS, Attractors, attractors, random_starts
-from lcpstep.analysis.basins import outside
+from lcpstep.analysis.attractors import POINTS, Attractors, attractors
 from lcpstep.analysis.likeness import Likeness, likeness, sample
+from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.cli.common import DONE, event_driven, moreau
 from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.dataset import labelled, provenance
