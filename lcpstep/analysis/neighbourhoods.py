@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import HybridScene, Scene
-from lcpstep.analysis.attractors import Attractor
+from lcpstep.analysis.attractor import Attractor
 from lcpstep.analysis.cells import UNKNOWN
 from lcpstep.analysis.starts import outside
 from lcpstep.maps.batch import Targets, periods
