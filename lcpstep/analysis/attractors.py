@@ -61,7 +61,7 @@ def attractors(
     phase : of the section, as a share of the period in [0, 1)
     tolerance : of a return, relative to the size of the motion; where not given 1e-6 for `EventDriven`, and for other
         methods what their grid does to the motion (see `grid_error`)
-    points : periods that an aperiodic attractor is sampled over
+    points : periods that an aperiodic attractor is sampled over, at the least
 
     Raises
     ------
@@ -70,6 +70,7 @@ def attractors(
     window, longest = checks.count("window", window), checks.count("longest", longest)
     if 2 * longest > window:
         raise ValueError(f"longest: expected at most half of window = {window}, got {longest}")
+    points = checks.count("points", points)
     transient = int(checks.number("transient", transient, least=0))
     if tolerance is not None:
         checks.positive("tolerance", tolerance)

@@ -58,7 +58,7 @@ def _sampled(P: PeriodMap, runs: Periods, members: list[int], n: int, points: in
     if not n:
         kicks = np.random.default_rng(0).uniform(-KICK, KICK, starts.shape)
         starts = starts + kicks * np.max(np.abs(runs.states[members]), axis=(0, 1))
-    each = max(1, -(-points // many)) if not n else max(n, -(-CLOUD // (many * n)) * n)
+    each = max(FORGET, -(-points // many)) if not n else max(n, -(-CLOUD // (many * n)) * n)
     drop = FORGET if not n else 0
     if not n and not isinstance(P.method, EventDriven):
         return on_other_grids(P, starts, each + drop, drop, MOST_OF_MANY)
