@@ -1,4 +1,4 @@
-"""The limit cycle of the hybrid anti-lock controller: switching states, multiplier, basins, bifurcations.
+"""The limit cycle of the hybrid anti-lock controller: switching states, multiplier; what other motions end in.
 
 The cycle is dead-beat: in state 1 the torque is T_max and the slip leaves at lambda_max whatever came before, so
 the state (lambda_max, T_max) lies on it, and all deviations are lost there: the multiplier is zero. It exists while,
@@ -15,13 +15,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from lagrangian import checks
 from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque, holding_torque_slope
 from lcpstep.analysis.hybrid_variation import monodromy
-from lcpstep.errors import LcpStepError, StudyInterrupted
+from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.many import End, Follower
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -29,7 +28,6 @@ from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
-FINEST = 4.0 * np.finfo(float).eps  # relative, of a bisection
 ORDER = ("2", "3", "0", "1")  # states from (lambda_max, T_max) on
 OUTCOMES = ("limit cycle", "wheel lock", "equilibrium", "other")
 CYCLE, LOCK, EQUILIBRIUM, OTHER = range(4)
@@ -97,7 +95,7 @@ def limit_cycle(scene: HybridScene, method: EventDriven = EXACT) -> Cycle:
     M = monodromy(_whole(run, end))
     values = np.linalg.eigvals(M)
     other = values[np.argmax(np.abs(values - 1.0))]
-    lowest, highest = _extremes(run.at, period)
+    lowest, highest = extremes(run.at, period)
     return Cycle(
         ORDER, np.concatenate([[0.0], end.times[:3]]), np.concatenate([[start[0]], end.after[:3, 0]]),
         np.concatenate([[start[1]], end.after[:3, 1]]), period, (lowest, highest),
@@ -126,7 +124,8 @@ def _whole(run: Any, end: End) -> Any:
     return simulate(changed(run.scene, t_span=(0.0, run.scene.t_span[1] * (1.0 + 1e-13))), run.method)
 
 
-def _extremes(at: Callable[[Any], Array], period: float) -> tuple[float, float]:
+def extremes(at: Callable[[Any], Array], period: float) -> tuple[float, float]:
+    """Smallest and largest value of the first coordinate over a period."""
     from scipy.optimize import minimize_scalar
 
     t = np.linspace(0.0, period, 2001)
@@ -187,183 +186,6 @@ def peak(scene: HybridScene) -> tuple[float, float]:
         brentq(holding_torque_slope, 0.0, 1.0, args=(p,), xtol=1e-17, rtol=4.0 * np.finfo(float).eps)
     )
     return slip, holding_torque(slip, p)
-
-
-def with_thresholds(scene: HybridScene, **values: float) -> HybridScene:
-    """The scene with other parameters, by name: torque_max, slip_min, ..."""
-    names = [k for k, v in scene.parameters.items() if not isinstance(v, str)]
-    p = np.array(scene.p)
-    for name, value in values.items():
-        p[names.index(name)] = value
-    return changed(scene, p=p, parameters=dict(scene.parameters) | values)
-
-
-def has_cycle(scene: HybridScene, longest: float = LONGEST) -> bool:
-    """Whether the motion from (lambda_max, T_max) comes back to it within a time [s]."""
-    start = corner(scene)
-    return returns(Follower(scene, EXACT, longest, 4)(start, "2"), start)
-
-
-def edge(exists: Callable[[float], bool], inside: float, outside: float, width: float) -> float:
-    """Where a property that holds at `inside` and not at `outside` is lost, by bisection to a width."""
-    if not exists(inside) or exists(outside):
-        raise ValueError(f"edge: expected the cycle at {inside:g} and none at {outside:g}")
-    from scipy.optimize import bisect
-
-    return float(bisect(lambda x: 1.0 if exists(x) else -1.0, inside, outside, xtol=0.5 * width, rtol=FINEST))
-
-
-def vanishing(scene: HybridScene, width: float = 2e-10, longest: float = 1e7) -> float:
-    """The largest torque threshold T_max [N m] below which the cycle has vanished.
-
-    The time to pass the top of Psi grows as 1/sqrt(T_max - max Psi) as T_max comes down to it; `longest` [s] is
-    waited for that.
-    """
-    top = peak(scene)[1]
-    inside = float(scene.parameters["torque_max"])
-    low = max(0.5 * (top + float(scene.parameters["torque_min"])), top - 10.0)
-    return edge(lambda T: has_cycle(with_thresholds(scene, torque_max=T), longest), inside, low, width)
-
-
-@dataclass(frozen=True, eq=False)
-class Bifurcation:
-    """The cycle over the torque threshold: T_max (m,), period, smallest and largest slip; NaN where there is none."""
-
-    torque_max: Array
-    period: Array
-    slip_low: Array
-    slip_high: Array
-    entered: Array  # (m, 4) slip at the four switches, from state 2 on
-
-    def as_dict(self) -> dict[str, Any]:
-        """The same for a file."""
-        return {
-            k: [None if v != v else v for v in x.tolist()] if x.ndim == 1 else x.tolist()
-            for k, x in vars(self).items()
-        }
-
-
-def bifurcation(scene: HybridScene, torque_max: ArrayLike) -> Bifurcation:
-    """Period and amplitude of the cycle for each torque threshold."""
-    values = checks.vector("torque_max", torque_max)
-    rows = []
-    for T in values:
-        other = with_thresholds(scene, torque_max=float(T))
-        start = corner(other)
-        end = Follower(other, EXACT, LONGEST, 4)(start, "2")
-        if not returns(end, start):
-            rows.append(np.full(7, np.nan))
-            continue
-        run = simulate(other.started(start, "2", (0.0, float(end.times[-1]))), EXACT)
-        rows.append(
-            np.array([end.times[-1], *_extremes(run.at, float(end.times[-1])), start[0], *end.after[:3, 0]])
-        )
-    table = np.array(rows)
-    return Bifurcation(np.array(values), table[:, 0], table[:, 1], table[:, 2], table[:, 3:])
-
-
-@dataclass(frozen=True, eq=False)
-class Basins:
-    """Where motions go: labels (4, n_slip, n_torque) index `OUTCOMES`; one layer a starting state of the machine.
-
-    A cell that an interrupted run has not come to holds -1.
-    """
-
-    slip: Array
-    torque: Array
-    labels: NDArray[np.int8]
-
-    def shares(self) -> dict[str, dict[str, float]]:
-        """Share of each outcome for each starting state."""
-        return {
-            f"{q}": {name: float(np.mean(self.labels[q] == k)) for k, name in enumerate(OUTCOMES)}
-            for q in range(4)
-        }
-
-
-def basins(
-    scene: HybridScene, slip: ArrayLike, torque: ArrayLike, progress: Callable[[int], None] | None = None
-) -> Basins:
-    """Outcome of the motion from every slip, torque and state of the machine.
-
-    Raises
-    ------
-    StudyInterrupted   a KeyboardInterrupt; carries the `Basins` so far
-    """
-    s, T = checks.vector("slip", slip), checks.vector("torque", torque)
-    corner(scene)
-    follow = Follower(scene, FAST, SETTLED, SWITCHES)
-    result = Basins(np.array(s), np.array(T), np.full((4, len(s), len(T)), -1, dtype=np.int8))
-    try:
-        for q in range(4):
-            for i, x in enumerate(s):
-                result.labels[q, i] = [classify(scene, follow([x, y], f"{q}")) for y in T]
-                if progress is not None:
-                    progress(q * len(s) + i + 1)
-    except KeyboardInterrupt:
-        raise StudyInterrupted(result) from None
-    return result
-
-
-@dataclass(frozen=True)
-class Margin:
-    """How far the slip may be off as a state is entered, downwards and upwards, with the cycle kept; None: any."""
-
-    state: str
-    slip: float
-    down: float | None
-    up: float | None
-
-
-def margins(scene: HybridScene, cycle: Cycle, width: float = 1e-9) -> list[Margin]:
-    """The error allowed in the slip at each switch of the cycle: distances to the edges of the basin there."""
-    follow, result = Follower(scene, FAST, SETTLED, SWITCHES), []
-
-    for state, slip, torque in zip(cycle.states, cycle.slip, cycle.torque, strict=True):
-
-        def good(x: float, state: str = state, torque: float = float(torque)) -> bool:
-            return classify(scene, follow([x, torque], state)) == CYCLE
-
-        slip = float(slip)
-        down, up = (_first_edge(good, slip, end, width) for end in (0.0, 1.0))
-        result.append(
-            Margin(state, slip, None if down is None else slip - down, None if up is None else up - slip)
-        )
-    return result
-
-
-def _first_edge(good: Callable[[float], bool], start: float, end: float, width: float) -> float | None:
-    """The edge of the basin nearest to the start, looked for in steps, then by bisection."""
-    inside = start
-    for x in np.linspace(start, end, 101)[1:]:
-        if not good(float(x)):
-            return edge(good, inside, float(x), width)
-        inside = float(x)
-    return None
-
-
-def allowed_bias(scene: HybridScene, quantity: str, width: float = 1e-9) -> tuple[float | None, float | None]:
-    """Constant errors e between which the cycle persists when `quantity` is measured as its value plus e.
-
-    Parameters
-    ----------
-    quantity : "slip" or "torque", whose two thresholds act at their values minus e
-
-    Returns
-    -------
-    lowest and highest error; None where none ends the cycle down to lambda_max - e = 1 or twice T_max, and up to a
-        lower threshold of zero
-    """
-    if quantity not in ("slip", "torque"):
-        raise ValueError(f"quantity: expected slip or torque, got {quantity!r}")
-    low, high = (float(scene.parameters[f"{quantity}_{end}"]) for end in ("min", "max"))
-
-    def good(e: float) -> bool:
-        names = {f"{quantity}_min": low - e, f"{quantity}_max": high - e}
-        return has_cycle(with_thresholds(scene, **names))
-
-    lowest = high - 1.0 if quantity == "slip" else -high
-    return _first_edge(good, 0.0, lowest, width), _first_edge(good, 0.0, low, width)
 
 
 def stopping(run: HybridTrajectory) -> dict[str, Any]:

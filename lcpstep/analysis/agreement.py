@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.analysis.attractors import TOLERANCE, return_time
 from lcpstep.analysis.listed import column
+from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.dataset import labelled
 from lcpstep.trajectory import Status
 

@@ -1,186 +1,31 @@
-"""Periodic orbits of a scene: by shooting, with their impacts, multipliers, and branches over a parameter.
+"""Branches of periodic orbits over a parameter of their scene.
 
-An orbit O(n, m) closes after n periods of the forcing and has m impacts on the way; of a system with modes, m
-switches. Along a branch the impacts
-that pass a corner of the forcing are located, and so is the grazing contact at which a branch ends. Source:
-G. Osorio, Complex Behavior in Impacting Systems, sections 2.8.2, 3.3.2 and 4.4.2.
+Along a branch the impacts that pass a corner of the forcing are located, and so is the grazing contact at which a
+branch ends. Source: G. Osorio, Complex Behavior in Impacting Systems, sections 2.8.2, 3.3.2 and 4.4.2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from lagrangian import HybridScene, Scene, checks
+from lagrangian import HybridScene, Scene
 from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
-from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, periodic_point
+from lcpstep.analysis.orbit import PeriodicOrbit as PeriodicOrbit
+from lcpstep.analysis.orbit import described, quiet_phase
+from lcpstep.analysis.orbit import moved as moved
+from lcpstep.analysis.orbit import periodic_orbit as periodic_orbit
 from lcpstep.analysis.predictor import Progress
-from lcpstep.analysis.variation import IMPACTS, PeriodMap
-from lcpstep.events import EventDriven
-from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.analysis.variation import PeriodMap
 from lcpstep.maps.batch import Periods
-from lcpstep.maps.modes import mode_at
-from lcpstep.simulation import Method, fitted, simulate
 
 Array = NDArray[np.float64]
-SAMPLES = 64  # of the gap per period, between impacts
 REMEMBERED = 32  # maps and motions that are asked for again at once
 GRAZING = 1e-2  # a branch that ends with a contact this soft, relative to the others, ends by grazing
-
-
-@dataclass(frozen=True, eq=False)
-class PeriodicOrbit:
-    """A motion that repeats after n periods of the forcing.
-
-    Attributes
-    ----------
-    scene, method, phase : the question; the section is at t = phase x period
-    x : (n, 2 n_q)   states (q, v), or (n, n_x), on the section
-    time, before, after : (m,)   the impacts: time from the section's t on [s], gap velocities [m/s]; of a system with
-        modes the switches, with the rates of their guards
-    sticks : whether the contact closes for good on the way (chattering, or an impact without rebound); of a system
-        with modes, whether it slides
-    multipliers : (d,)   largest modulus first; one is zero where a system with modes slides
-    residual : max |x after n periods - x|
-    """
-
-    scene: Scene | HybridScene
-    method: Method
-    phase: float
-    x: Array
-    time: Array
-    before: Array
-    after: Array
-    sticks: bool
-    multipliers: NDArray[np.complex128]
-    residual: float
-
-    @property
-    def periods(self) -> int:
-        """Periods of the forcing after which the motion repeats, n."""
-        return len(self.x)
-
-    @property
-    def name(self) -> str:
-        """O(n, m), or O(n, chattering) where infinitely many impacts belong to it."""
-        endless = self.sticks and isinstance(self.scene, Scene)
-        return f"O({self.periods}, {'chattering' if endless else len(self.time)})"
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers lie inside the unit circle."""
-        return bool(np.all(np.abs(self.multipliers) < 1.0))
-
-    @property
-    def phases(self) -> Array:
-        """(m,) phases of the impacts in [0, 1), as shares of the period."""
-        return self.time / self.scene.period % 1.0
-
-    def corner_distances(self) -> Array:
-        """(m, corners) from each corner of the forcing to each impact, as shares of the period in [-1/2, 1/2)."""
-        corners = np.asarray(self.scene.corners) / self.scene.period
-        return (self.phases[:, None] - corners[None, :] + 0.5) % 1.0 - 0.5
-
-    def run(self) -> Any:
-        """The motion over its n periods, from the section on: a Trajectory, or a HybridTrajectory."""
-        t_start = self.phase * self.scene.period
-        span = (t_start, t_start + self.periods * self.scene.period)
-        return simulate(_started(self.scene, self.x[0], span), self.method)
-
-    def clearance(self) -> float:
-        """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
-        if isinstance(self.scene, HybridScene):
-            return np.inf
-        run = self.run()
-        start, end = run.scene.t_span
-        times = np.linspace(start, end, SAMPLES * self.periods + 1)
-        gaps = np.array(
-            [self.scene.gap(t, q, v)[0][0] for t, q, v in zip(times, *run.at(times), strict=True)]
-        )
-        inner = np.flatnonzero((gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])) + 1
-        free = [k for k in inner if not np.any((self.time > times[k - 1]) & (self.time < times[k + 1]))]
-        return min((self._least_gap(run.at, times[k - 1], times[k + 1]) for k in free), default=np.inf)
-
-    def _least_gap(self, at: Callable[[float], tuple[Array, Array]], a: float, b: float) -> float:
-        from scipy.optimize import minimize_scalar
-
-        def gap(t: float) -> float:
-            return float(cast(Scene, self.scene).gap(t, *at(t))[0][0])
-
-        return float(
-            minimize_scalar(gap, bounds=(a, b), method="bounded", options={"xatol": 1e-9 * (b - a)}).fun
-        )
-
-
-def periodic_orbit(
-    scene: Scene | HybridScene, x: ArrayLike, n: int = 1, *, method: Method | None = None, phase: float = 0.0
-) -> PeriodicOrbit:
-    """The periodic orbit near a guess, stable or not, by Newton's method on the stroboscopic map.
-
-    Parameters
-    ----------
-    scene : lagrangian.Scene with a period and one contact, or HybridScene with a period
-    x : (2 n_q,)   guess of the state (q, v), or (n_x,), at the time phase x period
-    n : periods of the forcing after which it repeats
-    method : EventDriven() where not given. With Moreau derivatives are made of its impacts where the
-        motion between them is known in closed form, and differenced elsewhere.
-    phase : of the section, as a share of the period in [0, 1)
-
-    Raises
-    ------
-    ValueError   a wrong shape, a guess inside of the obstacle
-    NotConverged   no orbit near the guess
-    """
-    P = PeriodMap(scene, method or EventDriven(), phase)
-    x = checks.array("x", x, (scene.n_x,))
-    return _described(P, periodic_point(P, x, n).points)
-
-
-def _described(P: PeriodMap, points: Array) -> PeriodicOrbit:
-    """The orbit through points that are known to be periodic."""
-    n = len(points)
-    run = P.follow(points[0], n, most=IMPACTS)
-    J = image_and_derivative(P, points[0], n)[1]
-    shown = np.isfinite(run.time[0])
-    start = np.repeat(np.arange(n), run.time.shape[-1]).reshape(n, -1) * P.scene.period
-    return PeriodicOrbit(
-        scene=P.scene, method=P.method, phase=P.phase, x=points, time=(run.time[0] + start)[shown],
-        before=run.before[0][shown], after=run.after[0][shown], sticks=bool(np.any(run.ends)),
-        multipliers=multipliers(J), residual=float(np.max(np.abs(run.states[0, -1] - points[0]))),
-    )  # fmt: skip
-
-
-def _started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
-    if isinstance(scene, HybridScene):
-        return scene.started(x, mode_at(scene, span[0], x), span)
-    return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)
-
-
-def quiet_phase(orbit: PeriodicOrbit) -> float:
-    """The phase that is farthest from every impact of the orbit: a good place for a section."""
-    phases = np.sort(orbit.phases)
-    if len(phases) == 0:
-        return orbit.phase
-    pauses = np.diff(np.append(phases, phases[0] + 1.0))
-    k = int(np.argmax(pauses))
-    return float((phases[k] + 0.5 * pauses[k]) % 1.0)
-
-
-def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
-    """The same orbit seen on a section at another phase."""
-    T = orbit.scene.period
-    t = orbit.phase * T
-    span = (t, t + (phase - orbit.phase) % 1.0 * T)
-    if span[1] <= span[0]:
-        return orbit
-    run = simulate(_started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
-    x = run.x[-1] if isinstance(run, HybridTrajectory) else np.concatenate([run.q[-1], run.v[-1]])
-    return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,7 +118,7 @@ def continue_orbit(
         progress=progress,
     )
     orbits = tuple(
-        _described(family(float(value)), followed(float(value), tuple(x)).states[0][np.arange(n) - 1])
+        described(family(float(value)), followed(float(value), tuple(x)).states[0][np.arange(n) - 1])
         for value, x in zip(branch.p, branch.x, strict=True)
     )
     special = [

@@ -11,23 +11,9 @@ import numpy as np
 
 from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import MODELS, ROADS, hybrid_abs
-from lcpstep.analysis.abs_cycle import (
-    OUTCOMES,
-    Basins,
-    Cycle,
-    NoCycle,
-    allowed_bias,
-    basins,
-    bifurcation,
-    edge,
-    has_cycle,
-    limit_cycle,
-    margins,
-    peak,
-    stopping,
-    vanishing,
-    with_thresholds,
-)
+from lcpstep.analysis.abs_basins import Basins, allowed_bias, basins, margins
+from lcpstep.analysis.abs_cycle import OUTCOMES, Cycle, NoCycle, limit_cycle, peak, stopping
+from lcpstep.analysis.abs_parameters import bifurcation, edge, has_cycle, vanishing, with_thresholds
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, save_figure, save_text
 from lcpstep.errors import StudyInterrupted

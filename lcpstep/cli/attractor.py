@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian import HybridScene
-from lcpstep.analysis.attractors import POINTS, Attractors, attractors, random_starts
-from lcpstep.analysis.basins import outside
+from lagrangian import HybridScene, checks
+from lcpstep.analysis.attractors import POINTS, Attractors, attractors
 from lcpstep.analysis.likeness import Likeness, likeness, sample
+from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.cli.common import DONE, event_driven, moreau
 from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.dataset import labelled, provenance
@@ -64,7 +64,8 @@ def run_attractor(options: argparse.Namespace) -> int:
     """`lcpstep attractor`."""
     scene, method = study_scene(options), method_of(options)
     names = files(options, "attractors")
-    starts = outside(scene, random_starts(box(options), options.starts, options.seed), options.phase)
+    number = checks.count("--starts", options.starts)
+    starts = outside(scene, random_starts(box(options), number, options.seed), options.phase)
 
     longest = min(LONGEST, options.window // 2) if options.longest is None else options.longest
     window = max(options.window, 2 * longest)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+from lagrangian import checks
 from lcpstep.analysis.basins import basins
 from lcpstep.cli.common import DONE
 from lcpstep.cli.studies import (
@@ -58,20 +59,19 @@ def run_basin(options: argparse.Namespace) -> int:
     for name, (low, high) in {"--position": position, "--velocity": velocity}.items():
         if not low < high:
             raise ValueError(f"{name}: expected LOW < HIGH, got {low:g} {high:g}")
+    n_q, n_v = (checks.count("--grid", n) for n in options.grid)
     names = files(options, "basins")
     keeps_parts(options)
     with parts_bar("basins") as progress:
         data = basins(
-            scene, [position[0], velocity[0]], [position[1], velocity[1]], tuple(options.grid),
+            scene, [position[0], velocity[0]], [position[1], velocity[1]], (n_q, n_v),
             method=method_of(options), phase=options.phase, longest=options.longest, sample=options.sample,
             seed=options.seed, jobs=options.jobs, out=options.out / PARTS, progress=progress,
         )  # fmt: skip
     finish(
         options,
         data,
-        pictures.basins(
-            data, title_of(scene, f"{options.grid[0]} x {options.grid[1]} cells", method_of(options))
-        ),
+        pictures.basins(data, title_of(scene, f"{n_q} x {n_v} cells", method_of(options))),
         names,
     )
     for name, share, error in zip(*(data[k].values for k in ("name", "share", "share_error")), strict=True):

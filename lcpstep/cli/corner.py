@@ -16,7 +16,8 @@ from lcpstep import EventDriven, simulate
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify, diagram
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.corner_branches import FixedBranch, orbit_branches, uncertainty
-from lcpstep.analysis.corners import CornerImpact, agreement, corner_impact, estimate, local_map
+from lcpstep.analysis.corner_estimate import agreement, estimate
+from lcpstep.analysis.corners import CornerImpact, corner_impact, local_map
 from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_with_contacts
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap

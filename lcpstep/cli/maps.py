@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.analysis.attractors import TOLERANCE, return_time
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify
 from lcpstep.analysis.fixed_points import PeriodicPoint
 from lcpstep.analysis.map_border import border_point
 from lcpstep.analysis.map_diagram import STARTS, Escaped, exponent, map_diagram, periodic_points, settled
+from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.cli.common import DONE, number
 from lcpstep.cli.studies import PARTS, files, finish, parts_bar, stopped
 from lcpstep.errors import UnknownName

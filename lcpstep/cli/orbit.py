@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from lagrangian import HybridScene
 from lagrangian.scenes import SCENES
 from lcpstep import dataset
-from lcpstep.analysis.attractors import TOLERANCE, return_time
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
 from lcpstep.analysis.fixed_points import periodic_point
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
+from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import DONE, INTERRUPTED, save_figure

@@ -6,9 +6,10 @@ covering variable,
     y_i = q_i + sum_c T_ci x_c.
 
 Only the columns of x are kept, each in one piece; a pivot changes all of them by a multiple of the entering
-one. These changes are put off and made several at a time, so that the tableau passes through the processor's
-caches less often. Rounding gathers in T, so the answer is corrected with the inverse that T contains until
-W z + b is right to rounding; if the judge refuses it all the same, `kernel` starts again with fresh factors.
+one. In large problems a column is changed when it is asked for, as it enters or breaks a tie, four changes at a
+time: many never are, and a change takes nothing of a column that is zero in the row of its pivot. Rounding gathers
+in T, so the answer is corrected with the inverse that T contains until W z + b is right to rounding; if the judge
+refuses it all the same, `kernel` starts again with fresh factors.
 Rules of the path, numbers of the variables and sources: see `lemke`.
 """
 
@@ -21,14 +22,15 @@ from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
 if not cython.compiled:
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after, inf, max
+    from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
     from lcpstep.rows import add_four, copy, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 ROUNDING = 1e-15  # relative error of a row of W z + b below which there is nothing to correct
 CORRECTIONS = 3
-TOGETHER = 4  # changes made at a time
+MOST = 2  # changes per unknown that are put off
+CACHED = 32  # changes made in all columns before the next: they stay in the processor's caches
 LARGE = 40  # unknowns from which putting changes off pays
 NOTHING = -1
 
@@ -38,25 +40,24 @@ def pivot_tableau(n: int, max_pivots: int, work: Workspace) -> int:
     basic, nonbasic, place = work.basic, work.nonbasic, work.place
     for i in range(n):
         basic[i], nonbasic[i], work.columns[n * n + i] = n + 1 + i, i, 1.0
-        place[i], place[n + 1 + i] = i, NOTHING
-    nonbasic[n], place[n] = n, n
-    s, p, waiting, together = n, last_lowest(work.scaled_b, n), 0, TOGETHER if n >= LARGE else 1
+        place[i], place[n + 1 + i], work.made[i] = i, NOTHING, 0
+    nonbasic[n], place[n], work.made[n], work.waiting = n, n, 0, 0
+    s, p, most = n, last_lowest(work.scaled_b, n), MOST * n if n >= LARGE else 1
     for _ in range(max_pivots):
         entering, leaving = nonbasic[s], basic[p]
-        advance(p, s, waiting, n, work)
+        advance(p, s, n, work)
         basic[p], nonbasic[s], place[entering], place[leaving] = entering, leaving, NOTHING, s
-        waiting += 1
-        if waiting == together or leaving == n:
-            waiting = change_all(waiting, n, work)
+        if work.waiting == most:
+            change_all(n, work)
         work.iterations += 1
         if leaving == n:
             return SOLVED
         s = place[leaving + n + 1 if leaving < n else leaving - n - 1]
-        bring_up_to_date(s, waiting, n, work)
+        bring_up_to_date(s, work.waiting, n, work)
         tied = list_ties(s, n, work)
         if tied == 0:
             return RAY
-        p = first_of_ties(tied, s, waiting, n, work)
+        p = first_of_ties(tied, s, n, work)
     return MAX_ITERATIONS
 
 
@@ -69,47 +70,72 @@ def last_lowest(q: Doubles, n: int) -> int:
     return p
 
 
-def bring_up_to_date(s: int, waiting: int, n: int, work: Workspace) -> None:
-    """Make the waiting changes in one column."""
-    for k in range(waiting):
-        share = work.shares[k * (n + 1) + s]
-        subtract(after(work.columns, s * n), after(work.changes, k * n), -share, n)
-        work.shares[k * (n + 1) + s] = 0.0
-
-
-def advance(p: int, s: int, waiting: int, n: int, work: Workspace) -> None:
+def advance(p: int, s: int, n: int, work: Workspace) -> None:
     """Exchange row p and column s, which is up to date; the change of the other columns is put on the list."""
-    T, q, changes = work.columns, work.scaled_b, work.changes
-    change, shares = after(changes, waiting * n), after(work.shares, waiting * (n + 1))
-    copy(change, after(T, s * n), n)
+    column, q, k = after(work.columns, s * n), work.scaled_b, work.waiting
+    change = after(work.changes, k * n)
+    copy(change, column, n)
     reciprocal = 1.0 / change[p]
     theta = max(-q[p] * reciprocal, 0.0)
     subtract(q, change, -theta, n)
-    q[p] = theta
-    for c in range(n + 1):
-        shares[c] = T[c * n + p]
-    for k in range(waiting):
-        subtract(shares, after(work.shares, k * (n + 1)), -changes[k * n + p], n + 1)
-        changes[k * n + p] = 0.0
-    changes[waiting * n + p] = 0.0
-    for c in range(n + 1):
-        shares[c] *= -reciprocal
-        T[c * n + p] = shares[c]
-    copy(after(T, s * n), change, n)
-    multiply(after(T, s * n), reciprocal, n)
-    shares[s], T[s * n + p] = 0.0, reciprocal
+    q[p], change[p] = theta, 0.0
+    multiply(column, reciprocal, n)
+    column[p] = reciprocal
+    work.row[k], work.reciprocal[k], work.made[s], work.waiting = p, reciprocal, k + 1, k + 1
 
 
-def change_all(waiting: int, n: int, work: Workspace) -> int:
-    """Make the waiting changes in all columns; returns how many are left: none."""
+def bring_up_to_date(s: int, until: int, n: int, work: Workspace) -> None:
+    """Make the changes before `until` in column s that have not been made there."""
+    column, k = after(work.columns, s * n), work.made[s]
+    while k + 4 <= until:
+        make_four(column, k, n, work)
+        k += 4
+    while k < until:
+        make(column, k, n, work)
+        k += 1
+    work.made[s] = k
+
+
+def make(column: Doubles, k: int, n: int, work: Workspace) -> None:
+    """Make change k in a column."""
+    p = work.row[k]
+    share = -column[p] * work.reciprocal[k]
+    if share != 0.0:
+        subtract(column, after(work.changes, k * n), -share, n)
+    column[p] = share
+
+
+def make_four(column: Doubles, k: int, n: int, work: Workspace) -> None:
+    """Make changes k to k + 3; what each takes of the column is known from its entries in their rows alone."""
+    share, row, some = work.trial, indices_after(work.row, k), False
+    for i in range(4):
+        value = column[row[i]]
+        for j in range(i):
+            if row[j] == row[i]:
+                value = share[j]
+            else:
+                value += share[j] * work.changes[(k + j) * n + row[i]]
+        share[i] = -value * work.reciprocal[k + i]
+        some = some or share[i] != 0.0
+    if some:
+        add_four(column, after(work.changes, k * n), n, share, 1, n)
+    for i in range(4):
+        value = share[i]
+        for j in range(i + 1, 4):
+            value += share[j] * work.changes[(k + j) * n + row[i]]
+        column[row[i]] = value
+
+
+def change_all(n: int, work: Workspace) -> None:
+    """Make all changes in all columns, so many at a time as stay in the processor's caches."""
+    until = 0
+    while until < work.waiting:
+        until = until + CACHED if until + CACHED < work.waiting else work.waiting
+        for c in range(n + 1):
+            bring_up_to_date(c, until, n, work)
     for c in range(n + 1):
-        column, shares = after(work.columns, c * n), after(work.shares, c)
-        if waiting == TOGETHER:
-            add_four(column, work.changes, n, shares, n + 1, n)
-        else:
-            for k in range(waiting):
-                subtract(column, after(work.changes, k * n), -shares[k * (n + 1)], n)
-    return 0
+        work.made[c] = 0
+    work.waiting = 0
 
 
 def list_ties(s: int, n: int, work: Workspace) -> int:
@@ -129,7 +155,7 @@ def list_ties(s: int, n: int, work: Workspace) -> int:
     return tied
 
 
-def first_of_ties(tied: int, s: int, waiting: int, n: int, work: Workspace) -> int:
+def first_of_ties(tied: int, s: int, n: int, work: Workspace) -> int:
     """Of the tied rows the one that is lowest lexicographically."""
     rows, j = work.tied, 0
     while tied > 1 and j < n:
@@ -137,7 +163,7 @@ def first_of_ties(tied: int, s: int, waiting: int, n: int, work: Workspace) -> i
         if c == NOTHING:
             tied = leave_out(n + 1 + j, tied, work)
         else:
-            tied = keep_lowest(c, tied, s, waiting, n, work)
+            tied = keep_lowest(c, tied, s, n, work)
         j += 1
     return rows[0]
 
@@ -152,15 +178,13 @@ def leave_out(variable: int, tied: int, work: Workspace) -> int:
     return kept
 
 
-def keep_lowest(c: int, tied: int, s: int, waiting: int, n: int, work: Workspace) -> int:
+def keep_lowest(c: int, tied: int, s: int, n: int, work: Workspace) -> int:
     """Keep of the ties those that b_j moves least: its coefficient over the pivot; w_j is that of column c."""
     rows, lowest, kept = work.tied, inf, 0
+    bring_up_to_date(c, work.waiting, n, work)
     for t in range(tied):
         i = rows[t]
-        value = work.columns[c * n + i]
-        for k in range(waiting):
-            value += work.shares[k * (n + 1) + c] * work.changes[k * n + i]
-        value /= work.columns[s * n + i]
+        value = work.columns[c * n + i] / work.columns[s * n + i]
         if value < lowest - TIE * max(1.0, abs(value)):
             lowest, kept = value, 0
         if value <= lowest + TIE * max(1.0, abs(value)):
@@ -179,15 +203,30 @@ def correct(W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, work: 
         if error <= ROUNDING or error > 0.5 * before:
             break
         before = error
-        for c in range(n + 1):
-            i = work.nonbasic[c] - n - 1
-            if i >= 0:
-                subtract(q, after(work.columns, c * n), w[i] * work.row_scale[i], n)
+        subtract_errors(q, w, n, work)
     if residual > tolerance:  # what should be zero may be rounding: it has no sign
         read_off(q, TIE, z, n, work)
         residual = judge(W, b, z, n, w, s)
     work.residual = residual
     return residual
+
+
+def subtract_errors(q: Doubles, w: Doubles, n: int, work: Workspace) -> None:
+    """Subtract from q what the nonbasic w, which should be zero, have added to it: the sum of T_c w_c.
+
+    Of columns that are not up to date the sum is, change by change, as far as each of them is.
+    """
+    total = work.x
+    for i in range(n):
+        total[i] = 0.0
+    for k in range(work.waiting + 1):
+        for c in range(n + 1):
+            i = work.nonbasic[c] - n - 1
+            if work.made[c] == k and i >= 0:
+                subtract(total, after(work.columns, c * n), -w[i] * work.row_scale[i], n)
+        if k < work.waiting:
+            make(total, k, n, work)
+    subtract(q, total, 1.0, n)
 
 
 def read_off(q: Doubles, least: float, z: Doubles, n: int, work: Workspace) -> None:

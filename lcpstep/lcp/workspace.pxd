@@ -23,7 +23,7 @@ cdef class Workspace:
     cdef double* ray_start
     cdef double* best
     cdef double* changes
-    cdef double* shares
+    cdef double* reciprocal
     cdef Py_ssize_t* basic
     cdef Py_ssize_t* tight
     cdef Py_ssize_t* z_place
@@ -34,6 +34,9 @@ cdef class Workspace:
     cdef Py_ssize_t* chosen
     cdef Py_ssize_t* nonbasic
     cdef Py_ssize_t* place
+    cdef Py_ssize_t* row
+    cdef Py_ssize_t* made
+    cdef Py_ssize_t waiting
     cdef readonly double residual, best_residual, smallest, ray_dz_0, ray_z_0
     cdef readonly Py_ssize_t iterations
     cdef public bint thorough

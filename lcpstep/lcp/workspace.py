@@ -13,8 +13,8 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.pointers import after, indices_after
 
-VECTORS = 21  # rows of n + 1 numbers, and of indices of 2 n + 1:
-LISTS = 10
+VECTORS = 15  # rows of n + 1 numbers, and of indices of 2 n + 1:
+LISTS = 12
 
 
 class Workspace:
@@ -32,7 +32,8 @@ class Workspace:
     size                 sizes of the terms of w, the judge's scale
     ray_direction, ray_start  the ray that pivoting left along, in the units of z
     best                 the best answer so far that passes the tolerance asked for
-    changes, shares : (4, n), (4, n+1)  of the tableau: changes still to be made, and what each column takes of them
+    changes : (2 n, n)   of the tableau: columns that entered, to change others by; where inverse and factor lie
+    reciprocal : (2 n,)  of their pivots
 
     basic, tight         by position: index of the basic z; index of the row whose w is not basic
     z_place, w_place     position of z_j in `basic`, of w_i in `tight`; -1 where there is none
@@ -40,8 +41,10 @@ class Workspace:
     order                row interchanges of an elimination
     active, chosen       indices of a principal submatrix, and 1 for each of them, else 0
     nonbasic, place      of the tableau: variable by column; column by variable, -1 for a basic one
+    row, made            of the tableau: row of the pivot by change; how many of the changes by column have been made
 
     residual, iterations     of the last problem
+    waiting                  number of changes
     best_residual            of the answer in `best`
     ray_dz_0, ray_z_0        the covering variable's share in the ray
     thorough                 whether a solution is searched for as long as there is hope
@@ -53,7 +56,7 @@ class Workspace:
         self.lists = np.zeros(LISTS * (2 * n + 1), dtype=np.intp)
         self.residual = self.best_residual = self.smallest = 0.0
         self.ray_dz_0 = self.ray_z_0 = 0.0
-        self.iterations = 0
+        self.iterations = self.waiting = 0
         self.thorough = False
         self.columns = doubles(self.numbers)
         self.inverse = after(self.columns, (n + 1) * n)
@@ -72,8 +75,7 @@ class Workspace:
         self.ray_direction = after(self.size, m)
         self.ray_start = after(self.ray_direction, m)
         self.best = after(self.ray_start, m)
-        self.changes = after(self.best, m)
-        self.shares = after(self.changes, 4 * m)
+        self.changes, self.reciprocal = self.inverse, after(self.best, m)
         m = 2 * n + 1
         self.basic = indices(self.lists)
         self.tight = indices_after(self.basic, m)
@@ -85,3 +87,5 @@ class Workspace:
         self.chosen = indices_after(self.active, m)
         self.nonbasic = indices_after(self.chosen, m)
         self.place = indices_after(self.nonbasic, m)
+        self.row = indices_after(self.place, m)
+        self.made = indices_after(self.row, m)

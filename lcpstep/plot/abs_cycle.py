@@ -11,7 +11,9 @@ import numpy as np
 
 from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import T_MAX, holding_torque
-from lcpstep.analysis.abs_cycle import OUTCOMES, Basins, Bifurcation, Cycle, corner, peak
+from lcpstep.analysis.abs_basins import Basins
+from lcpstep.analysis.abs_cycle import OUTCOMES, Cycle, corner, peak
+from lcpstep.analysis.abs_parameters import Bifurcation
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.simulation import simulate

@@ -18,9 +18,9 @@ def basins(data: Any, title: str = "") -> Any:
     shades = np.array([(0.6, 0.6, 0.6), (1.0, 1.0, 1.0), *colormaps[COLOURS](np.arange(20))[:, :3]])
     figure = Figure(figsize=(9, 7), layout="constrained")
     ax = figure.subplots()
-    q, v = data["q"].values, data["v"].values
-    extent = (q[0], q[-1], v[0], v[-1])
-    ax.imshow(shades[np.minimum(label + 2, len(shades) - 1)], origin="lower", aspect="auto", extent=extent)
+    extent = (*edges(data["q"].values), *edges(data["v"].values))
+    pixels = np.round(255.0 * shades).astype(np.uint8)[np.minimum(label + 2, len(shades) - 1)]
+    ax.imshow(pixels, origin="lower", aspect="auto", extent=extent)
     shares = zip(data["name"].values, data["share"].values, data["share_error"].values, strict=True)
     for k, (name, share, error) in enumerate(shares):
         ax.plot(
@@ -30,3 +30,9 @@ def basins(data: Any, title: str = "") -> Any:
     labels = data.attrs.get("labels", ("position [m]", "velocity [m/s]"))
     ax.set(title=title, xlabel=labels[0], ylabel=labels[1])
     return figure
+
+
+def edges(centres: Any) -> tuple[float, float]:
+    """Where the first of these cells begins and the last ends."""
+    half = 0.5 * (centres[-1] - centres[0]) / max(len(centres) - 1, 1)
+    return centres[0] - half, centres[-1] + half

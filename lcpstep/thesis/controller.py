@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from lagrangian.scenes.hybrid_abs import ROADS, holding_torque, hybrid_abs
-from lcpstep.analysis.abs_cycle import basins, bifurcation, limit_cycle, peak, vanishing
+from lcpstep.analysis.abs_basins import basins
+from lcpstep.analysis.abs_cycle import limit_cycle, peak
+from lcpstep.analysis.abs_parameters import bifurcation, vanishing
 from lcpstep.plot.abs_cycle import overview
 from lcpstep.plot.orbits import STABLE, UNSTABLE
 

@@ -17,7 +17,8 @@ from lagrangian import Scene
 from lagrangian.scenes import cam_follower, hybrid_abs
 from lagrangian.scenes.cam_follower import NOSE_END, NOSE_START, detachment_rpm
 from lcpstep import EventDriven
-from lcpstep.analysis.abs_cycle import limit_cycle, peak, vanishing
+from lcpstep.analysis.abs_cycle import limit_cycle, peak
+from lcpstep.analysis.abs_parameters import vanishing
 from lcpstep.analysis.border_collision import NormalForm, PiecewiseLinearMap, classify, normal_form
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.continuation import Steps

@@ -9,23 +9,9 @@ from scipy.optimize import brentq
 
 from lagrangian.scenes.hybrid_abs import holding_torque, hybrid_abs
 from lcpstep import EventDriven, LcpStepError, Status, simulate
-from lcpstep.analysis.abs_cycle import (
-    CYCLE,
-    EQUILIBRIUM,
-    LOCK,
-    OUTCOMES,
-    NoCycle,
-    allowed_bias,
-    basins,
-    bifurcation,
-    edge,
-    has_cycle,
-    limit_cycle,
-    margins,
-    peak,
-    vanishing,
-    with_thresholds,
-)
+from lcpstep.analysis.abs_basins import allowed_bias, basins, margins
+from lcpstep.analysis.abs_cycle import CYCLE, EQUILIBRIUM, LOCK, OUTCOMES, NoCycle, limit_cycle, peak
+from lcpstep.analysis.abs_parameters import bifurcation, edge, has_cycle, vanishing, with_thresholds
 from lcpstep.cli import main
 from lcpstep.errors import StudyInterrupted
 

@@ -7,14 +7,8 @@ from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven
 from lcpstep.analysis.border_collision import classify
 from lcpstep.analysis.chattering import corner_crossings, sequences
-from lcpstep.analysis.corners import (
-    NotDifferentiable,
-    agreement,
-    corner_impact,
-    discontinuity_map,
-    estimate,
-    local_map,
-)
+from lcpstep.analysis.corner_estimate import agreement, estimate
+from lcpstep.analysis.corners import NotDifferentiable, corner_impact, discontinuity_map, local_map
 from lcpstep.maps import StroboscopicMap, iterate
 
 

@@ -5,11 +5,12 @@ import pytest
 
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, Moreau
-from lcpstep.analysis.attractors import attractors, mean_impacts, random_starts
-from lcpstep.analysis.basins import outside
+from lcpstep.analysis.attractors import attractors
+from lcpstep.analysis.exponents import mean_impacts
 from lcpstep.analysis.grid_error import spread
 from lcpstep.analysis.grouping import Settled, grouped, overlap
 from lcpstep.analysis.lyapunov import growth_of_runs
+from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.maps import periods
 

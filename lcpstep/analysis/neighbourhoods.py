@@ -1,0 +1,69 @@
+"""How near to an attractor a motion must come to be sure to stay: balls around its points, judged by probes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import HybridScene, Scene
+from lcpstep.analysis.attractor import Attractor
+from lcpstep.analysis.cells import UNKNOWN
+from lcpstep.analysis.starts import outside
+from lcpstep.maps.batch import Targets, periods
+from lcpstep.simulation import Method
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+RADII = np.geomspace(1e-1, 1e-6, 26)  # candidates for the radius of a ball, of the attractor's size
+PROBES = 64  # states on whose fate a radius is judged
+
+
+def neighbourhoods(
+    scene: Scene | HybridScene,
+    method: Method,
+    found: tuple[Attractor, ...],
+    phase: float,
+    longest: int,
+    seed: int,
+) -> tuple[Targets, Ints]:
+    """Balls around the points of attractors that go there, judged by probes on them; and whose they are."""
+    if not found:
+        return Targets(np.zeros((0, 2)), np.zeros(0), np.ones(2)), np.zeros(0, dtype=np.int64)
+    centre = np.concatenate([a.points for a in found])
+    owner = np.repeat(np.arange(len(found)), [len(a.points) for a in found])
+    periodic = np.array([a.periods > 0 for a in found])[owner]
+    scale = np.maximum(np.max(np.abs(centre), axis=0), 1e-9 * (1.0 + np.max(np.abs(centre))))
+    few = int(np.sum(periodic))
+    smallest = Targets(centre[periodic], np.full(few, RADII[-1]), scale)
+    direction = np.random.default_rng([seed, 1]).uniform(-1.0, 1.0, (PROBES, 2))
+    direction /= np.max(np.abs(direction), axis=1, keepdims=True)
+
+    def fate(probes: Array) -> Ints:
+        probes = outside(scene, probes, phase)
+        if len(probes) == 0:
+            return np.zeros(0, dtype=np.int64)
+        went = periods(scene, method, probes, longest, drop=longest, phase=phase, targets=smallest).reached
+        return np.append(owner[periodic], UNKNOWN)[went]
+
+    radius = np.full(len(centre), RADII[-1])
+    for k in np.flatnonzero(periodic):
+        for r in RADII[:-1]:
+            went = fate(centre[k] + r * scale * direction)
+            if len(went) and np.all(went == owner[k]):
+                radius[k] = 0.5 * r
+                break
+    for a in set(owner[~periodic].tolist()):
+        cloud = centre[owner == a]
+        some = cloud[np.linspace(0, len(cloud) - 1, PROBES).astype(int)]
+        r = spacing(cloud / scale)
+        while r > RADII[-1] and np.any(fate(some + 2.0 * r * scale * direction) >= 0):
+            r *= 0.5
+        radius[owner == a] = r
+    return Targets(centre, radius, scale), owner
+
+
+def spacing(points: Array) -> float:
+    """Median distance of the points of a cloud (k, 2) to their nearest neighbours."""
+    from scipy.spatial import cKDTree
+
+    return float(np.median(np.asarray(cKDTree(points).query(points, k=2)[0])[:, 1]))

@@ -1,0 +1,86 @@
+"""When motions come back to themselves, and whether that is more than rounding.
+
+Where an event-driven motion sticks, forgets, and then amplifies rounding errors to its own size before it sticks
+again, rounding alone can close a cycle. A stable orbit forgets small kicks; such a cycle does not.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import HybridScene, Scene
+from lcpstep.maps.batch import periods
+from lcpstep.simulation import Method
+from lcpstep.trajectory import Status
+
+Array = NDArray[np.float64]
+TOLERANCE = 1e-6  # of a return, relative to the size of the motion
+QUARTERS, FALLEN = 4, 0.5  # of a window; what a change falls to at least, from the first to the last of them
+KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size
+
+
+def return_time(states: Array, longest: int, tolerance: float) -> int:
+    """Smallest n with states[k + n] = states[k] within the tolerance for all k, or 0 where there is none."""
+    for n in range(1, min(longest, len(states) // 2) + 1):
+        if np.max(np.abs(states[n:] - states[:-n])) <= tolerance:
+            return n
+    return 0
+
+
+def return_times(states: Array, longest: int, tolerance: Array) -> NDArray[np.int64]:
+    """The same of motions (m, window, d) with a tolerance for each, (m,)."""
+    times = [return_time(x, longest, float(near)) for x, near in zip(states, tolerance, strict=True)]
+    return np.array(times, dtype=np.int64)
+
+
+def survive(
+    scene: Scene | HybridScene,
+    method: Method,
+    states: Array,
+    n: NDArray[np.int64],
+    phase: float,
+    tolerance: float,
+) -> NDArray[np.bool_]:
+    """Whether motions that return after n periods still do when they are kicked a little in every period.
+
+    Parameters
+    ----------
+    states : (m, window, d)   of the motions, the last one is kicked
+    n : (m,)   periods after which each returns, 0 for never
+    tolerance : of a return, relative to the largest value of all coordinates
+    """
+    result = n > 0
+    size = np.max(np.abs(states), axis=1)
+    x, left = states[:, -1].copy(), (KICKS + 1) * n
+    rates = slice(scene.n_x // 2 if isinstance(scene, Scene) else 0, None)  # a body at rest stays where it is
+    while np.any(left > 0):
+        on = np.flatnonzero(left > 0)
+        kick = np.where(left[on, None] > n[on, None], KICK * size[on], 0.0)  # none in the last round
+        x[on, rates] += kick[:, rates]
+        run = periods(scene, method, x[on], 1, phase=phase, most=0, strict=False)
+        x[on] = run.final
+        left[on] = np.where(run.status == Status.DONE, left[on] - 1, 0)
+        result[on] &= run.status == Status.DONE
+    away = np.max(np.abs(x - states[:, -1]), axis=1)
+    return np.asarray(result & (away <= tolerance * np.max(size, axis=1)))
+
+
+def periods_to_settle(states: Array, longest: int) -> int:
+    """After how many periods a motion (window, d) will come back within TOLERANCE; 0 where it does not approach.
+
+    It approaches where the largest change over n periods falls from each quarter of the window to the next, for the
+    n <= longest that it changes least over.
+    """
+    size, best = max(float(np.max(np.abs(states))), 1e-300), np.full(QUARTERS, math.inf)
+    for n in range(1, min(longest, len(states) // 2) + 1):
+        change = np.max(np.abs(states[n:] - states[:-n]), axis=1)
+        largest = np.array([np.max(quarter) for quarter in np.array_split(change, QUARTERS)])
+        best = largest if largest[-1] < best[-1] else best
+    falling = np.all(np.diff(best) < 0.0) and best[-1] < FALLEN * best[0]
+    if not falling or best[-1] <= 0.0:
+        return 0
+    rate = math.log(best[-1] / best[0]) / ((QUARTERS - 1) / QUARTERS * len(states))
+    return max(1, math.ceil(math.log(TOLERANCE * size / best[0]) / rate))
