@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import ClosedForm
+from lcpstep.events.friction.run import FrictionRun
 from lcpstep.events.general.run import General
 from lcpstep.events.hybrid.run import HybridRun
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.model import model, require
+from lcpstep.model import model
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Trajectory
 
@@ -73,7 +74,8 @@ class EventDriven:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        require(scene, "EventDriven", joints=True, friction=False)
+        if scene.contacts is not None and scene.contacts.friction is not None:
+            return FrictionRun(self, scene, kept).finish(progress)
         if scene.n_c <= 1 and scene.n_j == 0:
             closed = model(scene)
             o = oscillator_of(closed)

@@ -22,7 +22,7 @@ from lcpstep.model import culprit, models
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import interpolation
-from lcpstep.stepping.constraints.coulomb import ContactProblem
+from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided, unresolved
 from lcpstep.stepping.theta_method import theta_loop as loop

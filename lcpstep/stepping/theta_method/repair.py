@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import abs, after, inf, max
-    from lcpstep.stepping.constraints.coulomb import solve_contacts
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import divide_by_mass, mobilities
     from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State

@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
-    from lcpstep.stepping.constraints.coulomb import solve_contacts
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State
