@@ -75,7 +75,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            s.band[k] = NOISE * gap_size(s, c)
+            s.band[k] = max(NOISE * gap_size(s, c), -2.0 * s.value[k])  # deeper than it is now
         else:
             s.band[k] = forces
             s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu[c])

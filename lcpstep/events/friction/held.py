@@ -29,9 +29,9 @@ REFINEMENTS = 2
 
 
 def pull(s: Rubbing, i: int) -> float:
-    """How much of the tangent's force comes with that of row i: -s mu for the normal of a sliding contact."""
+    """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
     c = i - s.n_j
-    if 0 <= c < s.n_c and s.mode[c] == SLIDES:
+    if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
         return -s.direction[c] * s.mu[c]
     return 0.0
 

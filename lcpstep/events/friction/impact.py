@@ -17,17 +17,20 @@ from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, NO_IMPULSES, OPE
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import apply, gap_tolerance, measure_velocities, size_of
+    from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, after, min
 
 ROUNDS = 1000  # problems of impacts at one instant
+SEEN = 1e3  # roundings of a gap: hops must be higher to be followed
+TOGETHER = 1e-3  # of the tolerance of a gap
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
@@ -116,11 +119,21 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         i = s.n_j + c
         u, alpha = s.velocity[i], product(s.R, s.a, i, s.n_q) + s.bias[i]
         hops = s.mode[c] == OPEN and s.touches[c] == 1 and alpha < 0.0 and s.contacts.restitution[c] < 1.0
-        if hops and u * u <= -2.0 * alpha * gap_tolerance(s, c):
+        if hops and is_over(s, c, u, -0.5 * u * u / alpha):
             close(s, c)
             log(s, record, tally, t, c, ACCUMULATION, u, 0.0, 0.0)
             return True
     return False
+
+
+def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
+    """Whether hops of contact c that begin with the speed u, and rise to this height, no longer matter.
+
+    What other contacts make of the impacts that are left out is of the size of the speed, not of the height.
+    """
+    i = s.n_j + c
+    slow = s.n_c == 1 or u <= s.atol + s.rtol * size_of(s, i, s.v)
+    return height <= gap_tolerance(s, c) and (slow or height <= SEEN * RESOLUTION * gap_size(s, c))
 
 
 def close(s: Rubbing, c: int) -> None:
@@ -134,16 +147,24 @@ def close(s: Rubbing, c: int) -> None:
         constrain(s, s.dv, s.rate)
         if (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip <= 0.0:
             s.mode[c] = STICKS
-    hold_modes(s)
+    if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
+        for d in range(s.n_c):
+            s.mode[d] = STICKS if s.mode[d] != OPEN and s.mu[d] > 0.0 else s.mode[d]
+        hold_modes(s)
     stop_rows(s)
     measure_velocities(s, s.v)
     find_free(s)
 
 
+def touching(s: Rubbing, c: int) -> float:
+    """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance."""
+    return NOISE * gap_size(s, c) + TOGETHER * gap_tolerance(s, c)
+
+
 def find_touching(s: Rubbing) -> None:
     """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
     for c in range(s.n_c):
-        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= gap_tolerance(s, c) else 0
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c) else 0
 
 
 def forget_terms(s: Rubbing) -> None:

@@ -131,6 +131,8 @@ def follow(s: Rubbing, record: Record, tally: Tally) -> int:
 
 def set_out(s: Rubbing, record: Record, t: float) -> int:
     """The motion goes on with the modes at hand."""
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
     if not begin_guards(s, t):
         return NOT_FINITE
     keep_event(s, record, t)

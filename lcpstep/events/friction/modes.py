@@ -15,6 +15,7 @@ import cython
 
 from lcpstep.events.friction.codes import (
     CLOSED,
+    LEANS,
     NO_FORCES,
     OPEN,
     RELEASE,
@@ -101,6 +102,8 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_mode[c] = STICKS
         elif limit > 0.0:
             s.new_direction[c] = 1.0 if force < 0.0 else -1.0
+            if abs(rate) <= NOISE * size_of_terms(s, n_a + f, n_a, n_f):
+                s.new_mode[c] = LEANS
         else:
             s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
 
@@ -116,13 +119,18 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
     """Whether the contact of unknown a, which carries no force, accelerates away."""
+    return acceleration(s, a, n_a, n_f) > NOISE * size_of_terms(s, a, n_a, n_f)
+
+
+def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """Size of the terms of the same acceleration, their signs left aside."""
     m, i = n_a + n_f, row_of(s, a, n_a)
     size = abs(s.bias[i])
     for j in range(s.n_q):
         size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
-    return acceleration(s, a, n_a, n_f) > NOISE * size
+    return size
 
 
 def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
@@ -140,6 +148,7 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
     """Log the contacts whose mode is another than when last told."""
     for c in range(s.n_c):
         was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
+        now = STICKS if now == LEANS else now
         slip = s.velocity[i + s.n_c]
         if (was == OPEN) != (now == OPEN):
             log(s, record, tally, t, c, RELEASE if now == OPEN else CLOSED, 0.0, s.velocity[i], 0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import DECIDE, JUMP, OBEY, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 
 if not cython.compiled:
@@ -66,8 +66,7 @@ def look_ahead(s: Rubbing, h: float) -> int:
     s.at(place, s.seen)
     if not measure(s, s.clock.t0 + place * h, s.seen):
         return NOT_FINITE
-    for c in range(s.n_c):
-        s.free[c] = 1 if s.mode[c] == STICKS else 0
+    find_standing(s)
     code = decide(s)
     hold_modes(s)  # the old ones, for the rest of the step
     return code
@@ -83,12 +82,21 @@ def meet(s: Rubbing, c: int) -> None:
 
 
 def stop(s: Rubbing, c: int) -> None:
-    """The sliding velocity of contact c is zero; so are those that cannot be told from it."""
-    for d in range(s.n_c):
-        i = s.n_j + s.n_c + d
-        zero = d == c or s.mode[d] == STICKS or (s.mode[d] == SLIDES and abs(s.velocity[i]) <= still(s, i))
-        s.free[d] = 1 if zero else 0
+    """The sliding velocity of contact c is zero."""
+    find_standing(s)
+    s.free[c] = 1
     s.next = DECIDE
+
+
+def find_standing(s: Rubbing) -> None:
+    """Which contacts do not slide: those that stick, and those of whose sliding velocity that cannot be told.
+
+    Feet of one body that share a direction are among these: one of them is held, the others have a share of the load.
+    """
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        rests = s.mode[c] == STICKS or s.mode[c] == LEANS
+        s.free[c] = 1 if rests or abs(s.velocity[i]) <= still(s, i) else 0
 
 
 def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) -> None:
