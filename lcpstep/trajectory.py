@@ -29,7 +29,9 @@ class Status(IntEnum):
     PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
     ENDLESS_SWITCHING = 9  # modes follow one another for ever at one instant
     NOT_TRANSVERSAL = 10  # a guard is touched, and tolerances decide whether it acts
-    PAINLEVE_INCONSISTENT = 11  # with friction no contact forces keep a sliding contact from passing the surface
+    PAINLEVE_INCONSISTENT = (
+        11  # with friction no contact forces keep a sliding contact from passing the surface
+    )
     PAINLEVE_INDETERMINATE = 12  # with friction a sliding contact may as well stay closed as open
 
 

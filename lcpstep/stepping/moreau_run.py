@@ -16,13 +16,13 @@ from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
 from lcpstep.lcp import solve_lcp
 from lcpstep.model import culprit, models
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder
 from lcpstep.stepping import interpolation
-from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.steps import RESTING, divided, unresolved
 from lcpstep.stepping.theta_method import theta_loop as loop

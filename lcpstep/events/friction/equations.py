@@ -40,7 +40,7 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
         copy(row, after(s.R, i * n), n)
         inverse_mass(s.contacts, s.M, s.work, row)
         for j in range(i + 1):
-            s.D[i * r + j] = s.D[j * r + i] = product(s.R, row, j, n)
+            s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -97,7 +97,7 @@ def gap_tolerance(s: Rubbing, c: int) -> float:
     for j in range(s.n_q):
         moved = abs(s.MR[i * s.n_q + j])
         if moved > 0.0:
-            here = (s.atol + s.rtol * abs(s.q[j])) * s.D[i * s.n_r + i] / moved
+            here = (s.atol + s.rtol * abs(s.q[j])) * s.W[i * s.n_r + i] / moved
             least = here if least < 0.0 or here < least else least
     return max(least, 0.0)
 
@@ -106,7 +106,7 @@ def lift(s: Rubbing, c: int) -> None:
     """Put q onto the surface of contact c, which it misses by no more than the tolerance."""
     i = s.n_j + c
     for j in range(s.n_q):
-        s.q[j] -= s.MR[i * s.n_q + j] * s.gap[i] / s.D[i * s.n_r + i]
+        s.q[j] -= s.MR[i * s.n_q + j] * s.gap[i] / s.W[i * s.n_r + i]
     s.gap[i] = 0.0
 
 

@@ -39,8 +39,8 @@ def pull(s: Rubbing, i: int) -> float:
 def entry(s: Rubbing, i: int, k: int) -> float:
     """Row i of R M^-1 times column k of C^T."""
     share = pull(s, k)
-    d = s.D[i * s.n_r + k]
-    return d + share * s.D[i * s.n_r + k + s.n_c] if share != 0.0 else d
+    d = s.W[i * s.n_r + k]
+    return d + share * s.W[i * s.n_r + k + s.n_c] if share != 0.0 else d
 
 
 def hold(s: Rubbing, i: int) -> bool:
@@ -55,7 +55,7 @@ def hold(s: Rubbing, i: int) -> bool:
         s.L[m * r + k] = up
         s.L[k * r + m] = low / s.L[m * r + m]
     pivot = entry(s, i, i)
-    size = s.D[i * r + i] + abs(pivot)
+    size = s.W[i * r + i] + abs(pivot)
     for j in range(k):
         pivot -= s.L[k * r + j] * s.L[j * r + k]
         size += abs(s.L[k * r + j] * s.L[j * r + k])

@@ -19,7 +19,7 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 if not cython.compiled:
     from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
-    from lcpstep.events.friction.keep import log
+    from lcpstep.events.friction.keep import log, put_on_account
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
@@ -151,7 +151,9 @@ def close(s: Rubbing, c: int) -> None:
         for d in range(s.n_c):
             s.mode[d] = STICKS if s.mode[d] != OPEN and s.mu[d] > 0.0 else s.mode[d]
         hold_modes(s)
+    copy(s.account, s.impulse, s.n_r)
     stop_rows(s)
+    put_on_account(s)
     measure_velocities(s, s.v)
     find_free(s)
 

@@ -11,5 +11,7 @@ cdef void log(
     double p
 ) noexcept nogil
 cdef void keep(Rubbing s, Record record, double t, double* y) noexcept nogil
+cdef void pay(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void put_on_account(Rubbing s) noexcept nogil
 cdef void keep_event(Rubbing s, Record record, double t) noexcept nogil
 cdef void store_dense(Rubbing s, Record record) noexcept nogil

@@ -32,7 +32,28 @@ def log(
 
 def keep(s: Rubbing, record: Record, t: float, y: Doubles) -> None:
     """Keep a state, and the impulses since the one before."""
+    for c in range(s.n_c):
+        if s.owed[c] != 0.0 or s.owed[s.n_c + c] != 0.0:
+            pay(s, c)
     record.keep(t, 0.0, y, after(y, s.n_q), s.impulse)
+
+
+def pay(s: Rubbing, c: int) -> None:
+    """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it."""
+    i = s.n_c + s.n_j + c
+    normal, friction = s.impulse[c] + s.owed[c], s.impulse[i] + s.owed[s.n_c + c]
+    if normal >= 0.0 and abs(friction) <= s.mu[c] * normal:
+        s.impulse[c], s.impulse[i] = normal, friction
+        s.owed[c] = s.owed[s.n_c + c] = 0.0
+
+
+def put_on_account(s: Rubbing) -> None:
+    """Impulses since those in `account` belong to contacts that are closed from here on, not to this instant."""
+    tangents = s.n_c + s.n_j
+    for c in range(s.n_c):
+        s.owed[c] = s.owed[c] + s.impulse[c] - s.account[c]
+        s.owed[s.n_c + c] = s.owed[s.n_c + c] + s.impulse[tangents + c] - s.account[tangents + c]
+        s.impulse[c], s.impulse[tangents + c] = s.account[c], s.account[tangents + c]
 
 
 def keep_event(s: Rubbing, record: Record, t: float) -> None:

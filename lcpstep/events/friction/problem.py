@@ -21,10 +21,10 @@ DEPENDENT = 1e-12  # relative: joints whose pivot is smaller say what others hav
 def eliminate_joints(s: Rubbing) -> None:
     """S: the Delassus matrix of contacts and tangents on the joints, by Gauss' elimination."""
     r = s.n_r
-    copy(s.S, s.D, r * r)
+    copy(s.S, s.W, r * r)
     for j in range(s.n_j):
         pivot = s.S[j * r + j]
-        if pivot > DEPENDENT * s.D[j * r + j]:
+        if pivot > DEPENDENT * s.W[j * r + j]:
             for i in range(j + 1, r):
                 share = s.S[i * r + j] / pivot
                 if share != 0.0:

@@ -37,7 +37,7 @@ cdef class Rubbing(RungeKutta):
     cdef double* R
     cdef double* MR
     cdef double* G
-    cdef double* D
+    cdef double* W
     cdef double* S
     cdef double* L
     cdef double* rate
@@ -48,6 +48,7 @@ cdef class Rubbing(RungeKutta):
     cdef double* change
     cdef double* multiplier
     cdef double* impulse
+    cdef double* account
     cdef double* shifted_rate
     cdef double* mu
     cdef double* tangential
@@ -58,6 +59,7 @@ cdef class Rubbing(RungeKutta):
     cdef double* before
     cdef double* curve
     cdef double* noise
+    cdef double* owed
     cdef Py_ssize_t* mode
     cdef Py_ssize_t* was_mode
     cdef Py_ssize_t* new_mode

@@ -1,7 +1,7 @@
 """The state of a system whose contacts stick and slide, under the names of mechanics, and its work space.
 
 Rows are joints, then the contacts' normals, then their tangents: R v + rate are the velocities of joints, of gaps and
-of sliding, R a + bias their accelerations, D = R M^-1 R^T.
+of sliding, R a + bias their accelerations, W = R M^-1 R^T.
 """
 
 from __future__ import annotations
@@ -43,6 +43,7 @@ class Rubbing(RungeKutta):
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
+    owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     multiplier : (n_r,)          by row;  impulse : contacts, joints, tangents, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
@@ -81,7 +82,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 9 * r)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 10 * r)
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -95,8 +96,8 @@ class Rubbing(RungeKutta):
         self.R = after(self.M, n * n)
         self.MR = after(self.R, r * n)
         self.G = after(self.MR, r * n)
-        self.D = after(self.G, r * n)
-        self.S = after(self.D, r * r)
+        self.W = after(self.G, r * n)
+        self.S = after(self.W, r * r)
         self.L = after(self.S, r * r)
         self.rate = after(self.L, r * r)
         self.bias = after(self.rate, r)
@@ -106,8 +107,9 @@ class Rubbing(RungeKutta):
         self.change = after(self.x, r)
         self.multiplier = after(self.change, r)
         self.impulse = after(self.multiplier, r)
-        self.shifted_rate = after(self.impulse, r)
-        self.per_contact = np.zeros(7 * n_c)
+        self.account = after(self.impulse, r)
+        self.shifted_rate = after(self.account, r)
+        self.per_contact = np.zeros(9 * n_c)
         self.given = np.array([mu, tangential], dtype=float)
         self.mu, self.tangential = doubles(self.given), after(doubles(self.given), n_c)
         self.direction = doubles(self.per_contact)
@@ -117,6 +119,7 @@ class Rubbing(RungeKutta):
         self.before = after(self.direction, 4 * n_c)
         self.curve = after(self.direction, 5 * n_c)
         self.noise = after(self.direction, 6 * n_c)
+        self.owed = after(self.direction, 7 * n_c)
         self.marks = np.zeros(7 * n_c + r, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)
@@ -141,5 +144,5 @@ class Rubbing(RungeKutta):
     def critical_friction(self, c: int) -> float:
         """The coefficient of friction beyond which contact c, sliding as it does, jams; 0 where none does."""
         i = self.n_j + c
-        coupling = self.direction[c] * self.D[i * self.n_r + i + self.n_c]
-        return self.D[i * self.n_r + i] / coupling if coupling > 0.0 else 0.0
+        coupling = self.direction[c] * self.W[i * self.n_r + i + self.n_c]
+        return self.W[i * self.n_r + i] / coupling if coupling > 0.0 else 0.0
