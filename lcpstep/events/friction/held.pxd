@@ -3,7 +3,7 @@ from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after
 
-cdef Py_ssize_t OPEN, STICKS, SLIDES, REFINEMENTS
+cdef Py_ssize_t STICKS, SLIDES, REFINEMENTS
 cdef double DEPENDENT
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil

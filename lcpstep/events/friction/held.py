@@ -2,8 +2,8 @@
 
     M a = f + C^T x,    R a + bias = 0 on the rows held,    C_c = N_c - s mu T_c where contact c slides (sign s)
 
-The matrix R M^-1 C^T is not symmetric where a contact slides. It is factorised as L U row by row: joints, normals
-(those that carry a force first), tangents that stick; a row that depends on those before it is left out.
+The matrix R M^-1 C^T is not symmetric where a contact slides. It is factorised as L U row by row: joints, what
+sticks, normals that slide (those that carry a force first); a row that depends on those before it is left out.
 Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapters 5 and 6.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
@@ -74,16 +74,22 @@ def hold_joints(s: Rubbing) -> None:
 
 
 def hold_modes(s: Rubbing) -> bool:
-    """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`)."""
+    """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`).
+
+    What sticks comes first: it may carry what a contact that leans on it, or slides beside it, could not by itself.
+    """
     hold_joints(s)
-    for unloaded in range(2):
-        for c in range(s.n_c):
-            if s.mode[c] != OPEN and s.loaded[c] == 1 - unloaded and not hold(s, s.n_j + c):
-                s.culprit = c
-                return False
+    for c in range(s.n_c):
+        if s.mode[c] == STICKS:
+            hold(s, s.n_j + c)
     for c in range(s.n_c):
         if s.mode[c] == STICKS:
             hold(s, s.n_j + s.n_c + c)
+    for unloaded in range(2):
+        for c in range(s.n_c):
+            if s.mode[c] >= SLIDES and s.loaded[c] == 1 - unloaded and not hold(s, s.n_j + c):
+                s.culprit = c
+                return False
     return True
 
 

@@ -29,7 +29,7 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, min
 
 ROUNDS = 1000  # problems of impacts at one instant
-SEEN = 1e3  # roundings of a gap: hops must be higher to be followed
+SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
 TOGETHER = 1e-3  # of the tolerance of a gap
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes
+from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
 from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of, solve
 from lcpstep.events.friction.state cimport NOISE, Rubbing
@@ -18,6 +18,9 @@ cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(leaning=Py_ssize_t)
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(stands=bint)
+cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil

@@ -28,7 +28,7 @@ from lcpstep.events.friction.codes import (
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
-    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes
+    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
     from lcpstep.events.friction.state import NOISE, Rubbing
@@ -135,13 +135,37 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
+    leaning = 0
     for c in range(s.n_c):
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
         s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
-    if not hold_modes(s):
+        leaning += s.mode[c] == LEANS
+    if (leaning == 0 or not stand(s)) and not hold_modes(s):
         return PAINLEVE_INCONSISTENT
     tell(s, record, tally, t)
     return DONE
+
+
+def stand(s: Rubbing) -> bool:
+    """Let those that stick carry what others lean on them with, if they can; modes are as before where they cannot.
+
+    Feet that share a direction may brace themselves against each other: their forces are known in sum alone.
+    """
+    for c in range(s.n_c):
+        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
+    stands = hold_modes(s)
+    if stands:
+        copy(s.a, s.a_free, s.n_q)
+        constrain(s, s.a, s.bias)
+        list_multipliers(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == STICKS:
+            most = (1.0 - EDGE) * s.mu[c] * s.multiplier[i]
+            stands = stands and abs(s.multiplier[i + s.n_c]) < most
+    for c in range(s.n_c):
+        s.mode[c] = s.mode[c] if stands else s.new_mode[c]
+    return stands
 
 
 def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
