@@ -107,7 +107,8 @@ def kane_energy(solve: Solver) -> float:
 )
 def woodpecker(solve: Solver) -> Found:
     run = solve(scenes.woodpecker())
-    M, weight = np.asarray(run.scene.system.M), float(np.asarray(run.scene.system.force.constant)[0])
+    system: Any = run.scene.system
+    M, weight = system.M, float(system.force.constant[0])
     gained = M[0] @ (run.v[-1] - np.array(run.scene.v0)) - weight * (run.t[-1] - run.t[0])
     pecks = run.impacts.time[run.impacts.contact == 0]
     lost = abs(float(np.sum(run.friction_impulse)) - gained) / abs(weight)
@@ -131,14 +132,16 @@ def sliding_rod(scene: Scene, t: float) -> np.ndarray[Any, Any]:
     """Position of the sliding rod at t: its normal force eliminated by hand, two equations left."""
     from scipy.integrate import solve_ivp
 
-    (l, g), mu, J = scene.p, scene.parameters["mu"], 1.0 / 12.0
+    half, g = np.asarray(scene.p, dtype=float)
+    mu, J = float(scene.parameters["mu"]), 1.0 / 12.0
 
     def rates(_: float, y: Any) -> list[float]:
         x_t, angle, spin = y[1], y[2], y[3]
-        s, c = l * math.sin(angle), l * math.cos(angle)
+        s, c = half * math.sin(angle), half * math.cos(angle)
         force = (g - s * spin**2) / (1.0 + c * (c - mu * s) / J)
         return [x_t, mu * force, spin, (mu * s - c) * force / J]
 
-    start = [scene.q0[0], scene.v0[0], scene.q0[2], scene.v0[2]]
+    q, v = np.asarray(scene.q0), np.asarray(scene.v0)
+    start = [q[0], v[0], q[2], v[2]]
     x, _, angle, _ = solve_ivp(rates, (0.0, t), start, method="DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
-    return np.array([x, l * math.sin(angle), angle])
+    return np.array([x, half * math.sin(angle), angle])
