@@ -29,6 +29,10 @@ class Status(IntEnum):
     PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
     ENDLESS_SWITCHING = 9  # modes follow one another for ever at one instant
     NOT_TRANSVERSAL = 10  # a guard is touched, and tolerances decide whether it acts
+    PAINLEVE_INCONSISTENT = (
+        11  # with friction no contact forces keep a sliding contact from passing the surface
+    )
+    PAINLEVE_INDETERMINATE = 12  # with friction a sliding contact may as well stay closed as open
 
 
 class Kind(IntEnum):
@@ -38,6 +42,9 @@ class Kind(IntEnum):
     ACCUMULATION = 1  # infinitely many impacts end here (complete chattering)
     STICK = 2  # the contact stays closed from here on
     RELEASE = 3  # a closed contact opens
+    SLIP = 4  # a contact that stuck slides; `before`, `after`: sliding velocities, of the next two as well
+    STICK_TANGENT = 5  # a contact that slid sticks
+    REVERSE = 6  # a contact slides the other way
 
 
 # time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)

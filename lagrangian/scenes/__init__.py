@@ -30,6 +30,7 @@ from lagrangian.scenes.kane_pendulum import kane_pendulum
 from lagrangian.scenes.pendulum import pendulum_stop
 from lagrangian.scenes.piles import block_on_feet, heavy_on_light, stack
 from lagrangian.scenes.rocking_block import rocking_block
+from lagrangian.scenes.rough_contacts import falling_rod, woodpecker
 from lagrangian.scenes.slider_crank import slider_crank
 from lagrangian.scenes.table import ball_on_table, chattering_table, jumping_table
 
@@ -178,6 +179,16 @@ CATALOGUE: dict[str, Entry] = {
         kane_pendulum,
         hazard="Newton's law on the normal with Coulomb's on the tangent creates energy, silently",
         answer="Newton and Coulomb: +58.75 % energy; Moreau's law: -43.76 %",
+    ),
+    "woodpecker": Entry(
+        woodpecker,
+        hazard="an impact, a phase of sticking or its end is missed, and the toy jams or falls",
+        answer="a periodic orbit of about 0.146 s that attracts; two methods agree on it",
+    ),
+    "falling-rod": Entry(
+        falling_rod,
+        hazard="from a coefficient of friction on there is no contact force, or two, and one is made up",
+        answer="critical coefficient (1 + 3 cos^2)/(3 sin cos) of the angle, 4/3 at least; named beyond it",
     ),
     "slider-crank": Entry(
         slider_crank,

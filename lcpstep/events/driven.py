@@ -73,9 +73,12 @@ class EventDriven:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        from lcpstep.model import model, require
+        from lcpstep.model import model
 
-        require(scene, "EventDriven", joints=True, friction=False)
+        if scene.contacts is not None and scene.contacts.friction is not None:
+            from lcpstep.events.friction.run import FrictionRun
+
+            return FrictionRun(self, scene, kept).finish(progress)
         if scene.n_c <= 1 and scene.n_j == 0:
             from lcpstep.events.flight.oscillator import oscillator_of
             from lcpstep.events.flight.run import ClosedForm

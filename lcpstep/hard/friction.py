@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -95,3 +96,52 @@ def kane_moreau(solve: Solver) -> Found:
 @check("kane-pendulum", "energy gained under the default law", moreau=0.0, event_driven=0.0)
 def kane_energy(solve: Solver) -> float:
     return max(0.0, _kane(solve, scenes.kane_pendulum())[1])
+
+
+@check(
+    "woodpecker",
+    "friction impulses against weight and momentum",
+    period=0.146,
+    moreau=1e-12,
+    event_driven=1e-11,
+)
+def woodpecker(solve: Solver) -> Found:
+    run = solve(scenes.woodpecker())
+    system: Any = run.scene.system
+    M, weight = system.M, float(system.force.constant[0])
+    gained = M[0] @ (run.v[-1] - np.array(run.scene.v0)) - weight * (run.t[-1] - run.t[0])
+    pecks = run.impacts.time[run.impacts.contact == 0]
+    lost = abs(float(np.sum(run.friction_impulse)) - gained) / abs(weight)
+    return Found(lost, f"last pecks {pecks[-1] - pecks[-2]:.9f} s apart")
+
+
+@check("woodpecker", "height, against half the step or tolerance", period=0.146, moreau=FIRST_ORDER)
+def woodpecker_height(solve: Solver) -> float:
+    coarse, fine = (solve(scenes.woodpecker(), h=h) for h in (solve.h, 0.5 * solve.h))
+    return abs(float(coarse.q[-1, 0] - fine.q[-1, 0]))
+
+
+@check("falling-rod", "states", period=1.0, moreau=FIRST_ORDER, event_driven=1e-10)
+def rod(solve: Solver) -> float:
+    scene = scenes.falling_rod(t_end=0.15)
+    run = solve(scene)
+    return float(np.max(np.abs(run.q[-1] - sliding_rod(scene, run.t[-1]))))
+
+
+def sliding_rod(scene: Scene, t: float) -> np.ndarray[Any, Any]:
+    """Position of the sliding rod at t: its normal force eliminated by hand, two equations left."""
+    from scipy.integrate import solve_ivp
+
+    half, g = np.asarray(scene.p, dtype=float)
+    mu, J = float(scene.parameters["mu"]), 1.0 / 12.0
+
+    def rates(_: float, y: Any) -> list[float]:
+        x_t, angle, spin = y[1], y[2], y[3]
+        s, c = half * math.sin(angle), half * math.cos(angle)
+        force = (g - s * spin**2) / (1.0 + c * (c - mu * s) / J)
+        return [x_t, mu * force, spin, (mu * s - c) * force / J]
+
+    q, v = np.asarray(scene.q0), np.asarray(scene.v0)
+    start = [q[0], v[0], q[2], v[2]]
+    x, _, angle, _ = solve_ivp(rates, (0.0, t), start, method="DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
+    return np.array([x, half * math.sin(angle), angle])

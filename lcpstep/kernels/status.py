@@ -12,5 +12,7 @@
     PROJECTION_FAILED,
     ENDLESS_SWITCHING,
     NOT_TRANSVERSAL,
-) = range(11)
+    PAINLEVE_INCONSISTENT,
+    PAINLEVE_INDETERMINATE,
+) = range(13)
 BUFFER_FULL = -1  # not ended: what has been kept must be taken away first

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
 from lcpstep.model import models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
-from lcpstep.stepping.constraints.coulomb import ContactProblem
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun

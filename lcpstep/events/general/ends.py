@@ -6,4 +6,4 @@ from lcpstep.trajectory import Kind, Status
 
 NO_IMPULSES, NO_FORCES = -2, -3  # no impulses, or no forces, of the contacts that would do
 STATUS = {NO_IMPULSES: Status.LCP_FAILED, NO_FORCES: Status.LCP_FAILED}
-IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in Kind)
+IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])

@@ -13,7 +13,7 @@ PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
 # or to have the record emptied, at an event, and (within the loop alone) for another round of it, in which nothing is
 # known yet of the piece that begins
 STOPPED, AGAIN = -2, -3
-IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in Kind)  # kinds of events
+IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])  # kinds of events
 OPEN, CLOSED = 0, 1  # values of Work.status
 GROUND, LEFT = 1, 2  # of Work.grounded: the piece begins at gap zero; and the contact has just lost its force
 NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity jumps at a corner

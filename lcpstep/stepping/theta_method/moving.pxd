@@ -1,7 +1,7 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
 from lcpstep.pointers cimport after
-from lcpstep.stepping.constraints.coulomb cimport ContactProblem
+from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.stepping.constraints.joint_rows cimport Elimination
 
 cdef Py_ssize_t VECTORS, SQUARES

@@ -9,9 +9,9 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import after
-    from lcpstep.stepping.constraints.coulomb import ContactProblem
     from lcpstep.stepping.constraints.joint_rows import Elimination
 
 VECTORS, SQUARES = 11, 4  # of n_q numbers, and of n_q^2

@@ -19,11 +19,11 @@ import cython
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
 
 if not cython.compiled:
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.dynamics import gap_rates, gaps, mass
     from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import abs, after, inf, max
-    from lcpstep.stepping.constraints.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import divide_by_mass, mobilities
     from lcpstep.stepping.constraints.joint_rows import arrived, distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State

@@ -4,7 +4,7 @@ from lcpstep.kernels.linear cimport solve
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
 from lcpstep.pointers cimport abs, after, max
-from lcpstep.stepping.constraints.coulomb cimport solve_contacts
+from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities
 from lcpstep.stepping.constraints.joint_rows cimport CONTRADICTION, distribute, eliminate
 from lcpstep.stepping.theta_method.implicit cimport REFRESH

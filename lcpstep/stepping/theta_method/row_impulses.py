@@ -12,12 +12,12 @@ import cython
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 
 if not cython.compiled:
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.linear import solve
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
-    from lcpstep.stepping.constraints.coulomb import solve_contacts
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import CONTRADICTION, distribute, eliminate
     from lcpstep.stepping.theta_method.implicit import REFRESH

@@ -3,7 +3,7 @@
     v_free  velocity without contact (a theta-method: linear systems by constant matrices, others by Newton)
     active  contacts whose predicted gap g + (h/2) u is not positive
     p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t
-            law of friction and impact on their tangents, see `constraints.coulomb`
+            law of friction and impact on their tangents, see `kernels.coulomb`
             G_J v+ + g_t = 0  on joints, see `constraints.joint_rows`
     v+      v_free + A^-1 (G^T p_N + T^T p_T + D_J^T p_J),        D_J = theta G_J(q+) + (1 - theta) G_J(q)
     q+      q + h [theta v+ + (1 - theta) v]

@@ -1,0 +1,13 @@
+"""Modes of a contact with friction, what comes next in a run, and what is logged."""
+
+from __future__ import annotations
+
+from lcpstep.trajectory import Kind, Status
+
+# Mode of a contact. One that leans does not slide either, but has all the friction that it can: another one, which
+# sticks, keeps it from sliding
+OPEN, STICKS, SLIDES, LEANS = range(4)
+BEGIN, MOVE, JUMP, DECIDE, OBEY = range(5)  # what comes next
+NO_IMPULSES, NO_FORCES = -2, -3  # no impulses, or no forces, of the contacts that would do
+STATUS = {NO_IMPULSES: Status.LCP_FAILED, NO_FORCES: Status.LCP_FAILED}
+IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE = (int(kind) for kind in Kind)

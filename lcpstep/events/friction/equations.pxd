@@ -1,0 +1,17 @@
+from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, after, max
+
+cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
+cdef void measure_rows(Rubbing s, double t, double* y) noexcept nogil
+cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
+cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil
+cdef void measure_velocities(Rubbing s, double* v) noexcept nogil
+cdef double size_of(Rubbing s, Py_ssize_t i, double* v) noexcept nogil
+cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
+cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil

@@ -1,0 +1,123 @@
+"""Joints, contacts and their tangents at one state, as kernels: rows, velocities, biases, the Delassus matrix.
+
+Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after, max
+
+
+def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
+    """A <- M^-1 f, f into `force`; False where M is singular or f is not finite."""
+    q, v, side = y, after(y, s.n_q), s.clock.inside(t)
+    total_force(s.contacts, side, q, v, s.force)
+    copy(a, s.force, s.n_q)
+    return divide_by_mass(s.contacts, side, q, v, s.M, s.work, a)
+
+
+def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
+    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
+    n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
+    q, v, side = y, after(y, n), s.clock.inside(t)
+    if n_j > 0:
+        bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
+        gap_rates(s.joints, side, q, v, s.R, s.rate)
+    bias(s.contacts, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
+    gap_rates(s.contacts, side, q, v, after(s.R, n_j * n), after(s.rate, n_j))
+    k = n_j + n_c
+    bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
+    gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
+    for i in range(r):
+        row = after(s.MR, i * n)
+        copy(row, after(s.R, i * n), n)
+        inverse_mass(s.contacts, s.M, s.work, row)
+        for j in range(i + 1):
+            s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
+
+
+def measure(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
+    if not free_motion(s, t, y, s.a_free):
+        return False
+    measure_rows(s, t, y)
+    measure_gaps(s, t, y)
+    measure_velocities(s, after(y, s.n_q))
+    total = 0.0
+    for i in range(s.n_r):
+        total += s.velocity[i] + s.bias[i] + s.gap[i]
+    return total - total == 0.0
+
+
+def measure_gaps(s: Rubbing, t: float, y: Doubles) -> None:
+    """Gaps of joints and contacts."""
+    q, v = y, after(y, s.n_q)
+    if s.n_j > 0:
+        gaps(s.joints, t, q, v, s.gap)
+    gaps(s.contacts, t, q, v, after(s.gap, s.n_j))
+
+
+def measure_velocities(s: Rubbing, v: Doubles) -> None:
+    """Velocities of all rows; those of contacts as far as modes know them are exactly zero."""
+    for i in range(s.n_r):
+        s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
+    for c in range(s.n_c):
+        s.noise[c] = NOISE * size_of(s, s.n_j + c, v)
+        s.terms[c] = max(s.terms[c], s.noise[c])
+
+
+def size_of(s: Rubbing, i: int, v: Doubles) -> float:
+    """Size of the terms of the velocity of row i, their signs left aside."""
+    size = abs(s.rate[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * v[j])
+    return size
+
+
+def gap_size(s: Rubbing, c: int) -> float:
+    """Size of the terms of gap c at the base state, as far as they are known."""
+    i, size = s.n_j + c, abs(s.gap[s.n_j + c])
+    if s.contacts.flat:
+        size += abs(s.contacts.offset[c])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * s.q[j])
+    return size
+
+
+def gap_tolerance(s: Rubbing, c: int) -> float:
+    """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
+    i, least = s.n_j + c, -1.0
+    for j in range(s.n_q):
+        moved = abs(s.MR[i * s.n_q + j])
+        if moved > 0.0:
+            here = (s.atol + s.rtol * abs(s.q[j])) * s.W[i * s.n_r + i] / moved
+            least = here if least < 0.0 or here < least else least
+    return max(least, 0.0)
+
+
+def lift(s: Rubbing, c: int) -> None:
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance."""
+    i = s.n_j + c
+    for j in range(s.n_q):
+        s.q[j] -= s.MR[i * s.n_q + j] * s.gap[i] / s.W[i * s.n_r + i]
+    s.gap[i] = 0.0
+
+
+def apply(s: Rubbing, i: int, p: float) -> None:
+    """Apply the impulse p on row i; it is summed up for the next kept state."""
+    for j in range(s.n_q):
+        s.v[j] += s.MR[i * s.n_q + j] * p
+    add_impulse(s, i, p)
+
+
+def add_impulse(s: Rubbing, i: int, p: float) -> None:
+    """Count an impulse of row i: contacts are kept first, then tangents and joints."""
+    k = i - s.n_j if i >= s.n_j else 2 * s.n_c + i
+    s.impulse[k] = s.impulse[k] + p

@@ -1,0 +1,25 @@
+cimport cython
+from lcpstep.events.friction.equations cimport gap_size, measure_gaps, measure_rows, size_of
+from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
+from lcpstep.events.friction.modes cimport force_noise
+from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
+from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport copy, finite, largest, product
+from lcpstep.pointers cimport abs, after, max
+
+cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
+cdef double RESOLVED, OFF
+
+cdef bint look(Rubbing s, double t, double* y) noexcept nogil
+@cython.locals(found=bint)
+cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef bint begin_guards(Rubbing s, double t) noexcept nogil
+@cython.locals(fine=bint, error=double, place=double)
+cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
+cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
+cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef void arm(Rubbing s) noexcept nogil
+cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
+cdef double min_of(double a, double b) noexcept nogil
+cdef bint finish_step(Rubbing s, double tau) noexcept nogil

@@ -1,0 +1,21 @@
+from lcpstep.events.friction.equations cimport add_impulse, free_motion, measure_gaps, measure_rows
+from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, after
+
+cdef Py_ssize_t STICKS, SLIDES, REFINEMENTS
+cdef double DEPENDENT
+
+cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef double entry(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
+cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef void hold_joints(Rubbing s) noexcept nogil
+cdef bint hold_modes(Rubbing s) noexcept nogil
+cdef bint hold_again(Rubbing s) noexcept nogil
+cdef void solve_held(Rubbing s, double* x) noexcept nogil
+cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
+cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
+cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
+cdef void list_multipliers(Rubbing s) noexcept nogil
+cdef void project(Rubbing s, double t) noexcept nogil
+cdef void stop_rows(Rubbing s) noexcept nogil

@@ -1,0 +1,203 @@
+"""The rows that the modes hold, as kernels: their multipliers x, sliding friction included.
+
+    M a = f + C^T x,    R a + bias = 0 on the rows held,    C_c = N_c - s mu T_c where contact c slides (sign s)
+
+The matrix R M^-1 C^T is not symmetric where a contact slides. It is factorised as L U row by row: joints, what
+sticks, normals that slide (those that carry a force first); a row that depends on those before it is left out.
+Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapters 5 and 6.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import SLIDES, STICKS
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import (
+        add_impulse,
+        free_motion,
+        measure_gaps,
+        measure_rows,
+    )
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import Doubles, abs, after
+
+DEPENDENT = 1e-12  # relative: what a row must have more of that the rows before it have not
+REFINEMENTS = 2
+
+
+def pull(s: Rubbing, i: int) -> float:
+    """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
+    c = i - s.n_j
+    if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
+        return -s.direction[c] * s.mu[c]
+    return 0.0
+
+
+def entry(s: Rubbing, i: int, k: int) -> float:
+    """Row i of R M^-1 times column k of C^T."""
+    share = pull(s, k)
+    d = s.W[i * s.n_r + k]
+    return d + share * s.W[i * s.n_r + k + s.n_c] if share != 0.0 else d
+
+
+def hold(s: Rubbing, i: int) -> bool:
+    """Add row i to the rows held, unless it depends on them; False where sliding takes its force away."""
+    k, r = s.n_held, s.n_r
+    s.held[k] = i
+    for m in range(k):
+        up, low = entry(s, s.held[m], i), entry(s, i, s.held[m])
+        for j in range(m):
+            up -= s.L[m * r + j] * s.L[j * r + k]
+            low -= s.L[k * r + j] * s.L[j * r + m]
+        s.L[m * r + k] = up
+        s.L[k * r + m] = low / s.L[m * r + m]
+    pivot = entry(s, i, i)
+    size = s.W[i * r + i] + abs(pivot)
+    for j in range(k):
+        pivot -= s.L[k * r + j] * s.L[j * r + k]
+        size += abs(s.L[k * r + j] * s.L[j * r + k])
+    s.L[k * r + k] = pivot
+    if pivot > DEPENDENT * size:
+        s.n_held = k + 1
+        return True
+    return pivot > -DEPENDENT * size
+
+
+def hold_joints(s: Rubbing) -> None:
+    """Hold the independent joints, and nothing else."""
+    s.n_held = 0
+    for i in range(s.n_j):
+        hold(s, i)
+
+
+def hold_modes(s: Rubbing) -> bool:
+    """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`).
+
+    What sticks comes first: it may carry what a contact that leans on it, or slides beside it, could not by itself.
+    """
+    hold_joints(s)
+    for c in range(s.n_c):
+        if s.mode[c] == STICKS:
+            hold(s, s.n_j + c)
+    for c in range(s.n_c):
+        if s.mode[c] == STICKS:
+            hold(s, s.n_j + s.n_c + c)
+    for unloaded in range(2):
+        for c in range(s.n_c):
+            if s.mode[c] >= SLIDES and s.loaded[c] == 1 - unloaded and not hold(s, s.n_j + c):
+                s.culprit = c
+                return False
+    return True
+
+
+def hold_again(s: Rubbing) -> bool:
+    """The same rows with the matrices of another state; False where they have become dependent."""
+    count = s.n_held
+    s.n_held = 0
+    for m in range(count):
+        i = s.held[m]
+        hold(s, i)
+        if s.n_held != m + 1:
+            s.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c else -1
+            s.n_held = count
+            return False
+    return True
+
+
+def solve_held(s: Rubbing, x: Doubles) -> None:
+    """X <- (L U)^-1 x."""
+    r, k = s.n_r, s.n_held
+    for i in range(k):
+        for j in range(i):
+            x[i] -= s.L[i * r + j] * x[j]
+    for i in range(k - 1, -1, -1):
+        for j in range(i + 1, k):
+            x[i] -= s.L[i * r + j] * x[j]
+        x[i] /= s.L[i * r + i]
+
+
+def push(s: Rubbing, i: int, x: float, a: Doubles) -> None:
+    """A <- a + M^-1 C_i^T x."""
+    share, n = pull(s, i), s.n_q
+    for j in range(n):
+        a[j] += s.MR[i * n + j] * x
+        if share != 0.0:
+            a[j] += share * s.MR[(i + s.n_c) * n + j] * x
+
+
+def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
+    """A, which comes free, such that R a + bias = 0 on the rows held; multipliers into `x`."""
+    clear(s.x, s.n_held)
+    for _ in range(REFINEMENTS if s.n_held > 0 else 0):
+        for m in range(s.n_held):
+            i = s.held[m]
+            s.change[m] = -bias[i] - product(s.R, a, i, s.n_q)
+        solve_held(s, s.change)
+        for m in range(s.n_held):
+            s.x[m] += s.change[m]
+            push(s, s.held[m], s.change[m], a)
+
+
+def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
+    """dy = (v, v') with the rows held; False where it is not finite, or they cannot be held."""
+    n = s.n_q
+    a = after(dy, n)
+    if not free_motion(s, t, y, a):
+        return False
+    if s.n_held > 0:
+        measure_rows(s, t, y)
+        if not hold_again(s):
+            return False
+        constrain(s, a, s.bias)
+    copy(dy, after(y, n), n)
+    return a[0] - a[0] == 0.0
+
+
+def list_multipliers(s: Rubbing) -> None:
+    """Forces by row from those of the rows held: the friction of sliding contacts on their tangents."""
+    clear(s.multiplier, s.n_r)
+    for m in range(s.n_held):
+        i = s.held[m]
+        s.multiplier[i] = s.multiplier[i] + s.x[m]
+        share = pull(s, i)
+        if share != 0.0:
+            s.multiplier[i + s.n_c] = s.multiplier[i + s.n_c] + share * s.x[m]
+
+
+def project(s: Rubbing, t: float) -> None:
+    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero."""
+    n = s.n_q
+    for level in range(3):  # positions twice, velocities once
+        x = s.q if level < 2 else s.v
+        if not free_motion(s, t, s.y, s.a_free):
+            return
+        measure_rows(s, t, s.y)
+        if level < 2:
+            measure_gaps(s, t, s.y)
+        if not hold_again(s):
+            return
+        for m in range(s.n_held):
+            i = s.held[m]
+            if level == 2:
+                s.change[m] = -product(s.R, s.v, i, n) - s.rate[i]
+            else:
+                s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
+        solve_held(s, s.change)
+        for m in range(s.n_held):
+            push(s, s.held[m], s.change[m], x)
+
+
+def stop_rows(s: Rubbing) -> None:
+    """Impulses on the rows held, sliding friction included, that take their velocities."""
+    copy(s.dv, s.v, s.n_q)
+    constrain(s, s.dv, s.rate)
+    copy(s.v, s.dv, s.n_q)
+    for m in range(s.n_held):
+        i = s.held[m]
+        add_impulse(s, i, s.x[m])
+        share = pull(s, i)
+        if share != 0.0:
+            add_impulse(s, i + s.n_c, share * s.x[m])

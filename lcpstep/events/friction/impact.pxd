@@ -1,0 +1,29 @@
+cimport cython
+from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure_velocities, size_of
+from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
+from lcpstep.events.friction.keep cimport log, put_on_account
+from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of, solve
+from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, after, min
+
+cdef Py_ssize_t ACCUMULATION, IMPACT, NO_IMPULSES, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
+cdef double SEEN, STILL, TOGETHER
+
+cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(hit=bint)
+cdef bint approaches(Rubbing s) noexcept nogil
+cdef bint strike(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+cdef void find_free(Rubbing s) noexcept nogil
+cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
+@cython.locals(hops=bint)
+cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(slow=bint)
+cdef bint is_over(Rubbing s, Py_ssize_t c, double u, double height) noexcept nogil
+cdef void close(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef double touching(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void find_touching(Rubbing s) noexcept nogil
+cdef void forget_terms(Rubbing s) noexcept nogil

@@ -1,0 +1,176 @@
+"""Impacts with friction of all contacts that are closed at one time, and the end of chattering, as kernels.
+
+    xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
+
+Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy. Source:
+J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+
+A contact that hops no higher than the tolerance is closed: the rest of its impacts, summed up, is the impulse that
+takes its velocity, with the friction that belongs to it, and the forces of the closed contact make up for the rest.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, NO_IMPULSES, OPEN, SLIDES, STICKS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
+    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
+    from lcpstep.events.friction.keep import log, put_on_account
+    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
+    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs, after, min
+
+ROUNDS = 1000  # problems of impacts at one instant
+SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
+TOGETHER = 1e-3  # of the tolerance of a gap
+STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
+
+
+def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """Impacts until no contact on its surface approaches; those that are left without speed are closed."""
+    for _ in range(ROUNDS):
+        if not approaches(s):
+            find_free(s)
+            return DONE
+        if record.full(4 * s.n_c + 4):
+            return BUFFER_FULL
+        if not strike(s, record, tally, t):
+            return NO_IMPULSES
+    return TOO_MANY_EVENTS
+
+
+def approaches(s: Rubbing) -> bool:
+    """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
+    hit = False
+    for c in range(s.n_c):
+        u = s.velocity[s.n_j + c]
+        if s.mode[c] == OPEN and s.touches[c] == 1:
+            hit = hit or u < -s.terms[c]
+            if abs(u) <= s.terms[c]:
+                s.mode[c] = SLIDES
+    return hit
+
+
+def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
+    """The impact of the contacts that are closed or approach; False where no impulses are found."""
+    for c in range(s.n_c):
+        i = s.n_j + c
+        s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
+        if s.mode[c] == STICKS:
+            s.velocity[i + s.n_c] = 0.0
+        if s.mode[c] == OPEN and s.touches[c] == 1 and s.before[c] <= s.terms[c]:
+            s.mode[c] = SLIDES
+        s.free[c] = 1
+    n_a, n_f = list_unknowns(s)
+    eliminate_joints(s)
+    fill(s, n_a, n_f)
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        s.problem.rate[a] = (1.0 + s.contacts.restitution[c]) * min(s.before[c], 0.0)
+    for f in range(n_f):
+        c = s.problem.ids[s.problem.carrier[f]]
+        s.problem.rate[n_a + f] = (1.0 + s.tangential[c]) * s.velocity[s.n_j + s.n_c + c]
+    if not solve(s, n_a, n_f):
+        return False
+    for a in range(n_a + n_f):
+        apply(s, row_of(s, a, n_a), s.problem.impulse[a])
+    hold_joints(s)
+    stop_rows(s)
+    measure_velocities(s, s.v)
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        u = s.velocity[s.n_j + c]
+        if s.problem.impulse[a] > 0.0:
+            log(s, record, tally, t, c, IMPACT, s.before[c], u, s.problem.impulse[a])
+        s.mode[c] = OPEN if u > s.terms[c] else SLIDES
+    return True
+
+
+def find_free(s: Rubbing) -> None:
+    """Which closed contacts have no sliding velocity; the direction of the others."""
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        s.free[c] = 1 if abs(s.velocity[i]) <= still(s, i) else 0
+        if s.free[c] == 1:
+            s.velocity[i] = 0.0
+        else:
+            s.direction[c] = 1.0 if s.velocity[i] > 0.0 else -1.0
+
+
+def still(s: Rubbing, i: int) -> float:
+    """The velocity of row i below which it is zero."""
+    size = size_of(s, i, s.v)
+    return NOISE * size + STILL * (s.atol + s.rtol * size)
+
+
+def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
+    """Close a contact whose hops no longer matter; whether there was one. Modes must be obeyed, `v` measured."""
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s, s.a, s.bias)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        u, alpha = s.velocity[i], product(s.R, s.a, i, s.n_q) + s.bias[i]
+        hops = s.mode[c] == OPEN and s.touches[c] == 1 and alpha < 0.0 and s.contacts.restitution[c] < 1.0
+        if hops and is_over(s, c, u, -0.5 * u * u / alpha):
+            close(s, c)
+            log(s, record, tally, t, c, ACCUMULATION, u, 0.0, 0.0)
+            return True
+    return False
+
+
+def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
+    """Whether hops of contact c that begin with the speed u, and rise to this height, no longer matter.
+
+    What other contacts make of the impacts that are left out is of the size of the speed, not of the height.
+    """
+    i = s.n_j + c
+    slow = s.n_c == 1 or u <= s.atol + s.rtol * size_of(s, i, s.v)
+    return height <= gap_tolerance(s, c) and (slow or height <= SEEN * RESOLUTION * gap_size(s, c))
+
+
+def close(s: Rubbing, c: int) -> None:
+    """Take the velocity of contact c, which slides on as before, unless that stops it."""
+    i = s.n_j + s.n_c + c
+    slip = s.velocity[i]
+    s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
+    s.mode[c] = SLIDES if s.mu[c] == 0.0 or abs(slip) > still(s, i) else STICKS
+    if s.mode[c] == SLIDES and s.mu[c] > 0.0 and hold_modes(s):
+        copy(s.dv, s.v, s.n_q)
+        constrain(s, s.dv, s.rate)
+        if (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip <= 0.0:
+            s.mode[c] = STICKS
+    if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
+        for d in range(s.n_c):
+            s.mode[d] = STICKS if s.mode[d] != OPEN and s.mu[d] > 0.0 else s.mode[d]
+        hold_modes(s)
+    copy(s.account, s.impulse, s.n_r)
+    stop_rows(s)
+    put_on_account(s)
+    measure_velocities(s, s.v)
+    find_free(s)
+
+
+def touching(s: Rubbing, c: int) -> float:
+    """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance."""
+    return NOISE * gap_size(s, c) + TOGETHER * gap_tolerance(s, c)
+
+
+def find_touching(s: Rubbing) -> None:
+    """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c) else 0
+
+
+def forget_terms(s: Rubbing) -> None:
+    """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
+    for c in range(s.n_c):
+        s.terms[c] = 0.0
+    measure_velocities(s, after(s.y, s.n_q))

@@ -1,0 +1,26 @@
+cimport cython
+from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
+from lcpstep.events.friction.keep cimport log
+from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of, solve
+from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy, largest, product
+from lcpstep.pointers cimport abs
+
+cdef Py_ssize_t CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
+cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
+cdef double EDGE
+
+cdef Py_ssize_t decide(Rubbing s) noexcept nogil
+cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(leaning=Py_ssize_t)
+cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(stands=bint)
+cdef bint stand(Rubbing s) noexcept nogil
+cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+cdef double force_noise(Rubbing s) noexcept nogil

@@ -1,0 +1,190 @@
+"""Which closed contacts stick, slide or open, as kernels: the complementarity problem of accelerations.
+
+    0 <= alpha  complementary to  lambda_N >= 0,    lambda_T = -mu lambda_N sign(gamma)
+
+gamma is the sliding velocity, or its rate where that is zero. For a contact that slides, lambda_N and alpha are one
+linear complementarity problem whose matrix may fail to be positive: it has no answer then, or two (Painleve).
+
+Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapter 6; F. Genot,
+B. Brogliato, New results on Painleve paradoxes, European Journal of Mechanics A/Solids 18 (1999) 653.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import (
+    CLOSED,
+    LEANS,
+    NO_FORCES,
+    OPEN,
+    RELEASE,
+    REVERSE,
+    SLIDES,
+    SLIP,
+    STICK_TANGENT,
+    STICKS,
+)
+from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
+
+if not cython.compiled:
+    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
+    from lcpstep.events.friction.keep import log
+    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
+    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.pointers import abs
+
+EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it lies on it
+
+
+def decide(s: Rubbing) -> int:
+    """New modes of the closed contacts at the state just measured, in `new_mode` and `new_direction`; a status.
+
+    `free` says which contacts may stick: their sliding velocity is zero. The others slide as `direction` says.
+    """
+    for c in range(s.n_c):
+        s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
+    copy(s.a, s.a_free, s.n_q)
+    hold_joints(s)
+    constrain(s, s.a, s.bias)
+    for c in range(s.n_c):
+        s.curve[c] = product(s.R, s.a, s.n_j + c, s.n_q) + s.bias[s.n_j + c]
+    n_a, n_f = list_unknowns(s)
+    if n_a == 0:
+        return DONE
+    eliminate_joints(s)
+    fill(s, n_a, n_f)
+    m = n_a + n_f
+    for a in range(m):
+        i = row_of(s, a, n_a)
+        s.problem.rate[a] = product(s.R, s.a, i, s.n_q) + s.bias[i]
+    code = find_forces(s, n_a, n_f)
+    if code == DONE:
+        read_modes(s, n_a, n_f)
+    return code
+
+
+def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
+    """Solve; a sliding contact whose own mobility is not positive has no answer, or two."""
+    m, jams = n_a + n_f, -1
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        if s.free[c] == 0 and s.problem.mobility[a * m + a] <= 0.0:
+            jams = a
+    if jams >= 0:
+        s.culprit = s.problem.ids[jams]
+        if n_a == 1:
+            return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
+    if not solve(s, n_a, n_f):
+        return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
+    return PAINLEVE_INDETERMINATE if jams >= 0 else DONE
+
+
+def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
+    """Modes from the forces of the problem and the accelerations that they leave."""
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        if s.problem.impulse[a] > 0.0:
+            s.new_loaded[c] = 1
+            s.new_mode[c] = SLIDES
+        elif not opens(s, a, n_a, n_f):
+            s.new_mode[c] = SLIDES
+    for f in range(n_f):
+        k = s.problem.carrier[f]
+        c, force, rate = s.problem.ids[k], s.problem.impulse[n_a + f], acceleration(s, n_a + f, n_a, n_f)
+        limit = s.mu[c] * s.problem.impulse[k]
+        if s.new_mode[c] == OPEN:
+            continue
+        if limit > 0.0 and abs(force) < limit * (1.0 - EDGE):
+            s.new_mode[c] = STICKS
+        elif limit > 0.0:
+            s.new_direction[c] = 1.0 if force < 0.0 else -1.0
+            if abs(rate) <= NOISE * size_of_terms(s, n_a + f, n_a, n_f):
+                s.new_mode[c] = LEANS
+        else:
+            s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
+
+
+def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """The acceleration of unknown a's row under the forces found."""
+    m = n_a + n_f
+    alpha = s.problem.rate[a]
+    for b in range(m):
+        alpha += s.problem.mobility[a * m + b] * s.problem.impulse[b]
+    return alpha
+
+
+def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
+    """Whether the contact of unknown a, which carries no force, accelerates away."""
+    return acceleration(s, a, n_a, n_f) > NOISE * size_of_terms(s, a, n_a, n_f)
+
+
+def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """Size of the terms of the same acceleration, their signs left aside."""
+    m, i = n_a + n_f, row_of(s, a, n_a)
+    size = abs(s.bias[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
+    for b in range(m):
+        size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
+    return size
+
+
+def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """Take over the modes decided, and hold their rows; log what has changed."""
+    leaning = 0
+    for c in range(s.n_c):
+        s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
+        s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
+        leaning += s.mode[c] == LEANS
+    if (leaning == 0 or not stand(s)) and not hold_modes(s):
+        return PAINLEVE_INCONSISTENT
+    tell(s, record, tally, t)
+    return DONE
+
+
+def stand(s: Rubbing) -> bool:
+    """Let those that stick carry what others lean on them with, if they can; modes are as before where they cannot.
+
+    Feet that share a direction may brace themselves against each other: their forces are known in sum alone.
+    """
+    for c in range(s.n_c):
+        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
+    stands = hold_modes(s)
+    if stands:
+        copy(s.a, s.a_free, s.n_q)
+        constrain(s, s.a, s.bias)
+        list_multipliers(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == STICKS:
+            most = (1.0 - EDGE) * s.mu[c] * s.multiplier[i]
+            stands = stands and abs(s.multiplier[i + s.n_c]) < most
+    for c in range(s.n_c):
+        s.mode[c] = s.mode[c] if stands else s.new_mode[c]
+    return stands
+
+
+def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
+    """Log the contacts whose mode is another than when last told."""
+    for c in range(s.n_c):
+        was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
+        now = STICKS if now == LEANS else now
+        slip = s.velocity[i + s.n_c]
+        if (was == OPEN) != (now == OPEN):
+            log(s, record, tally, t, c, RELEASE if now == OPEN else CLOSED, 0.0, s.velocity[i], 0.0)
+        elif was == SLIDES and now == STICKS:
+            log(s, record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
+        elif was == STICKS and now == SLIDES:
+            log(s, record, tally, t, c, SLIP, 0.0, slip, 0.0)
+        elif was == SLIDES and now == SLIDES and s.mu[c] > 0.0 and s.direction[c] != s.was_direction[c]:
+            log(s, record, tally, t, c, REVERSE, slip, slip, 0.0)
+        s.was_mode[c], s.was_direction[c] = now, s.direction[c]
+
+
+def force_noise(s: Rubbing) -> float:
+    """Rounding of the forces of contacts."""
+    return NOISE * largest(s.force, largest(s.x, 0.0, s.n_held), s.n_q)

@@ -1,0 +1,71 @@
+"""The complementarity problem of closed contacts with friction, as kernels; joints are eliminated from it.
+
+The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
+contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import OPEN
+
+if not cython.compiled:
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.vectors import copy
+
+DEPENDENT = 1e-12  # relative: joints whose pivot is smaller say what others have said
+
+
+def eliminate_joints(s: Rubbing) -> None:
+    """S: the Delassus matrix of contacts and tangents on the joints, by Gauss' elimination."""
+    r = s.n_r
+    copy(s.S, s.W, r * r)
+    for j in range(s.n_j):
+        pivot = s.S[j * r + j]
+        if pivot > DEPENDENT * s.W[j * r + j]:
+            for i in range(j + 1, r):
+                share = s.S[i * r + j] / pivot
+                if share != 0.0:
+                    for k in range(j, r):
+                        s.S[i * r + k] -= share * s.S[j * r + k]
+
+
+def row_of(s: Rubbing, a: int, n_a: int) -> int:
+    """The row of unknown a of the problem: normals of n_a contacts, then tangents of those that may stick."""
+    if a < n_a:
+        return s.n_j + s.problem.ids[a]
+    return s.n_j + s.n_c + s.problem.ids[s.problem.carrier[a - n_a]]
+
+
+def list_unknowns(s: Rubbing) -> tuple[int, int]:
+    """The closed contacts into `ids`, those that may stick into `carrier`; how many of each."""
+    n_a, n_f = 0, 0
+    for c in range(s.n_c):
+        if s.mode[c] != OPEN:
+            s.problem.ids[n_a] = c
+            if s.free[c] == 1 and s.mu[c] > 0.0:
+                s.problem.carrier[n_f] = n_a
+                n_f += 1
+            n_a += 1
+    return n_a, n_f
+
+
+def fill(s: Rubbing, n_a: int, n_f: int) -> None:
+    """The matrix of the problem, sliding friction in the columns of the normals."""
+    m, r = n_a + n_f, s.n_r
+    for a in range(m):
+        i = row_of(s, a, n_a)
+        for b in range(m):
+            k = row_of(s, b, n_a)
+            share = 0.0
+            if b < n_a and s.free[s.problem.ids[b]] == 0:
+                c = s.problem.ids[b]
+                share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
+            s.problem.mobility[a * m + b] = s.S[i * r + k] - share
+
+
+def solve(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Impulses or forces of the listed unknowns, from `rate` of the problem; False where none was found."""
+    return solve_contacts(s.problem, n_a, n_f)

@@ -1,0 +1,111 @@
+"""Runs of systems with planar friction, event by event."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.events import running
+from lcpstep.events.friction.codes import NO_FORCES, NO_IMPULSES, STATUS
+from lcpstep.events.friction.loop import keep_state, run
+from lcpstep.events.friction.smooth import Smooth
+from lcpstep.events.general.run import FIRST_STEP, MOST_ROWS, Moved, quadrature
+from lcpstep.events.scan import scan_interval
+from lcpstep.kernels.clock import Clock
+from lcpstep.model import models
+from lcpstep.recording import Kept, Recorder, States
+from lcpstep.trajectory import Status
+
+Array = NDArray[np.float64]
+
+
+def start(scene: Scene, method: Any) -> Smooth:
+    """The state at the start of the span; `method` has rtol and atol."""
+    contacts, joints, tangents = models(scene)
+    friction: Any = scene.contacts and scene.contacts.friction
+    tangential = friction.restitution if friction.restitution is not None else scene.contacts.restitution  # type: ignore[union-attr]
+    scan = scan_interval(scene, contacts, 0.0)
+    clock = Clock(scene.t_span, scene.corners, scene.period)
+    s = Smooth(
+        contacts, joints, tangents, friction.mu, tangential, clock, scene.t_span[1], scan, method.rtol,
+        method.atol, *quadrature(),
+    )  # fmt: skip
+    s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
+    s.next_step = FIRST_STEP * scan
+    return s
+
+
+class FrictionRun(running.EventRun):
+    """A run with contacts that stick and slide."""
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
+        self.system = start(scene, method)
+        width = 7, 2 * scene.n_q
+        rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
+        columns = 2 * scene.n_c + scene.n_j
+        recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+        super().__init__(method, scene, kept, recorder)
+
+    @property
+    def now(self) -> float:
+        """Time reached [s]."""
+        return float(self.system.clock.t0)
+
+    @property
+    def interval_end(self) -> float:
+        """End of the interval at hand [s]."""
+        return min(self.system.t_end, self.now + self.system.scan_length)
+
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        q, v = np.split(self.system.state, 2)
+        return q, v
+
+    @property
+    def evaluations(self) -> int:
+        """How often forces were evaluated."""
+        return int(self.system.evaluations)
+
+    def advance(self, goal: int) -> int:
+        """Call the kernel, up to step number `goal`; why it returned."""
+        return int(run(self.system, self.recorder.record, self.tally, goal))
+
+    def keep_now(self) -> None:
+        """Write the current state into the recorder's buffers."""
+        keep_state(self.system, self.recorder.record)
+
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones and the motion from each to the next."""
+        return Moved(running.without_impulses(s), self.kept.all, False, self.recorder.dense())
+
+    def status(self, code: int) -> Status:
+        """How the run ended, by what the kernel returned."""
+        return STATUS.get(code) or Status(code)
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        closed, where = self.system.closed_ones(), self.where
+        if code == NO_IMPULSES:
+            return f"no impulses of the contacts {closed} end their approach {where}"
+        if code == NO_FORCES:
+            return f"no forces of the closed contacts {closed} keep them from passing {where}"
+        if code in (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE):
+            return f"{self.paradox(code)} {where}"
+        return f"{super().why(code)}; closed contacts {closed}"
+
+    def paradox(self, code: int) -> str:
+        """Painleve's paradox in words: the contact, and the coefficient of friction from which on it occurs."""
+        c = int(self.system.culprit)
+        critical = self.system.critical_friction(c)
+        limit = f" (critical at this state: {critical:.9g})" if critical > 0.0 else ""
+        friction: Any = self.scene.contacts and self.scene.contacts.friction
+        words = {
+            Status.PAINLEVE_INCONSISTENT: "no force keeps it from passing the surface",
+            Status.PAINLEVE_INDETERMINATE: "it may as well stay closed as open",
+        }[Status(code)]
+        return f"contact {c} slides with mu = {np.atleast_1d(friction.mu)[c]:g}{limit}, and {words}"

@@ -1,0 +1,18 @@
+"""The motion of a system with friction between events, as a field that the Runge-Kutta method follows."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.friction.held import right_hand_side
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.pointers import Doubles
+
+
+class Smooth(Rubbing):
+    """Y = (q, v) with the rows of the modes held."""
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Dy = (v, v'); False where it is not finite, or the rows cannot be held."""
+        return right_hand_side(self, t, y, dy)

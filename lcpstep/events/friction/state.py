@@ -1,0 +1,148 @@
+"""The state of a system whose contacts stick and slide, under the names of mechanics, and its work space.
+
+Rows are joints, then the contacts' normals, then their tangents: R v + rate are the velocities of joints, of gaps and
+of sliding, R a + bias their accelerations, W = R M^-1 R^T.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+from lcpstep.events.friction.codes import BEGIN
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.coulomb import ContactProblem
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.pointers import after, indices_after
+
+GUARDS = (
+    3  # of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
+)
+NOISE = 64 * RESOLUTION
+
+
+class Rubbing(RungeKutta):
+    """A motion under way; its field, that of the modes at hand, is given by `smooth`.
+
+    contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
+    clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
+    next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
+    q, v : (n_q,)                state at the base time
+    a_free, a, force : (n_q,)    acceleration without constraints, with them; force
+    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  D, S : (n_r, n_r)  Delassus matrix, the same on the joints
+    rate, bias, gap, velocity : (n_r,)   of rows at the state last measured
+    mu, tangential : (n_c,)      coefficients of friction; restitution on the tangent
+    mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
+    direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
+    loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
+    terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
+    owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
+    held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
+    multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
+    value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
+    armed : (3 n_c,)             whether each has been above its band since the modes began
+    culprit                      contact or joint that a failure is about, or -1
+
+    Parameters
+    ----------
+    contacts, joints, tangents : Model;  mu, tangential : (n_c,)
+    clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
+    """
+
+    def __init__(
+        self,
+        contacts: Model,
+        joints: Model,
+        tangents: Model,
+        mu: Any,
+        tangential: Any,
+        clock: Clock,
+        t_end: float,
+        scan_length: float,
+        rtol: float,
+        atol: float,
+        nodes: Any,
+        weights: Any,
+    ) -> None:
+        n, n_c, n_j = contacts.n_q, contacts.n_c, joints.n_c
+        RungeKutta.__init__(self, 2 * n, n, rtol, atol)
+        r = n_j + 2 * n_c
+        self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
+        self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
+        self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
+        self.scan, self.problem = Scan(), ContactProblem(np.array(mu), True, r, False)
+        self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
+        self.rule = np.array([nodes, weights])
+        self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
+        self.weights = after(self.nodes, self.n_nodes)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 10 * r)
+        self.q, self.v = self.y, after(self.y, n)
+        self.a_free = doubles(self.table)
+        self.a = after(self.a_free, n)
+        self.force = after(self.a, n)
+        self.work = after(self.force, n)
+        self.shifted = after(self.work, n)
+        self.dy = after(self.shifted, n)
+        self.seen = after(self.dy, 2 * n)
+        self.dv = after(self.seen, 2 * n)
+        self.M = after(self.dv, 2 * n)
+        self.R = after(self.M, n * n)
+        self.MR = after(self.R, r * n)
+        self.G = after(self.MR, r * n)
+        self.W = after(self.G, r * n)
+        self.S = after(self.W, r * r)
+        self.L = after(self.S, r * r)
+        self.rate = after(self.L, r * r)
+        self.bias = after(self.rate, r)
+        self.gap = after(self.bias, r)
+        self.velocity = after(self.gap, r)
+        self.x = after(self.velocity, r)
+        self.change = after(self.x, r)
+        self.multiplier = after(self.change, r)
+        self.impulse = after(self.multiplier, r)
+        self.account = after(self.impulse, r)
+        self.shifted_rate = after(self.account, r)
+        self.per_contact = np.zeros(9 * n_c)
+        self.given = np.array([mu, tangential], dtype=float)
+        self.mu, self.tangential = doubles(self.given), after(doubles(self.given), n_c)
+        self.direction = doubles(self.per_contact)
+        self.was_direction = after(self.direction, n_c)
+        self.new_direction = after(self.direction, 2 * n_c)
+        self.terms = after(self.direction, 3 * n_c)
+        self.before = after(self.direction, 4 * n_c)
+        self.curve = after(self.direction, 5 * n_c)
+        self.noise = after(self.direction, 6 * n_c)
+        self.owed = after(self.direction, 7 * n_c)
+        self.marks = np.zeros(7 * n_c + r, dtype=np.intp)
+        self.mode = indices(self.marks)
+        self.was_mode = indices_after(self.mode, n_c)
+        self.new_mode = indices_after(self.mode, 2 * n_c)
+        self.loaded = indices_after(self.mode, 3 * n_c)
+        self.free = indices_after(self.mode, 4 * n_c)
+        self.touches = indices_after(self.mode, 5 * n_c)
+        self.new_loaded = indices_after(self.mode, 6 * n_c)
+        self.held = indices_after(self.mode, 7 * n_c)
+        samples = DEGREE + 1 + CHECKS
+        self.looks = np.zeros(GUARDS * n_c * (samples + 2))
+        self.value = doubles(self.looks)
+        self.band = after(self.value, GUARDS * n_c)
+        self.samples = after(self.band, GUARDS * n_c)
+        self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
+        self.armed = indices(self.arms)
+
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return [c for c in range(self.n_c) if self.mode[c] != 0]
+
+    def critical_friction(self, c: int) -> float:
+        """The coefficient of friction beyond which contact c, sliding as it does, jams; 0 where none does."""
+        i = self.n_j + c
+        coupling = self.direction[c] * self.W[i * self.n_r + i + self.n_c]
+        return self.W[i * self.n_r + i] / coupling if coupling > 0.0 else 0.0

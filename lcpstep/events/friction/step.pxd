@@ -1,0 +1,25 @@
+cimport cython
+from lcpstep.events.friction.equations cimport lift, measure
+from lcpstep.events.friction.guards cimport UNKNOWN, finish_step, first_event, locate, look
+from lcpstep.events.friction.held cimport hold_modes, project
+from lcpstep.events.friction.impact cimport find_touching, forget_terms, still
+from lcpstep.events.friction.keep cimport keep, store_dense
+from lcpstep.events.friction.modes cimport decide
+from lcpstep.events.friction.state cimport GUARDS, Rubbing
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, min
+
+cdef Py_ssize_t DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+cdef double LOOK_AHEAD
+
+@cython.locals(by_force=bint)
+cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil
+cdef void meet(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
+@cython.locals(rests=bint)
+cdef void find_standing(Rubbing s) noexcept nogil
+cdef void take_over(Rubbing s, Record record, Tally tally, double t, double tau) noexcept nogil
+cdef void press_between(Rubbing s, double a, double b) noexcept nogil

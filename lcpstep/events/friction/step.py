@@ -1,0 +1,138 @@
+"""A Runge-Kutta step of a system with friction, up to the first event within it, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import lift, measure
+    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate, look
+    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.impact import find_touching, forget_terms, still
+    from lcpstep.events.friction.keep import keep, store_dense
+    from lcpstep.events.friction.modes import decide
+    from lcpstep.events.friction.state import GUARDS, Rubbing
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, min
+
+LOOK_AHEAD = 1e-6  # of a step: where the forces after a release, or a slip, are looked at
+
+
+def step(s: Rubbing, record: Record, tally: Tally) -> int:
+    """One step, which ends at the first event within it; what comes next into `next`. A status."""
+    t0, border = s.clock.t0, min(s.t_end, s.clock.high)
+    s.culprit = -1
+    code = s.take_step(t0, min(border - t0, s.scan_length), s.scan_length)
+    if code != DONE:
+        return PAINLEVE_INCONSISTENT if s.culprit >= 0 and code != STEP_TOO_SMALL else code
+    h = s.length
+    g = first_event(s, h)
+    if g == UNKNOWN:
+        return NOT_FINITE
+    if g < 0:
+        take_over(s, record, tally, border if h >= border - t0 else s.clock.after(h), h)
+        if record.is_due(tally.steps):
+            keep(s, record, s.clock.t0, s.y)
+        return DONE
+    c = g // GUARDS
+    by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
+    if by_force:
+        code = look_ahead(s, h)
+        if code != DONE:
+            return code
+    tau = locate(s, g, h, border - t0)
+    if tau > 0.0 and not finish_step(s, tau):
+        return NOT_FINITE
+    take_over(s, record, tally, min(s.clock.after(tau), border), tau)
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    if by_force:
+        s.next = OBEY
+    elif s.mode[c] == OPEN:
+        meet(s, c)
+    else:
+        stop(s, c)
+    return DONE
+
+
+def look_ahead(s: Rubbing, h: float) -> int:
+    """The modes just after a force has left its cone, or turned to pulling; a status."""
+    place = s.found + LOOK_AHEAD
+    s.at(place, s.seen)
+    if not measure(s, s.clock.t0 + place * h, s.seen):
+        return NOT_FINITE
+    find_standing(s)
+    code = decide(s)
+    hold_modes(s)  # the old ones, for the rest of the step
+    return code
+
+
+def meet(s: Rubbing, c: int) -> None:
+    """Contact c has come to its surface."""
+    find_touching(s)
+    lift(s, c)
+    s.touches[c] = 1
+    forget_terms(s)
+    s.next = JUMP
+
+
+def stop(s: Rubbing, c: int) -> None:
+    """The sliding velocity of contact c is zero."""
+    find_standing(s)
+    s.free[c] = 1
+    s.next = DECIDE
+
+
+def find_standing(s: Rubbing) -> None:
+    """Which contacts do not slide: those that stick, and those of whose sliding velocity that cannot be told.
+
+    Feet of one body that share a direction are among these: one of them is held, the others have a share of the load.
+    """
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        rests = s.mode[c] == STICKS or s.mode[c] == LEANS
+        s.free[c] = 1 if rests or abs(s.velocity[i]) <= still(s, i) else 0
+
+
+def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) -> None:
+    """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    tally.steps += 1
+    pressed = 0.0
+    while record.wants(t, t >= s.t_end):
+        wanted = record.times[record.next_time] - s.clock.t0
+        press_between(s, pressed, wanted)
+        pressed = wanted
+        copy(s.seen, s.y, 2 * s.n_q)
+        if wanted > 0.0:
+            s.at(wanted / s.length, s.seen)
+        keep(s, record, record.times[record.next_time], s.seen)
+        record.next_time += 1
+    if tau > 0.0:
+        press_between(s, pressed, tau)
+        store_dense(s, record)
+        copy(s.y, s.y_new, 2 * s.n_q)
+    s.clock.start_at(t)
+    if tau > 0.0 and s.n_held > 0:
+        project(s, t)
+
+
+def press_between(s: Rubbing, a: float, b: float) -> None:
+    """Add the impulses of the forces between a and b after the base: Gauss' quadrature."""
+    if s.n_held == 0 or b <= a:
+        return
+    for k in range(s.n_nodes):
+        tau = a + s.nodes[k] * (b - a)
+        s.at(tau / s.length, s.seen)
+        look(s, s.clock.t0 + tau, s.seen)
+        share = s.weights[k] * (b - a)
+        for c in range(s.n_c):
+            s.impulse[c] = s.impulse[c] + share * s.multiplier[s.n_j + c]
+            tangent = s.multiplier[s.n_j + s.n_c + c]
+            s.impulse[s.n_c + c] = s.impulse[s.n_c + c] + share * tangent
+        for i in range(s.n_j):
+            s.impulse[2 * s.n_c + i] = s.impulse[2 * s.n_c + i] + share * s.multiplier[i]
