@@ -88,13 +88,24 @@ def derivative(coefficients: Sequence[Any]) -> list[Any]:
 
 
 def exponential(terms: Sequence[tuple[Jet, arb_mat]]) -> list[arb_mat]:
-    """The parts of exp(sum of x X) for jets x and constant matrices X.
+    """The parts of exp(sum of x X) for jets x and constant matrices X; zero for generators that none of x has."""
+    size, n = len(terms[0][0].c), terms[0][1].nrows()
+    bits = [1 << k for k in range(size.bit_length() - 1)]
+    acting = [
+        bit for bit in bits if not all(x.c[S].is_zero() for x, _ in terms for S in range(size) if S & bit)
+    ]
+    subsets = [sum(bit for k, bit in enumerate(acting) if S >> k & 1) for S in range(1 << len(acting))]
+    parts = _exponential([sum((X * x.c[S] for x, X in terms), arb_mat(n, n)) for S in subsets])
+    return [parts[subsets.index(S)] if S in subsets else arb_mat(n, n) for S in range(size)]
+
+
+def _exponential(parts: Sequence[arb_mat]) -> list[arb_mat]:
+    """The parts of the exponential of a matrix of jets.
 
     Multiplication by a jet is a triangular matrix over its parts: the exponential of the whole has the parts sought
     in its first column of blocks.
     """
-    size, n = len(terms[0][0].c), terms[0][1].nrows()
-    parts = [sum((X * x.c[S] for x, X in terms), arb_mat(n, n)) for S in range(size)]
+    size, n = len(parts), parts[0].nrows()
     if size == 1:
         return [parts[0].exp()]
     whole = arb_mat(size * n, size * n)

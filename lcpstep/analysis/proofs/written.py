@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import FunctionType, ModuleType, SimpleNamespace
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -86,9 +86,18 @@ def _function(name: str) -> Callable[[Any], Series]:
     return f
 
 
-SHIM = SimpleNamespace(
-    **{name: _function(name) for name in FUNCTIONS}, **{name: getattr(math, name) for name in CONSTANTS}
-)
+class Functions:
+    """What stands for the modules `math` and `numpy`."""
+
+    def __getattr__(self, name: str) -> Any:
+        raise TypeError(f"{name} is none of the functions {', '.join(FUNCTIONS)}")
+
+
+SHIM = Functions()
+for _name in FUNCTIONS:
+    setattr(SHIM, _name, _function(_name))
+for _name in CONSTANTS:
+    setattr(SHIM, _name, getattr(math, _name))
 REPLACED = {
     id(getattr(module, name)): getattr(SHIM, name)
     for module in (math, np)
