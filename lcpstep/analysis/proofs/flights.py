@@ -62,19 +62,19 @@ class Flight:
                 if not a <= b:
                     continue
                 looked += 1
-                gap, _ = self.gap(c, way, a, b)
+                middle, gap, _ = self.gap(c, way, a, b)
                 if gap > 0:
                     continue
-                if gap < 0 or depth == HALVINGS or looked > PIECES:
-                    raise NotProved(self._touched(c, a, b, gap))
-                middle = 0.5 * (a + b)
-                todo += [(middle, b, depth + 1), (a, middle, depth + 1)]
+                if middle < 0 or depth == HALVINGS or looked > PIECES:
+                    raise NotProved(self._touched(c, a, b, middle))
+                half = 0.5 * (a + b)
+                todo += [(half, b, depth + 1), (a, half, depth + 1)]
 
     def _leaving(self, c: int, way: Stretch, low: float, high: float) -> float:
         """Up to where the gap grows from the impact at the start on."""
         end = covering(way, low, high)[1]
         for _ in range(HALVINGS):
-            if self.gap(c, way, low, end)[1] > 0:
+            if self.gap(c, way, low, end)[2] > 0:
                 return end
             end = low + 0.5 * (end - low)
         raise NotProved(f"grazing: contact {c} is not shown to open after its impact at {self._time(low)}")
@@ -83,13 +83,13 @@ class Flight:
         """From where on the gap falls up to the impact at the end."""
         start = covering(way, low, high)[0]
         for _ in range(HALVINGS):
-            if self.gap(c, way, start, high)[1] < 0:
+            if self.gap(c, way, start, high)[2] < 0:
                 return start
             start = high - 0.5 * (high - start)
         raise NotProved(f"grazing: contact {c} is not shown to close before its impact at {self._time(high)}")
 
-    def gap(self, c: int, way: Stretch, a: float, b: float) -> tuple[arb, arb]:
-        """The gap and its rate dg/dtheta, enclosed over the phases from a to b."""
+    def gap(self, c: int, way: Stretch, a: float, b: float) -> tuple[arb, arb, arb]:
+        """The gap half way from the phase a to b; the gap, and its rate dg/dtheta, enclosed over all of them."""
         contact, n = self.formulas.contacts[c], self.formulas.n
         middle = arb(0.5 * (a + b))
         h = (arb(b) - middle).max(middle - arb(a))
@@ -105,7 +105,8 @@ class Flight:
         s = ball - middle
         curve = y[2] - 2 * over[2]
         rate = y[1] - here[1]
-        return y[0] - here[0] + s * rate + s * s * curve / 2, rate + s * curve
+        gap = y[0] - here[0]
+        return gap, gap + s * rate + s * s * curve / 2, rate + s * curve
 
     def _second(self, z: arb_mat, h: arb) -> arb_mat:
         """d2z/dtheta2 over half-width h about z."""
