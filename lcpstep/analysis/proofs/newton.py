@@ -19,6 +19,7 @@ from lcpstep.analysis.proofs.jets import Jet
 Equations = Callable[[Sequence[Jet]], Sequence[Jet]]
 ITERATIONS = 60  # of Newton's method, and of Krawczyk's
 LARGEST, SHRINK = -4, 3  # exponents of two: of the first radius that is tried, and from one to the next
+LESS = 0.99  # a box that shrinks by less than this has become as small as it can
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,10 @@ def zero(
             continue
         image = _krawczyk(F, x, Y, shift, box)
         if all(b.contains_interior(k) for b, k in zip(box, image, strict=True)):
-            return Zero(_refined(F, Y, image), radii, arb(2) ** exponent)
+            balls = _refined(F, Y, image)
+            left = [(r - abs(b - z)) / s for r, b, z, s in zip(radii, balls, x, scale, strict=True)]
+            radius = min((r.lower() for r in left), key=float)  # about the zero, and not about x
+            return Zero(balls, [s * radius for s in scale], radius)
     raise NotProved(
         "no neighbourhood was found, however small, in which there must be an orbit: too near to a fold or to grazing"
     )
@@ -113,7 +117,7 @@ def _refined(F: Equations, Y: arb_mat, box: list[arb]) -> list[arb]:
         m = [b.mid() for b in box]
         image = _krawczyk(F, m, Y, Y * evaluate(F, m), box)
         smaller = [b.intersection(k) for b, k in zip(box, image, strict=True)]
-        if not any(s.rad() < 0.5 * b.rad() for s, b in zip(smaller, box, strict=True)):
+        if not any(s.rad() < LESS * b.rad() for s, b in zip(smaller, box, strict=True)):
             return smaller
         box = smaller
     return box
