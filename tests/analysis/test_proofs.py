@@ -1,6 +1,7 @@
 """Proved orbits against closed forms; what is disturbed, touched or of another kind is refused by name."""
 
 import math
+from dataclasses import replace
 
 import mpmath
 import numpy as np
@@ -147,9 +148,33 @@ def test_an_orbit_of_two_periods_is_proved_and_one_that_repeats_earlier_is_not(c
     assert [float(ball(m)[0]) for m in proof.multipliers] == pytest.approx(
         np.abs(orbit.multipliers), rel=1e-7
     )
+    states = np.array([[float(ball(x)[0]) for x in row] for row in proof.x])
+    assert states == pytest.approx(orbit.x, rel=1e-9)
+    with pytest.raises(NotProved, match="the orbit given is none"):
+        prove(replace(orbit, x=orbit.x * [[1.0], [1.001]]))
     twice = periodic_orbit(cam_orbit.scene, cam_orbit.x[0], 2)
     with pytest.raises(NotProved, match="repeats after 1"):
         prove(twice)
+
+
+def test_the_steady_motion_of_an_oscillator_that_strikes_nothing_is_proved():
+    zeta, w, a = mpmath.mpf(2.0 * 0.2) / 2, mpmath.mpf(1.7), mpmath.mpf(0.9)
+    amplitude = a / (1 - w**2 + 2j * zeta * w)
+    size = float(abs(amplitude))
+    scene = scenes.impact_oscillator(0.2, 1.7, 0.9, stop=size * (1.0 + 1e-9), q0=0.0)
+    orbit = periodic_orbit(scene, [float(amplitude.real), float((1j * w * amplitude).real)])
+    proof = prove(orbit)
+    assert (proof.name, proof.stability, proof.impacts) == ("O(1, 0)", "stable", ())
+    assert holds(proof.x[0][0], amplitude.real)
+    assert holds(proof.x[0][1], (1j * w * amplitude).real)
+    assert holds(proof.multipliers[0], mpmath.exp(-2 * mpmath.pi * zeta / w))
+    assert "no other without impacts" in str(proof)
+    for stop in (size * (1.0 - 1e-9), 0.5 * size):
+        lower = scenes.impact_oscillator(0.2, 1.7, 0.9, stop=stop, q0=-1.0)
+        with pytest.raises(NotProved, match="passes through contact 0"):
+            prove(replace(orbit, scene=lower))
+    with pytest.raises(NotProved, match="repeats after 1"):
+        prove(periodic_orbit(scene, orbit.x[0], 2))
 
 
 def test_an_elastic_orbit_without_damping_is_neither_stable_nor_unstable():

@@ -117,6 +117,14 @@ def test_a_chattering_motion_is_refused_by_name(rpm):
         prove(orbit)
 
 
+@pytest.mark.parametrize("coordinates", ["relative", "absolute"])
+def test_a_motion_that_never_leaves_the_obstacle_is_refused_by_name(coordinates):
+    orbit = attracting(scenes.cam_follower(rpm=90.0, coordinates=coordinates))
+    assert orbit.name == "O(1, 0)"
+    with pytest.raises(NotProved, match="sticks to contact 0 all the time"):
+        prove(orbit)
+
+
 def test_the_motion_that_sticks_at_358_rpm_is_refused_by_name():
     # At rest on the cam at first, it leaves it in the first turn and comes to O(3, 8), which does not stick
     scene = scenes.cam_follower(rpm=358.0, q0=0.0, v0=0.0)
@@ -157,6 +165,8 @@ def test_an_orbit_with_a_wrong_period_or_number_of_impacts_is_refused(cam_orbit)
     late = {**doubled, "time": np.append(time, time + 0.3 * cam_orbit.scene.period)}
     none = {"time": time[:0], "before": before[:0], "after": after[:0]}
     with pytest.raises(NotProved, match="has no impact"):
+        prove_speed(replace(cam_orbit, **none))
+    with pytest.raises(NotProved, match="passes through contact 0"):
         prove(replace(cam_orbit, **none))
     for wrong in (doubled, late, {"x": np.tile(cam_orbit.x, (2, 1))}):
         with pytest.raises(NotProved):

@@ -108,24 +108,19 @@ class Case:
         return tuple(found)
 
     def section(self, phase: arb) -> tuple[Enclosure, ...]:
-        """The state (q, v) there."""
-        f = self.formulas
+        """The state (q, v) at a phase; NotProved where an impact may lie on it."""
         theta, x = self.nodes[-1]
-        start = theta - 2 * self.periods * arb.pi()
-        y = [z.c[0] for z in flown(f, self.slowness, (start, x), Jet([phase]))]
-        lift, slope = frame_at(f, Jet([phase]))
-        omega = 1 / self.slowness.c[0]
-        q = [z - c for z, c in zip(y[: f.n], lift, strict=True)]
-        v = [(z - c) * omega for z, c in zip(y[f.n :], slope, strict=True)]
-        return tuple(Enclosure.of(z) for z in q + v)
+        starts = [(theta - 2 * self.periods * arb.pi(), x), *self.nodes]
+        ends = [self.nodes[0][0].c[0], *(self.end(k) for k in range(len(self.nodes)))]
+        for start, end in zip(starts, ends, strict=True):
+            if start[0].c[0] < phase < end:
+                state = flown(self.formulas, self.slowness, start, Jet([phase]))
+                return given_state(self.formulas, self.slowness, phase, state)
+        raise NotProved("an impact lies on the section: see lcpstep.analysis.orbits.moved for another one")
 
     def multipliers(self) -> tuple[Enclosure, ...]:
-        """Their moduli, the largest first; infinite enclosures where the eigenvalues could not be told apart."""
-        found = acb_mat(self.monodromy()).eig(multiple=True, nonstop=True)
-        moduli = [arb(x.abs_lower()).union(arb(x.abs_upper())) for x in found]
-        if not all(x.is_finite() for x in moduli):
-            return tuple(Enclosure(0.0, math.inf, "not enclosed") for _ in found)
-        return tuple(Enclosure.of(x) for x in sorted(moduli, key=float, reverse=True))
+        """Their moduli, the largest first."""
+        return moduli(self.monodromy())
 
     def monodromy(self) -> arb_mat:
         """The derivative of n periods by (y, w), just after the first impact: flows and saltation matrices."""
@@ -164,6 +159,25 @@ def _apart(one: Node, other: Node) -> bool:
     """Whether two impacts are shown to be different ones."""
     pairs = [(one[0], other[0]), *zip(one[1], other[1], strict=True)]
     return not all(a.c[0].overlaps(b.c[0]) for a, b in pairs)
+
+
+def moduli(D: arb_mat) -> tuple[Enclosure, ...]:
+    """Those of the eigenvalues, the largest first; infinite enclosures where these could not be told apart."""
+    found = acb_mat(D).eig(multiple=True, nonstop=True)
+    balls = [arb(x.abs_lower()).union(arb(x.abs_upper())) for x in found]
+    if not all(x.is_finite() for x in balls):
+        return tuple(Enclosure(0.0, math.inf, "not enclosed") for _ in found)
+    return tuple(Enclosure.of(x) for x in sorted(balls, key=float, reverse=True))
+
+
+def given_state(f: Formulas, slowness: Jet, phase: arb, state: Sequence[Jet]) -> tuple[Enclosure, ...]:
+    """(q, v) from (y, w)."""
+    y = [z.c[0] for z in state]
+    lift, slope = frame_at(f, Jet([phase]))
+    omega = 1 / slowness.c[0]
+    q = [z - c for z, c in zip(y[: f.n], lift, strict=True)]
+    v = [(z - c) * omega for z, c in zip(y[f.n :], slope, strict=True)]
+    return tuple(Enclosure.of(z) for z in q + v)
 
 
 def frame_at(f: Formulas, theta: Jet) -> tuple[list[arb], list[arb]]:

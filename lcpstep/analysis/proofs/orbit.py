@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
-from lagrangian import checks
+from lagrangian import Scene, checks
 from lcpstep.analysis.orbits import PeriodicOrbit
 from lcpstep.analysis.proofs.case import Case, frame_at
 from lcpstep.analysis.proofs.errors import NotProved
 from lcpstep.analysis.proofs.formulas import Formulas, formulas
+from lcpstep.analysis.proofs.free import prove_free
 from lcpstep.analysis.proofs.jets import Jet
 from lcpstep.analysis.proofs.newton import Zero, improved, zero
 from lcpstep.analysis.proofs.obstacles import stretch
-from lcpstep.analysis.proofs.report import Enclosure, Proof, Unique, down
+from lcpstep.analysis.proofs.report import Enclosure, Proof, Unique, down, verdict
 from lcpstep.analysis.proofs.shooting import Node, Struck, closing, flown, nodes_of, rebound
 
 NEAR = 1e-6  # relative: how far what is proved may lie from what was given
@@ -42,6 +43,10 @@ def prove(orbit: PeriodicOrbit, *, bits: int = 128) -> Proof:
     with ctx.workprec(int(bits)):
         f = formulas(orbit.scene)
         refuse(orbit)
+        if len(orbit.time) == 0:
+            result = prove_free(orbit, f, int(bits))
+            check_near(orbit, result)
+            return result
         guess, struck, contacts = impacts_of(orbit, f)
         slowness = Jet([1 / f.omega])
         found = _solved(f, struck, orbit.periods, guess)
@@ -49,10 +54,11 @@ def prove(orbit: PeriodicOrbit, *, bits: int = 128) -> Proof:
         case = Case(f, struck, contacts, orbit.periods, nodes, slowness)
         case.show()
         moduli = case.multipliers()
+        turns = [2 * arb.pi() * (arb(orbit.phase) + k) for k in range(orbit.periods)]
         result = Proof(
             name=orbit.name, periods=orbit.periods, period=Enclosure.of(2 * arb.pi() / f.omega),
-            x=case.section(2 * arb.pi() * arb(orbit.phase)), impacts=case.impacts(),
-            multipliers=moduli, stability=_verdict(moduli), unique=unique(found, f.omega), bits=int(bits),
+            x=tuple(case.section(phase) for phase in turns), impacts=case.impacts(),
+            multipliers=moduli, stability=verdict(moduli), unique=unique(found, f.omega), bits=int(bits),
         )  # fmt: skip
         check_near(orbit, result)
         return result
@@ -65,8 +71,20 @@ def refuse(orbit: Any) -> None:
             f"{orbit.name}: the motion sticks to the obstacle or chatters (infinitely many impacts); proofs are for "
             "finitely many impacts with rebound"
         )
-    if len(orbit.time) == 0:
-        raise NotProved(f"{orbit.name}: the motion has no impact")
+    if isinstance(orbit.scene, Scene) and len(orbit.time) == 0 and np.any(_resting(orbit)):
+        raise NotProved(
+            f"{orbit.name}: the motion sticks to contact {int(np.argmax(_resting(orbit)))} all the time"
+        )
+
+
+def _resting(orbit: Any) -> Any:
+    """(n_c,) which contacts are closed on the section of a motion without impacts."""
+    scene = orbit.scene
+    q, v = np.split(np.asarray(orbit.x[0]), 2)
+    gap, rate = scene.gap(orbit.phase * scene.period, q, v)
+    length = float(np.max(np.abs(q)))
+    speed = float(np.max(np.abs(v))) + length / scene.period
+    return (np.abs(gap) <= NEAR * length) & (np.abs(rate) <= NEAR * speed)
 
 
 def _solved(f: Formulas, struck: Sequence[Struck], periods: int, guess: Sequence[arb]) -> Zero:
@@ -140,22 +158,21 @@ def unique(found: Zero, omega: arb) -> Unique:
     return Unique(down(found.radius / omega), down(found.radii[1]), down(found.radii[1] * omega))
 
 
-def _verdict(moduli: Sequence[Enclosure]) -> str:
-    if all(m.upper < 1.0 for m in moduli):
-        return "stable"
-    return "unstable" if any(m.lower > 1.0 for m in moduli) else "not decided"
-
-
 def check_near(orbit: PeriodicOrbit, proof: Proof) -> None:
     """NotProved where the orbit that was proved is not the one given."""
-    T, fastest = orbit.scene.period, float(np.max(np.abs(orbit.before)))
+    T, fastest = orbit.scene.period, float(np.max(np.abs(orbit.before), initial=0.0))
     size = max(float(np.max(np.abs(orbit.x))), 1e-300)
     given = [("time", orbit.time, T), ("before", orbit.before, fastest), ("after", orbit.after, fastest)]
     for name, values, scale in given:
         for k, impact in enumerate(proof.impacts):
             _compare(f"{name} of impact {k}", float(values[k]), getattr(impact, name), scale)
-    for k, x in enumerate(proof.x):
-        _compare(f"state {k} on the section", float(orbit.x[0][k]), x, size)
+    if np.shape(orbit.x) != (len(proof.x), len(proof.x[0])):
+        raise NotProved(
+            f"the orbit given is none: states of shape {np.shape(orbit.x)} for {len(proof.x)} periods"
+        )
+    for row, states in zip(orbit.x, proof.x, strict=True):
+        for k, x in enumerate(states):
+            _compare(f"state {k} on the section", float(row[k]), x, size)
 
 
 def _compare(what: str, given: float, proved: Enclosure, scale: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,7 +49,10 @@ class ProvedImpact:
 
 @dataclass(frozen=True)
 class Unique:
-    """How far there is no other orbit: of times of impacts [s], positions [m], and velocities after them [m/s]."""
+    """How far there is no other orbit: of times of impacts [s], positions [m], and velocities after them [m/s].
+
+    Infinite for a motion without impacts: there is no other one.
+    """
 
     time: float
     position: float
@@ -64,7 +67,7 @@ class Proof:
     ----------
     name : O(n, m);  periods : n, the least number of periods after which it repeats
     period : of the forcing [s]
-    x : (2 n_q,) states (q, v) on the section
+    x : (n, 2 n_q) states (q, v) on the section
     impacts : in the order of time; between them no gap is zero
     multipliers : moduli, the largest first
     stability : "stable", "unstable", or "not decided" where a modulus may be one
@@ -75,7 +78,7 @@ class Proof:
     name: str
     periods: int
     period: Enclosure
-    x: tuple[Enclosure, ...]
+    x: tuple[tuple[Enclosure, ...], ...]
     impacts: tuple[ProvedImpact, ...]
     multipliers: tuple[Enclosure, ...]
     stability: str
@@ -125,6 +128,13 @@ class ProvedSpeed:
         yield _unique_line(self.unique)
 
 
+def verdict(moduli: Sequence[Enclosure]) -> str:
+    """Whether an orbit with these moduli of multipliers is stable."""
+    if all(m.upper < 1.0 for m in moduli):
+        return "stable"
+    return "unstable" if any(m.lower > 1.0 for m in moduli) else "not decided"
+
+
 def _impact_lines(impacts: tuple[ProvedImpact, ...]) -> Iterator[str]:
     for impact in impacts:
         yield f"impact of contact {impact.contact} at t = {impact.time} s"
@@ -132,6 +142,8 @@ def _impact_lines(impacts: tuple[ProvedImpact, ...]) -> Iterator[str]:
 
 
 def _unique_line(unique: Unique) -> str:
+    if math.isinf(unique.time):
+        return "no other without impacts"
     size = f"{unique.time:.2g} s, {unique.position:.2g} m and {unique.velocity:.2g} m/s"
     return f"no other with such impacts within {size} of these"
 

@@ -72,6 +72,8 @@ def prove_speed(orbit: PeriodicOrbit | CornerImpact, kind: str = "corner", *, bi
     with ctx.workprec(int(bits)):
         f = formulas(given.scene)
         refuse(given)
+        if len(given.time) == 0:
+            raise NotProved(f"{given.name}: the motion has no impact")
         if f.written:
             raise NotProved(
                 f"{given.scene.name}: how a callback changes with the speed of the forcing is not known"
