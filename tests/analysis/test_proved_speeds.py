@@ -3,13 +3,13 @@
 import mpmath
 import pytest
 
-from lagrangian import scenes
+from lagrangian import Harmonic, scenes
 from lagrangian.scenes.table import sine_table
 from lcpstep.analysis import prove_speed
 from lcpstep.analysis.corners import corner_impact
 from lcpstep.analysis.orbits import periodic_orbit
 from lcpstep.analysis.proofs import NotProved
-from tests.analysis.proved import ball, holds, on_table_orbit, sine
+from tests.analysis.proved import attracting, ball, holds, on_table_orbit, sine, two_masses
 
 
 def cam(rpm):
@@ -93,3 +93,17 @@ def test_an_obstacle_without_corners_has_no_corner_impact():
 def test_the_speed_of_a_table_that_the_user_wrote_cannot_be_varied():
     with pytest.raises(NotProved, match="callback"):
         prove_speed(on_table_orbit(sine), "flip")
+
+
+def masses(omega):
+    scene = two_masses()
+    force = Harmonic(cosine=scene.system.force.cosine, omega=omega)
+    return replace(scene, system=replace(scene.system, force=force), period=2.0 * math.pi / omega)
+
+
+def test_the_flip_of_two_masses_is_where_a_multiplier_passes_minus_one():
+    orbit = attracting(masses(1.95))
+    flip = float(ball(prove_speed(orbit, "flip").omega)[0])
+    assert flip == pytest.approx(1.98183937222, abs=1e-10)  # by continuation
+    beside = [periodic_orbit(masses(flip + d), orbit.x[0]).multipliers[0].real for d in (-1e-6, 1e-6)]
+    assert beside[0] > -1.0 > beside[1]
