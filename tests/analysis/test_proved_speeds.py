@@ -1,5 +1,8 @@
 """Proved speeds of bifurcations against closed forms, other methods, and motions on both sides."""
 
+import math
+from dataclasses import replace
+
 import mpmath
 import pytest
 
