@@ -68,6 +68,8 @@ def run_corner(options: argparse.Namespace) -> int:
     """`lcpstep corner`."""
     _check_out(options)
     proofs.check(options)
+    if options.chattering is not None and options.prove:
+        raise ValueError("--prove: impacts of chattering sequences cannot be proved; leave --chattering out")
     if options.chattering is not None:
         return _run_chattering(options)
 

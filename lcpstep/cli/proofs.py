@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from lcpstep.analysis.corners import CornerImpact
@@ -53,9 +54,10 @@ def show_branch(ways: Sequence[OrbitBranch], make: Callable[[float], Any]) -> in
                 continue
             beside = [k for k in (special.after, special.after + 1) if 0 <= k < len(way.orbits)]
             nearest = min(beside, key=lambda k: abs(way.points.p[k] - special.p))
-            located = 2.0 * math.pi / make(special.p).period
+            scene = make(special.p)
+            located = 2.0 * math.pi / scene.period
             try:
-                proof = prove_speed(way.orbits[nearest], special.kind)
+                proof = prove_speed(replace(way.orbits[nearest], scene=scene), special.kind)
                 if abs(proof.omega.lower - located) > SAME * located:
                     raise NotProved(f"what is proved near it lies at omega = {proof.omega}")
                 print(proof)

@@ -31,6 +31,24 @@ def test_orbit_says_why_it_cannot(capsys):
     assert "--prove" in err
 
 
+def test_chattering_sequences_are_not_proved(capsys):
+    status, _, err = run(capsys, "corner", "cam-follower", "--chattering", 115, 116, "--prove")
+    assert status == USAGE
+    assert "--prove" in err
+
+
+@pytest.mark.slow
+def test_a_flip_over_another_parameter_is_proved_at_its_speed(capsys, tmp_path):
+    status, out, _ = run(
+        capsys, "orbit", "impact-oscillator", "--set", "omega=2.65", "--transient", 300, "--parameter", "stop",
+        "--range", -0.05, 0.1, "--out", tmp_path, "--prove",
+    )  # fmt: skip
+    assert status == DONE
+    assert "flip          at stop = 0.0042177355" in out
+    assert "omega: [2.65000000" in out
+
+
+@pytest.mark.slow
 def test_orbit_proves_the_special_points_of_its_branch(capsys, tmp_path):
     status, out, _ = run(
         capsys, "orbit", "cam-follower", "--rpm", 700, "--transient", 200, "--range", 660, 760, "--out", tmp_path,

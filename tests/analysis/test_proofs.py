@@ -106,6 +106,7 @@ def test_more_bits_give_more_digits_and_fewer_give_the_same_orbit(cam_orbit):
     wide, narrow = prove(cam_orbit, bits=64), prove(cam_orbit, bits=256)
     assert ball(wide.impacts[0].time)[1] > 1e-22
     assert wide.impacts[0].time.lower <= ball(narrow.impacts[0].time)[0] <= wide.impacts[0].time.upper
+    assert ball(narrow.impacts[0].time)[1] < 1e-65
     assert wide.stability == narrow.stability == "stable"
 
 

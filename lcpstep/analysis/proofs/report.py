@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb
+from flint import arb, ctx
 
 from lcpstep.analysis.proofs.obstacles import above, below
 
-DIGITS = 30  # printed at most
+DIGITS, SPARE = 30, 8  # printed at most, unless the precision has more than these and some to spare
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Enclosure:
     @classmethod
     def of(cls, x: arb) -> Enclosure:
         """From a ball, rounded outwards."""
-        return cls(below(x), above(x), x.str(DIGITS))
+        return cls(below(x), above(x), x.str(max(DIGITS, ctx.dps - SPARE)))
 
     def __contains__(self, x: Any) -> bool:
         return bool(self.lower <= x <= self.upper)
