@@ -7,7 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from lagrangian import scenes
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian.profiles import rotating_cam
+from lagrangian.scenes.cam_follower import PROFILE
 from lagrangian.scenes.table import sine_table
 from lcpstep import EventDriven
 from lcpstep.analysis import prove
@@ -156,6 +158,55 @@ def test_an_orbit_of_two_periods_is_proved_and_one_that_repeats_earlier_is_not(c
     twice = periodic_orbit(cam_orbit.scene, cam_orbit.x[0], 2)
     with pytest.raises(NotProved, match="repeats after 1"):
         prove(twice)
+
+
+def test_the_orbit_of_eight_impacts_at_358_rpm_is_proved():
+    orbit = attracting(scenes.cam_follower(rpm=358.0), 3)
+    proof = prove(orbit)
+    assert (proof.name, proof.stability, len(proof.impacts)) == ("O(3, 8)", "stable", 8)
+    found = [float(ball(m)[0]) for m in proof.multipliers]
+    assert found == pytest.approx(np.abs(orbit.multipliers), rel=1e-6)
+
+
+def turning(omega, lead, turns=1, force=None):
+    """A follower on the cam, turning either way, in a period of some turns."""
+    one = 2.0 * math.pi / abs(omega)
+    corners = np.sort(((PROFILE.corners() - lead) / omega) % one)
+    return Scene(
+        LinearSystem(M=1.221, C=2.0, K=1430.8, frame=rotating_cam, force=force), q0=0.5, v0=0.0, t_span=(0.0, 1.0),
+        contacts=LinearContacts(1.0, restitution=0.8), p=PROFILE.pack(omega, lead), period=turns * one,
+        corners=np.concatenate([corners + k * one for k in range(turns)]), name="turning",
+    )  # fmt: skip
+
+
+def test_a_symmetric_cam_that_turns_back_gives_the_same_orbit_and_so_does_a_longer_period():
+    w = 24.0 * math.pi
+    proofs = [prove(attracting(turning(*case))) for case in ((w, 0.3), (-w, 0.3), (-w, -2.0), (w, 0.3, 2))]
+    assert [proof.name for proof in proofs] == ["O(1, 1)"] * 3 + ["O(1, 2)"]
+    speeds = [ball(impact.before)[0] for proof in proofs for impact in proof.impacts]
+    assert max(speeds) - min(speeds) < 1e-25
+
+
+def test_a_force_and_a_cam_of_two_frequencies_are_taken_together():
+    w = 24.0 * math.pi
+    force = Harmonic(constant=-3.0, cosine=5.0, sine=20.0, omega=2.0 * w)
+    orbit = attracting(turning(-w, 0.3, force=force))
+    proof = prove(orbit)
+    assert float(ball(proof.multipliers[0])[0]) == pytest.approx(abs(orbit.multipliers[0]), rel=1e-7)
+
+
+def test_a_frame_that_the_user_wrote_moves_as_the_obstacle_does():
+    orbit = on_table_orbit(sine)
+    scene = replace(
+        orbit.scene,
+        system=LinearSystem(M=1.0, force=-9.81, frame=sine),
+        contacts=LinearContacts(1.0, restitution=0.5),
+    )
+    A, w, _ = scene.p
+    half = math.pi  # of the table's turn, where the section is
+    start = orbit.x[0] - [A * math.sin(half), A * w * math.cos(half)]
+    relative = prove(periodic_orbit(scene, start, phase=0.5))
+    assert abs(ball(relative.impacts[0].before)[0] - ball(prove(orbit).impacts[0].before)[0]) < 1e-25
 
 
 def test_the_steady_motion_of_an_oscillator_that_strikes_nothing_is_proved():
