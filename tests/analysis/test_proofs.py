@@ -65,6 +65,20 @@ def test_a_ball_on_a_table_has_its_orbit_in_closed_form(A, w, r):
     assert holds(proof.period, 2 * mpmath.pi / mpmath.mpf(w))
 
 
+@pytest.mark.parametrize("beyond", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_the_neighbourhood_of_the_only_orbit_leaves_out_the_other_one_beyond_a_fold(beyond):
+    A, r, g = 0.01, 0.5, 9.81
+    w = math.sqrt(math.pi * g * (1.0 - r) / (A * (1.0 + r))) * (1.0 + beyond)
+    proof = prove(on_table_orbit(sine_table, (A, w, 0.0), r))
+    phase = math.acos(min(1.0, math.pi * g * (1.0 - r) / (A * w**2 * (1.0 + r))))
+    apart = (
+        2.0 * phase / w,
+        2.0 * A * math.sin(phase),
+    )  # the other strikes as long before the table's quickest
+    assert proof.unique.time < apart[0] or proof.unique.position < apart[1]
+    assert proof.unique.time > 1e-3 * apart[0]
+
+
 def oscillator_truth(orbit, zeta, w, a, stop, r):
     """Time and velocity of the impact of a damped oscillator that strikes once a period, by its closed form."""
     zeta, w, a, stop, r = map(mpmath.mpf, (zeta, w, a, stop, r))

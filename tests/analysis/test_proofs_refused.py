@@ -50,13 +50,29 @@ def tabulated(t, q, v, p, out):
     out[0, 2] = -p[0] * p[1] ** 2 * math.sin(p[1] * t)
 
 
-@pytest.mark.parametrize("motion", [branching, sine_if, tabulated])
-def test_a_callback_that_cannot_be_enclosed_is_named_with_its_line(motion):
+@pytest.mark.parametrize(
+    ("motion", "said", "after"),
+    [(branching, "must be real number", 1), (sine_if, "a branch", 2), (tabulated, "interp is none of", 1)],
+)
+def test_a_callback_that_cannot_be_enclosed_is_named_with_its_line(motion, said, after):
     orbit = on_table_orbit(sine)
-    with pytest.raises(
-        NotProved, match=rf"contacts.motion: '{motion.__name__}' .*test_proofs_refused.py, line \d+"
-    ):
+    with pytest.raises(NotProved, match=rf"contacts.motion: '{motion.__name__}' .*{said}") as refused:
         prove(replace(orbit, scene=on_table(motion)))
+    first = motion.__code__.co_firstlineno + (motion.__doc__ is not None)
+    assert f"test_proofs_refused.py, line {first + after})" in str(refused.value)
+
+
+def looped(t, q, v, p, out):
+    out[0, 0] = out[0, 1] = out[0, 2] = 0.0
+    for k in range(1, 3):
+        x = k * p[1] * t
+        out[0, 0] += p[0] / (10.0 * k) ** (k - 1) * math.sin(x)
+        out[0, 1] += p[0] / (10.0 * k) ** (k - 1) * k * p[1] * math.cos(x)
+        out[0, 2] -= p[0] / (10.0 * k) ** (k - 1) * (k * p[1]) ** 2 * math.sin(x)
+
+
+def test_a_loop_is_no_branch():
+    assert prove(on_table_orbit(looped)).stability == "stable"
 
 
 def pushed(t, q, v, p, out):

@@ -1,12 +1,14 @@
 """Obstacles that a user wrote as a function: the same Python function, run on power series in balls.
 
 It may do arithmetic and call the functions of `math` (or numpy's of the same name) on the time and the parameters. A
-branch, a table, a function of the state, or one that calls others, is refused.
+branch, a table, a function of the state, or one that calls others, is refused. What it computes of numbers alone is
+taken as Python rounds it.
 """
 
 from __future__ import annotations
 
 import math
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import FunctionType, ModuleType
@@ -133,11 +135,16 @@ class Written:
             self.function(Series(time), None, None, self.p, out)
             return _raw(out[self.index, 0]) + 0 * time
         except Exception as error:  # the user's code may raise anything
-            code = self.function.__code__
             raise NotProved(
-                f"{self.name}: {self.function.__qualname__!r} ({code.co_filename}, line {code.co_firstlineno}) "
-                f"cannot be enclosed: {checks.said(error)}"
+                f"{self.name}: {self.function.__qualname__!r} ({self._place(error)}) cannot be enclosed: "
+                f"{checks.said(error)}"
             ) from error
+
+    def _place(self, error: BaseException) -> str:
+        """File and line of the callback that an error came from; its first line where it came from what it left."""
+        code = self.function.__code__
+        lines = [at for frame, at in traceback.walk_tb(error.__traceback__) if frame.f_code is code]
+        return f"{code.co_filename}, line {lines[-1] if lines else code.co_firstlineno}"
 
 
 def on_series(name: str, f: Any) -> FunctionType:
@@ -146,9 +153,7 @@ def on_series(name: str, f: Any) -> FunctionType:
     if not isinstance(plain, FunctionType):
         raise NotProved(f"{name}: {f!r} is no Python function, and cannot be enclosed")
     names = {key: _replaced(x) for key, x in plain.__globals__.items() if key in plain.__code__.co_names}
-    same = FunctionType(
-        plain.__code__, names | {"__builtins__": {}}, plain.__name__, plain.__defaults__, plain.__closure__
-    )
+    same = FunctionType(plain.__code__, names, plain.__name__, plain.__defaults__, plain.__closure__)
     same.__qualname__ = plain.__qualname__
     return same
 
