@@ -22,7 +22,7 @@ TWO_PI = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Stretch:
-    """Phases between which an obstacle, or all of a scene, is given by one formula; None: without end."""
+    """Phases between which an obstacle is given by one formula; None: without end."""
 
     start: arb | None
     end: arb | None
