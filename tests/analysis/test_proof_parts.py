@@ -65,6 +65,13 @@ def test_a_derivative_that_may_be_zero_is_kept():
     assert found[0].c[1].contains(arb(1).sin())
 
 
+def test_keys_tell_jets_apart_to_the_last_bit():
+    one, other = Jet([arb(1), arb(0, 1e-30)]), Jet([arb(1), arb(0, 2e-30)])
+    assert one.key() == Jet([arb(1), arb(0, 1e-30)]).key()
+    assert one.key() != other.key()
+    assert Jet([arb("nan")]).key() == Jet([arb("inf")]).key()
+
+
 def roots(c):
     return lambda x: [x[0] * x[0] - c]
 

@@ -13,7 +13,7 @@ taken as the scene has them, but for frequencies: each is a whole multiple of om
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -46,6 +46,7 @@ class Formulas:
     """A scene as formulas; see the head of the file.
 
     frame : (n,) c, of which the scene's q is relative;  written : whether an obstacle is a user's function
+    remembered : matrix exponentials that have been computed, see `lcpstep.analysis.proofs.shooting.propagator`
     """
 
     n: int
@@ -57,6 +58,7 @@ class Formulas:
     contacts: tuple[Contact, ...]
     frame: tuple[Obstacle, ...]
     written: bool
+    remembered: dict[Any, list[arb_mat]] = field(default_factory=dict)
 
 
 def formulas(scene: Scene | HybridScene) -> Formulas:

@@ -60,6 +60,10 @@ class Jet:
     def __rsub__(self, other: Any) -> Jet:
         return self.like(other) - self
 
+    def key(self) -> tuple[Any, ...]:
+        """The parts to the last bit, as a key of a dictionary; those without bounds are all alike."""
+        return tuple(x.mid().man_exp() + x.rad().man_exp() if x.is_finite() else None for x in self.c)
+
     def inverse(self) -> Jet:
         """1/x."""
         return self.through((1 / self.series()).coeffs())

@@ -13,11 +13,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import arb
+from flint import arb, arb_mat
 
 from lcpstep.analysis.proofs.formulas import Contact, Formulas
 from lcpstep.analysis.proofs.jets import Jet, applied, derivative, exponential
 from lcpstep.analysis.proofs.obstacles import Stretch
+
+REMEMBERED = 128  # matrix exponentials
 
 
 @dataclass(frozen=True)
@@ -51,8 +53,18 @@ def flown(f: Formulas, slowness: Jet, node: Node, theta: Jet) -> list[Jet]:
     """The state (y, w) of the free flight from a node at another phase; slowness: 1/omega."""
     start, x = node
     span = theta - start
-    terms = [(span, f.A0), (span * slowness, f.A1), (span * slowness * slowness, f.A2)]
-    return applied(exponential(terms), [*x, *forcing(f, start)])[: 2 * f.n]
+    return applied(propagator(f, span, slowness), [*x, *forcing(f, start)])[: 2 * f.n]
+
+
+def propagator(f: Formulas, span: Jet, slowness: Jet) -> list[arb_mat]:
+    """The parts of exp(span A); remembered, for derivatives by states ask for the same one again and again."""
+    key = (*span.key(), *slowness.key())
+    if key not in f.remembered:
+        if len(f.remembered) >= REMEMBERED:
+            f.remembered.clear()
+        terms = [(span, f.A0), (span * slowness, f.A1), (span * slowness * slowness, f.A2)]
+        f.remembered[key] = exponential(terms)
+    return f.remembered[key]
 
 
 def rebound(f: Formulas, struck: Struck, theta: Jet, x: Sequence[Jet]) -> tuple[Jet, Jet, list[Jet]]:
