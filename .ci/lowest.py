@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 import start  # noqa: E402  (the file beside the project, which knows how to find a pip)
 
-EXTRAS = ("test", "solvers", "symbolic", "cluster")  # all but mpi, which needs an MPI library
+EXTRAS = ("test", "solvers", "symbolic", "cluster", "proofs")  # all but mpi, which needs an MPI library
 
 
 def lowest() -> list[str]:

@@ -33,8 +33,8 @@ class PeriodicOrbit:
     ----------
     scene, method, phase : the question; the section is at t = phase x period
     x : (n, 2 n_q)   states (q, v), or (n, n_x), on the section
-    time, before, after : (m,)   the impacts: time from the section's t on [s], gap velocities [m/s]; of a system with
-        modes the switches, with the rates of their guards
+    time, before, after : (m,)   the impacts: t within the n periods from the section's t on [s], gap velocities
+        [m/s]; of a system with modes the switches, with the rates of their guards
     sticks : whether the contact closes for good on the way (chattering, or an impact without rebound); of a system
         with modes, whether it slides
     multipliers : (d,)   largest modulus first; one is zero where a system with modes slides

@@ -18,7 +18,8 @@ from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.corner_branches import FixedBranch, orbit_branches, uncertainty
 from lcpstep.analysis.corner_estimate import agreement, estimate
 from lcpstep.analysis.corners import CornerImpact, corner_impact, local_map
-from lcpstep.cli.common import DONE, save_figure, save_text, scene_arguments, scene_with_contacts
+from lcpstep.cli import proofs
+from lcpstep.cli.common import DONE, FAILED, save_figure, save_text, scene_arguments, scene_with_contacts
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
 
@@ -60,12 +61,16 @@ def add(commands: Any) -> None:
     p.add_argument("--overwrite", action="store_true", help="write over files that exist")
     p.add_argument("--no-picture", action="store_true", help="leave the picture out")
     p.add_argument("--json", action="store_true", help="print JSON")
+    proofs.argument(p, "the corner impact and the speed of the forcing at which it is")
     p.set_defaults(run=run_corner)
 
 
 def run_corner(options: argparse.Namespace) -> int:
     """`lcpstep corner`."""
     _check_out(options)
+    proofs.check(options)
+    if options.chattering is not None and options.prove:
+        raise ValueError("--prove: impacts of chattering sequences cannot be proved; leave --chattering out")
     if options.chattering is not None:
         return _run_chattering(options)
 
@@ -83,6 +88,8 @@ def run_corner(options: argparse.Namespace) -> int:
     found = classify(chain)
     result = _result(options, orbit, chain, agreement(fitted.map, chain), found)
     result["map_error"] = uncertainty(orbit, chain)
+    if options.prove:
+        result["proof"] = proofs.corner_data(orbit)
     if options.out is not None:
         values, local, full = _diagrams(options, orbit, chain)
         branches = orbit_branches(orbit, chain, values)
@@ -94,7 +101,7 @@ def run_corner(options: argparse.Namespace) -> int:
         if not options.no_picture:
             _draw(options, orbit, values, local, full, branches, found.words)
     print(json.dumps(result, indent=2) if options.json else _text(result))
-    return DONE
+    return DONE if not options.prove or result["proof"]["proved"] else FAILED
 
 
 def _settled(scene: Scene, x: Array, phase: float) -> Array:
@@ -165,7 +172,7 @@ def _text(r: dict[str, Any]) -> str:
         f"verdict: {r['verdict']}  (real multipliers above 1: {r['real_multipliers_above_1']}, "
         f"below -1: {r['real_multipliers_below_-1']})",
     ]
-    return "\n".join(lines)
+    return "\n".join(lines + ([r["proof"]["text"]] if "proof" in r else []))
 
 
 def _diagrams(

@@ -23,7 +23,7 @@ from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.cli import interrupt
+from lcpstep.cli import interrupt, proofs
 from lcpstep.cli.common import DONE, INTERRUPTED, save_figure
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
@@ -57,11 +57,13 @@ def add(commands: Any) -> None:
     p.add_argument(
         "--draw", action="store_true", help="draw the orbit over its period and in the state plane: orbit.png"
     )
+    proofs.argument(p, "the orbit, and the corners, flips and folds of its branch")
     p.set_defaults(run=stopped(run_orbit))
 
 
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
+    proofs.check(options)
     scene, method = study_scene(options), method_of(options)
     known = SCENES[options.scene].parameters
     if options.range is not None and options.parameter not in known:
@@ -89,14 +91,15 @@ def run_orbit(options: argparse.Namespace) -> int:
         title = title_of(scene, f"{orbit.name}, {kind}", method)
         save_figure(pictures.orbit(orbit, title), drawn)
         print(f"wrote {drawn}")
-    return DONE if names is None else _run_branch(options, orbit, names)
+    status = proofs.show_orbit(orbit) if options.prove else DONE
+    return status if names is None else max(status, _run_branch(options, orbit, names))
 
 
 def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
     """The orbit of a scene with modes on the section of entries into one of them."""
-    if options.range is not None or options.draw:
+    if options.range is not None or options.draw or options.prove:
         raise ValueError(
-            "--mode: prints the orbit on the entries into a mode; --range and --draw go without it"
+            "--mode: prints the orbit on the entries into a mode; --range and --draw go without it, and --prove too"
         )
     P = SwitchMap(scene, method, options.mode)
     x = P.entry() if options.guess is None else options.guess
@@ -140,7 +143,9 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
             shown = ", ".join(f"{m:.6g}" for m in s.multipliers)
             print(f"{s.kind:13} at {parameter} = {s.p:.10g}   multipliers {shown}")
         print(f"ended: {way.points.ended}")
-    return INTERRUPTED if interrupted else DONE
+    if interrupted:
+        return INTERRUPTED
+    return proofs.show_branch(ways, lambda p: make(**{parameter: p})) if options.prove else DONE
 
 
 @contextmanager
