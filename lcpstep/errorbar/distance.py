@@ -24,12 +24,12 @@ from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 LEAST, MOST = 199, 997  # instants looked at
-EACH = 8  # of them in a step
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
 STILL = 1e4  # times rounding: a motion that is no larger stands still
 SLOW = 1e-6  # the velocity with which forces and masses are asked for [m/s]
 ROUNDING = 4.0  # last digits of what a number is made of
+WITHIN = np.array([0.21, 0.79])  # where in a step it is looked at, where there are few
 NODES = np.array(
     [0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026]
 )  # Gauss, 4 points
@@ -48,17 +48,16 @@ class Distance:
 
 
 def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
-    """Times at which runs are compared: between states, at events and between them; or at states that were kept.
-
-    Their number is prime, so that they fall anywhere within equal steps.
-    """
-    wanted = np.linspace(float(run.t[0]), end, LEAST if EACH * len(run.t) < LEAST else MOST)
+    """Times at which runs are compared: within steps, at events and between them; or at states that were kept."""
+    wanted = np.linspace(float(run.t[0]), end, LEAST if len(run.t) < LEAST else MOST)
     if not every:
         kept = run.t[run.t <= end]
         return kept if len(kept) <= MOST else kept[np.unique(np.searchsorted(kept, wanted, side="right") - 1)]
     events = event_times(run, other)
     events = events[:: 1 + len(events) // MOST]
-    t = np.unique(np.concatenate([wanted, events, 0.5 * (events[1:] + events[:-1])]))
+    some = run.t[:: 1 + len(run.t) // MOST]
+    steps = (some[:-1, None] + np.diff(some)[:, None] * WITHIN).ravel()
+    t = np.unique(np.concatenate([wanted, events, 0.5 * (events[1:] + events[:-1]), steps]))
     return t[(t >= run.t[0]) & (t <= end)]
 
 
@@ -105,8 +104,7 @@ def distance(
     factor: float,
 ) -> Distance:  # fmt: skip
     """Distances of two runs times a factor; of velocities without the time `around` each pair of impacts [s]."""
-    windows = np.concatenate([np.column_stack([pairs.start, pairs.end]), pairs.tails])
-    start, end = merged(windows[:, 0] - around, windows[:, 1] + around, t)
+    start, end = merged(pairs.windows[:, 0] - around, pairs.windows[:, 1] + around, t)
     between = np.searchsorted(start, t, side="right") > np.searchsorted(end, t, side="left")
     start, end = split(start, end, event_times(*runs))
     nodes = (start[:, None] + (end - start)[:, None] * NODES).ravel() if every else t[:0]

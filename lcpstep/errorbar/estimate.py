@@ -90,7 +90,8 @@ def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf)
     factor = companion.factor or 1.0
     apart = distance(m, (run, other), every, t, logs[0], around, factor)
     texts = tuple(in_words(c.method) for c, _ in found)
-    return _ended(run, t, apart, factor, logs[0], reason, texts)
+    horizon = _lost(t, apart) if math.isinf(limit) else math.inf
+    return _ended(run, t, apart, factor, logs[0], (horizon, reason), texts)
 
 
 def _matched(m: Model, run: Trajectory, other: Trajectory, every: bool, until: float) -> Partners:
@@ -108,15 +109,20 @@ def resolved(run: Trajectory) -> float:
     return 2.0 * min(run.method.h, span / max(run.counts.steps, 1))
 
 
+def _lost(t: Array, apart: Distance) -> float:
+    """Time from which on the error says only how large the motion is."""
+    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * apart.size)
+    return float(t[lost[0]]) if len(lost) else math.inf
+
+
 def _ended(
-    run: Trajectory, t: Array, apart: Distance, factor: float, seen: Partners, reason: str, texts: tuple[str, ...]
+    run: Trajectory, t: Array, apart: Distance, factor: float, seen: Partners, end: tuple[float, str],
+    texts: tuple[str, ...],
 ) -> ErrorBar:  # fmt: skip
     """The bar up to where the motion can be predicted."""
-    horizon, n = math.inf, len(t)
-    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * apart.size)
-    if len(lost):
-        n = max(int(lost[0]), 1)
-        horizon = float(t[lost[0]])
+    horizon, reason = end
+    n = max(int(np.searchsorted(t, horizon)), 1)
+    if n < len(t):
         reason = "from there on its error is more than a quarter of the range of the motion"
     until = float(t[n - 1])
     times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))

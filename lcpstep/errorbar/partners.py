@@ -61,22 +61,22 @@ class Partners:
     Attributes
     ----------
     start, end : (k,)   the time from the first to the last impact of each pair [s]
+    windows : (l, 2)   times in which one run has struck and the other has not, with as much before and after [s]
     time, impulse : (k,)   differences [s], [N s]
     weak : (k,)   whether the jump is small beside the largest
     rows, pair : places of impacts in the first log, and the pair that each belongs to
-    tails : (m, 2)   times from the last partners in a chattering sequence to its end, summed up or followed [s]
     differs : time of the first different event, infinite where there is none [s]
     reason : what differs, in words
     """
 
     start: Array
     end: Array
+    windows: Array
     time: Array
     impulse: Array
     weak: NDArray[np.bool_]
     rows: Places
     pair: Places
-    tails: Array
     differs: float
     reason: str
 
@@ -133,10 +133,10 @@ def partners(
     light, rows, pair = (np.concatenate([*x, np.zeros(0)]) for x in columns[4:])
     flags, places_of, pair_of = light.astype(bool), rows.astype(np.intp), pair.astype(np.intp)
     first, harmless = _first(suspects, alike)
-    return Partners(
-        start, stop, time, impulse, flags, places_of, pair_of, np.concatenate([*tails, harmless]), first.time,
-        first.reason,
-    )  # fmt: skip
+    near = time <= MARGIN * np.max(time[~flags], initial=resolution)
+    windows = np.column_stack([start - time, stop + time])[~flags | near]
+    windows = np.concatenate([windows, *tails, harmless])
+    return Partners(start, stop, windows, time, impulse, flags, places_of, pair_of, first.time, first.reason)
 
 
 def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
