@@ -4,14 +4,14 @@
 
 for positions, velocities and energy. Between an impact and its partner in the other run one of the two velocities has
 jumped and the other not: there the pointwise distance of velocities and energies is as large as the jump however
-near the two motions are. Their `largest` leaves these times out; the integral takes them by quadrature.
+near the two motions are. Their `largest` leaves these times out. The integrals take all: by Gauss' rule with two
+points between breaks, of which every event of either run is one.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +23,13 @@ from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 199, 997  # instants looked at
+LEAST, MOST = 199, 599  # breaks besides the events
+GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
 STILL = 1e4  # times rounding: a motion that is no larger stands still
 SLOW = 1e-6  # the velocity with which forces and masses are asked for [m/s]
 ROUNDING = 4.0  # last digits of what a number is made of
-WITHIN = np.array([0.21, 0.79])  # where in a step it is looked at, where there are few
-NODES = np.array(
-    [0.069431844202974, 0.330009478207572, 0.669990521792428, 0.930568155797026]
-)  # Gauss, 4 points
-WEIGHTS = np.array([0.173927422568727, 0.326072577431273, 0.326072577431273, 0.173927422568727])
 EPS = float(np.finfo(float).eps)
 
 
@@ -48,16 +44,15 @@ class Distance:
 
 
 def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
-    """Times at which runs are compared: within steps, at events and between them; or at states that were kept."""
-    wanted = np.linspace(float(run.t[0]), end, LEAST if len(run.t) < LEAST else MOST)
+    """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone."""
+    few = len(run.t) <= MOST
+    wanted = np.linspace(float(run.t[0]), end, LEAST if few else MOST)
     if not every:
         kept = run.t[run.t <= end]
         return kept if len(kept) <= MOST else kept[np.unique(np.searchsorted(kept, wanted, side="right") - 1)]
     events = event_times(run, other)
-    events = events[:: 1 + len(events) // MOST]
-    some = run.t[:: 1 + len(run.t) // MOST]
-    steps = (some[:-1, None] + np.diff(some)[:, None] * WITHIN).ravel()
-    t = np.unique(np.concatenate([wanted, events, 0.5 * (events[1:] + events[:-1]), steps]))
+    middles = 0.5 * (events[1:] + events[:-1])[:: 1 + len(events) // MOST]
+    t = np.unique(np.concatenate([wanted, events, middles, run.t if few else wanted]))
     return t[(t >= run.t[0]) & (t <= end)]
 
 
@@ -104,82 +99,48 @@ def distance(
     factor: float,
 ) -> Distance:  # fmt: skip
     """Distances of two runs times a factor; of velocities without the time `around` each pair of impacts [s]."""
-    start, end = merged(pairs.windows[:, 0] - around, pairs.windows[:, 1] + around, t)
-    between = np.searchsorted(start, t, side="right") > np.searchsorted(end, t, side="left")
-    start, end = split(start, end, event_times(*runs))
-    nodes = (start[:, None] + (end - start)[:, None] * NODES).ravel() if every else t[:0]
-    times, n = np.concatenate([t, nodes]), len(t)
-    states_of = [at(x, times) for x in runs]
-    E = [energy(m, times, *x) for x in states_of]
-    q, v = states_of[0][0][:n], states_of[0][1][:n]
-    far, fast = np.max(np.abs(q), axis=0), np.max(np.abs(v), axis=0)
-    rounding = ROUNDING * EPS * np.array([*far, *fast, np.max(np.abs(E[0]))])
-    rounding[: len(far)] += ROUNDING * EPS * np.max(np.abs(t)) * fast
-    apart = factor * np.abs(np.column_stack([*(x - y for x, y in zip(*states_of, strict=True)), E[0] - E[1]]))
-    k, found = len(far), []
-    for columns, unit in ((slice(0, k), "m"), (slice(k, 2 * k), "m/s"), (slice(2 * k, None), "J")):
-        x, floor, continuous = apart[:, columns], rounding[columns], unit == "m"
-        if continuous:
-            largest, integral = (
-                np.maximum.accumulate(x[:n]),
-                _integral(t, x[:n], between & False, t[:0], t[:0]),
-            )
-        else:
-            largest = np.maximum.accumulate(np.where(between[:, None], 0.0, x[:n]))
-            integral = _integral(t, x[:n], between, start, end) + _within(t, start, end, x[n:], every)
-        found.append(Bar(largest + floor, integral + floor * (t - t[0])[:, None], unit))
-    position, velocity, power = found
-    size = 0.5 * float(np.max(np.ptp(q, axis=0), initial=0.0))
-    still = STILL * float(np.max(rounding[:k], initial=0.0)) + AT_REST * fall(m, runs[0]) * float(
-        t[-1] - t[0]
+    n, n_q = len(t), runs[0].scene.n_q
+    times = np.concatenate([t, (t[:-1, None] + np.diff(t)[:, None] * GAUSS).ravel() if every else t[:0]])
+    one, other = (at(x, times) for x in runs)
+    energies = [energy(m, times, *x) for x in (one, other)]
+    apart = factor * np.abs(
+        np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]])
     )
-    return Distance(position, velocity, power, max(size, still))
+    far, fast = (np.max(np.abs(x), axis=0) for x in one)
+    floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
+    struck = _between(pairs.windows, around, times)[:, None]
+    largest = _largest(np.where(struck & (np.arange(2 * n_q + 1) >= n_q), 0.0, apart), n) + floor
+    integral = _integral(t, apart) + floor * (t - t[0])[:, None]
+    if not every and len(pairs.windows):
+        integral[:, n_q:] = math.nan  # where impacts fall between kept states
+    columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
+    position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
+    length = AT_REST * fall(m, runs[0]) * float(t[-1] - t[0]) + STILL * float(
+        np.max(floor[:n_q], initial=0.0)
+    )
+    size = 0.5 * float(np.max(np.ptp(one[0][:n], axis=0), initial=0.0))
+    return Distance(position, velocity, power, max(size, length))
 
 
-def _integral(t: Array, x: Array, left_out: Any, start: Array, end: Array) -> Array:
-    """Up to each time, of values x (m, k) without those left out, over the time outside of intervals."""
-    seen = np.flatnonzero(~left_out)
-    if len(seen) == 0:
-        return np.zeros_like(x)
-    smooth = np.column_stack([np.interp(t, t[seen], column[seen]) for column in x.T])
-    inside = np.interp(t, *_edges(start, end, end - start)) if len(start) else np.zeros(len(t))
-    steps = 0.5 * np.diff(t - inside)[:, None] * (smooth[1:] + smooth[:-1])
-    return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(steps, axis=0)])
+def _largest(x: Array, n: int) -> Array:
+    """Largest values until each of n times, of those at the times and at the nodes between them."""
+    peaks = x[:n].copy()
+    if len(x) > n:
+        peaks[1:] = np.maximum(peaks[1:], np.max(x[n:].reshape(n - 1, len(GAUSS), -1), axis=1))
+    return np.asarray(np.maximum.accumulate(peaks))
 
 
-def _edges(start: Array, end: Array, each: Array) -> tuple[Array, Array]:
-    """Ends of intervals, and what has been gathered up to each if an interval adds `each`."""
-    after = np.repeat(np.cumsum(each), 2)
-    after[0::2] -= each
-    return np.column_stack([start, end]).ravel(), after
+def _integral(t: Array, x: Array) -> Array:
+    """Integral up to each time, by the nodes between times, or by the times where there are none."""
+    n = len(t)
+    means = 0.5 * (x[1:n] + x[: n - 1]) if len(x) == n else x[n:].reshape(n - 1, len(GAUSS), -1).mean(axis=1)
+    return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
 
 
-def _within(t: Array, start: Array, end: Array, x: Array, every: bool) -> Array:
-    """Up to each time, what intervals add whose values at Gauss' nodes are x; not known where there are none."""
-    if len(start) == 0:
-        return np.zeros((len(t), 1))
-    if not every:
-        return np.full((len(t), 1), np.nan)
-    each = (end - start)[:, None] * np.einsum("wnk,n->wk", x.reshape(len(start), len(NODES), -1), WEIGHTS)
-    return np.column_stack([np.interp(t, *_edges(start, end, y)) for y in each.T])
-
-
-def merged(start: Array, end: Array, t: Array) -> tuple[Array, Array]:
-    """Intervals in order, those that meet as one, within the times t."""
-    if len(start) == 0:
-        return start, end
-    order = np.argsort(start)
-    start, end = np.clip(start[order], t[0], t[-1]), np.clip(np.maximum.accumulate(end[order]), t[0], t[-1])
-    new = np.concatenate([[True], start[1:] > end[:-1]])
-    last = np.concatenate([np.flatnonzero(new)[1:] - 1, [len(start) - 1]])
-    return start[new], end[last]
-
-
-def split(start: Array, end: Array, at: Array) -> tuple[Array, Array]:
-    """Intervals that do not overlap, in order, cut in pieces at the times that lie within them."""
-    place = np.searchsorted(start, at, side="right") - 1
-    cuts = at[(place >= 0) & (at > start[place]) & (at < end[place])] if len(start) else at[:0]
-    return np.sort(np.concatenate([start, cuts])), np.sort(np.concatenate([end, cuts]))
+def _between(windows: Array, around: float, t: Array) -> NDArray[np.bool_]:
+    """Whether times lie in intervals, or that near to them."""
+    start, end = np.sort(windows[:, 0] - around), np.sort(windows[:, 1] + around)
+    return np.asarray(np.searchsorted(start, t, side="right") > np.searchsorted(end, t, side="left"))
 
 
 def energy(m: Model, t: Array, q: Array, v: Array) -> Array:

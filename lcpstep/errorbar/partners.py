@@ -24,6 +24,7 @@ Alike = Callable[[Array, Array], Array]
 WEAK = 0.02  # of the largest jump: the error of the motion shows what a weaker impact without partner does
 ALIKE = 0.5  # of the larger jump, by which those of partners may differ
 NEAR = 0.5  # of the time to the next impact of the contact
+SLIGHT = 1e-3  # of the time over which impacts fall, that those of a weak pair may be apart to be left out
 MARGIN = 4.0  # largest differences of partners' times, by which an impact may fall beyond the end of a run
 
 
@@ -133,7 +134,8 @@ def partners(
     light, rows, pair = (np.concatenate([*x, np.zeros(0)]) for x in columns[4:])
     flags, places_of, pair_of = light.astype(bool), rows.astype(np.intp), pair.astype(np.intp)
     first, harmless = _first(suspects, alike)
-    near = time <= MARGIN * np.max(time[~flags], initial=resolution)
+    usual = MARGIN * np.max(time[~flags], initial=resolution)
+    near = time <= max(usual, SLIGHT * float(np.ptp(start)) if len(start) else 0.0)
     windows = np.column_stack([start - time, stop + time])[~flags | near]
     windows = np.concatenate([windows, *tails, harmless])
     return Partners(start, stop, windows, time, impulse, flags, places_of, pair_of, first.time, first.reason)

@@ -107,11 +107,7 @@ def band(ax: Any, run: Trajectory, which: int, bar: Any) -> None:
     """Positions (0) or velocities (1) of a run with an error bar, as far as it holds, give or take the error."""
     known = run.error.t
     t = np.unique(np.concatenate([known, run.t[run.t <= known[-1]]]))
-    try:
-        x = run.at(t)[which]
-    except ValueError:  # states between kept ones are not known
-        t = known
-        x = run.at(t)[which]
+    x = run.at(t)[which]
     for k, (values, errors) in enumerate(zip(x.T, bar.largest.T, strict=True)):
         e = np.interp(t, known, errors)
         ax.fill_between(t, values - e, values + e, color=f"C{k % 10}", alpha=BAND, lw=0.0)

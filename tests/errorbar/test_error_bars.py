@@ -4,12 +4,14 @@ import json
 import math
 import pickle
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate, study
+from lcpstep.analysis.reference import find_reference
 from lcpstep.cli import main
 from lcpstep.errorbar import companions, estimate
 from lcpstep.errors import LcpStepError
@@ -238,3 +240,59 @@ def test_the_command_prints_it(capsys, tmp_path):
     assert main([*arguments, "--picture", str(picture)]) == 0
     assert json.loads(capsys.readouterr().out)["error"]["position"]["unit"] == "m"
     assert picture.stat().st_size > 0
+
+
+def test_a_comparison_prints_the_bars_of_both_runs(capsys):
+    assert (
+        main(["compare", "impact-oscillator", "--t-end", "5", "--h", "1e-2", "--no-pictures", "--error"]) == 0
+    )
+    out = capsys.readouterr().out
+    assert "error bar, step: position" in out
+    assert "error bar, event: position" in out
+
+
+def test_a_study_compares_errors_with_bars():
+    found = study(
+        scenes.impact_oscillator(t_end=10.0), [Moreau(), Located()], h=[1e-2, 1e-3], repeats=1, spread=[1.0]
+    )
+    for level in found.levels:
+        assert 0.5 < level.bars["sup_position"] < 2.0
+        assert 0.5 < level.bars["l1_velocity"] < 2.0
+    assert "error over error bar of Moreau: sup_position" in str(found)
+
+
+def shaken(t, q, v, p, out):
+    out[0] = 3.0 * math.cos(2.0 * t) - q[0] - 0.2 * q[0] ** 3
+
+
+def test_references_are_checked_by_a_method_that_shares_nothing_with_theirs():
+    linear = scenes.impact_oscillator(t_end=5.0)
+    curved = Scene(
+        system=System(1, [[1.0]], shaken), contacts=LinearContacts(1.0, 0.5, 0.8), q0=0.0, v0=0.0, t_span=(0.0, 5.0)
+    )  # fmt: skip
+    bound = scenes.slider_crank(t_end=0.02)
+    for scene, given, checker in (
+        (replace(linear, exact=None), None, "Located(order='exact')"),
+        (linear, Moreau(1e-3), "EventDriven"),
+        (curved, None, "Located(order=4)"),
+        (bound, Moreau(1e-5), "Moreau"),  # friction, which no other method takes
+    ):
+        found = find_reference(scene, given)
+        assert f"checked by {checker}" in found.text
+        unsure = found.uncertainty(["sup_position"])["sup_position"]
+        assert unsure < (1e-9 if given is None else 1e-1)
+    assert any("by itself alone" in note for note in found.notes)
+
+
+def test_an_error_that_does_not_depend_on_the_tolerance_is_seen_by_the_other_method(monkeypatch):
+    """A force that the event-driven method alone is given wrongly, by 1e-3 of the spring."""
+    right = EventDriven.run
+
+    def wrong(self, scene, kept, progress):
+        softer = replace(scene, system=LinearSystem(1.0, K=0.999))
+        return replace(right(self, softer, kept, progress), scene=scene)
+
+    monkeypatch.setattr(EventDriven, "run", wrong)
+    scene = Scene(system=LinearSystem(1.0, K=1.0), q0=1.0, v0=0.0, t_span=(0.0, 10.0))
+    assert find_reference(scene, None).uncertainty(["sup_position"])["sup_position"] > 1e-3
+    assert simulate(scene, EventDriven(), error=True).error.position.sup > 1e-3
