@@ -12,23 +12,29 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from benchmarks.error_bars.report import Judged, Outcome, tables
 from benchmarks.error_bars.truth import (
+    FRICTION,
     MEASURES,
     METHODS,
     Truth,
     errors,
     method_of,
+    rubbing,
     sizes,
+    step,
     told,
     truth,
+    truth_of_friction,
     within,
 )
 from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
+from lcpstep import Moreau
 from lcpstep.simulate import Method
 
 LONG_ENOUGH, SHORT_ENOUGH = 30.0, 3000.0  # steps in a span
@@ -72,31 +78,35 @@ def judged(seed: int) -> Iterator[Outcome]:
     while True:
         index += 1
         d = draw(seed, index)
-        if not LONG_ENOUGH * d.h < d.length < SHORT_ENOUGH * d.h:
-            continue
-        with np.errstate(all="ignore"):
-            true = truth(d)
-            if true is None:
-                continue
-            rng = np.random.default_rng([seed, index, 1])
-            for name in METHODS:
-                outcome = one(index, d, name, method_of(name, d, rng), true)
-                if outcome is not None:
-                    yield outcome
+        if LONG_ENOUGH * d.h < d.length < SHORT_ENOUGH * d.h:
+            with np.errstate(all="ignore"):
+                yield from on_one(d, index, np.random.default_rng([seed, index, 1]))
 
 
-def one(index: int, d: Description, name: str, method: Method, true: Truth) -> Outcome | None:
+def on_one(d: Description, index: int, rng: Any) -> Iterator[Outcome]:
+    """Runs on a scene, and one with friction added."""
+    true, scene = truth(d), d.scene()
+    found = []
+    for name in METHODS if true else ():
+        found.append(one(Outcome(index, d.family, name), scene, method_of(name, d, rng), true))
+    scene, h = rubbing(d, rng), step(d, rng)
+    if scene is not None and (true := truth_of_friction(scene, h)) is not None:
+        found.append(one(Outcome(index, d.family, FRICTION), scene, Moreau(h), true))
+    yield from (x for x in found if x is not None)
+
+
+def one(start: Outcome, scene: Any, method: Method, true: Truth) -> Outcome | None:
     """One run and its bar; None where the method does not treat the scene."""
     begin = time.process_time()
-    alone = within(d.scene(), method)
+    alone = within(scene, method)
     between = time.process_time()
-    run = within(d.scene(), method, error=True)
+    run = within(scene, method, error=True)
     if run is None or alone is None:
         return None
-    cost = (time.process_time() - between) / (between - begin) - 1.0
-    share = (run.error.until - d.t_span[0]) / d.length
-    start = Outcome(index, d.family, name, share, run.error.reason, cost, between - begin)
-    if share < AT_ONCE:
+    start.cost = (time.process_time() - between) / (between - begin) - 1.0
+    start.until = (run.error.until - scene.t_span[0]) / (scene.t_span[1] - scene.t_span[0])
+    start.reason, start.seconds = run.error.reason, between - begin
+    if start.until < AT_ONCE:
         return start
     bars, found = told(run.error), errors(run, true.of(run), run.error.until)
     unsure = errors(true.by_steps, true.by_events, run.error.until)
@@ -106,7 +116,7 @@ def one(index: int, d: Description, name: str, method: Method, true: Truth) -> O
         kind = "judged"
         if larger <= ROUNDING * of[m]:
             kind = "rounding"
-        elif unsure[m] > KNOWN * larger:
+        elif not (np.isfinite(found[m]) and unsure[m] <= KNOWN * larger):
             kind = "not known"
         start.measures[m] = Judged(kind, bars[m], found[m], unsure[m])
     return start

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks.error_bars.truth import MEASURES, METHODS
+from benchmarks.error_bars.truth import FRICTION, MEASURES, METHODS
 
+ROWS = (*METHODS, FRICTION)
 WITHIN = 2.0  # the factor that a bar may be off
 SLOW = 0.01  # CPU seconds of a run from which on costs are compared: below it both are overhead
 
@@ -41,10 +42,10 @@ class Outcome:
     scene: int
     family: str
     method: str
-    until: float
-    reason: str
-    cost: float
-    seconds: float
+    until: float = 0.0
+    reason: str = ""
+    cost: float = math.nan
+    seconds: float = 0.0
     measures: dict[str, Judged] = field(default_factory=dict)
 
     def of(self, kind: str) -> dict[str, Judged]:
@@ -70,7 +71,7 @@ def tables(outcomes: Sequence[Outcome], seed: int) -> str:
         "| method | runs | bar over the whole span | ends early | none | judged | every measure within a factor 2 |",
         "|---|---|---|---|---|---|---|",
     ]
-    for name in METHODS:
+    for name in ROWS:
         own = [x for x in outcomes if x.method == name]
         bars = [x for x in own if x.measures]
         seen = [x for x in bars if x.of("judged")]
@@ -86,11 +87,10 @@ def tables(outcomes: Sequence[Outcome], seed: int) -> str:
             _share(right, len(seen)),
         )
         lines.append("| " + " | ".join(map(str, row)) + " |")
-    lines += ["", "| measure | " + " | ".join(METHODS) + " |", "|---|" + "---|" * len(METHODS)]
+    lines += ["", "| measure | " + " | ".join(ROWS) + " |", "|---|" + "---|" * len(ROWS)]
     for m in MEASURES:
         cells = [
-            _cell([x.measures[m] for x in outcomes if x.method == name and m in x.measures])
-            for name in METHODS
+            _cell([x.measures[m] for x in outcomes if x.method == name and m in x.measures]) for name in ROWS
         ]
         lines.append(f"| {m} | " + " | ".join(cells) + " |")
     lines += ["", *_costs(outcomes)]
@@ -113,7 +113,7 @@ def _share(part: int, whole: int) -> str:
 
 def _costs(outcomes: Sequence[Outcome]) -> list[str]:
     lines = []
-    for name in METHODS:
+    for name in ROWS:
         own = [x.cost for x in outcomes if x.method == name and x.seconds > SLOW]
         if own:
             low, high = np.quantile(own, [0.5, 0.9])

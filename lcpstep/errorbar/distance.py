@@ -25,6 +25,7 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 LEAST, MOST = 199, 599  # breaks besides the events
 GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
 STILL = 1e4  # times rounding: a motion that is no larger stands still
@@ -72,24 +73,26 @@ def at(run: Trajectory, t: Array) -> tuple[Array, Array]:
 def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
     """From when on two runs move alike again after an event of one of them, nan where they do not.
 
-    Looked at after the event and those of other contacts at the same time, before the next one, in a state that was
-    kept where there is one. Balls that touch may hand an impulse on in one problem or in several, and part alike.
+    Looked at after the event and those of other contacts at the same time, or after one or two more, in a state that
+    was kept where there is one. Balls that touch may hand an impulse on in one problem or in several, and part alike.
     """
     events = event_times(run, other)
     last = np.append(np.flatnonzero(np.diff(events) > resolution), len(events) - 1)  # of those at one time
     following = np.append(events[1:], math.inf)
 
     def again(time: Array, jump: Array) -> Array:
-        end = last[np.searchsorted(last, np.searchsorted(events, time))]
-        k = np.minimum(np.searchsorted(run.t, events[end], side="right"), len(run.t) - 1)
+        first = last[np.searchsorted(last, np.searchsorted(events, time))]
+        end = np.minimum(first + np.arange(FURTHER)[:, None], len(events) - 1)  # (FURTHER, k)
         until = np.minimum(following[end], min(run.t[-1], other.t[-1]))
+        k = np.minimum(np.searchsorted(run.t, events[end], side="right"), len(run.t) - 1)
         kept = (run.t[k] > events[end]) & (run.t[k] < until)
         after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
         told = until > events[end]
-        found = np.full(len(time), math.nan)
         apart = np.max(np.abs(at(run, after[told])[1] - at(other, after[told])[1]), axis=1)
-        found[told] = np.where(apart <= SAME * jump[told], after[told], math.nan)
-        return found
+        found = np.full(end.shape, math.inf)
+        found[told] = np.where(apart <= SAME * np.broadcast_to(jump, end.shape)[told], after[told], math.inf)
+        soonest = np.min(found, axis=0)
+        return np.where(np.isfinite(soonest), soonest, math.nan)
 
     return again
 
