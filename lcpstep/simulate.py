@@ -14,8 +14,9 @@ from lcpstep.errorbar.companions import KNOWN
 from lcpstep.errorbar.estimate import error_bar
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
-from lcpstep.model import culprit, hybrid_culprit
+from lcpstep.model import LARGEST_DENSE, culprit, hybrid_culprit
 from lcpstep.recording import Keep, Kept
+from lcpstep.stepping.sparse import is_sparse
 from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
@@ -132,6 +133,11 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
     if isinstance(scene, HybridScene):
         raise LcpStepError(
             f"error: expected a scene without modes, got {scene.name!r}; there is one method for those with modes"
+        )
+    if is_sparse(scene) and scene.n_q > LARGEST_DENSE:
+        raise LcpStepError(
+            f"error: expected at most {LARGEST_DENSE} coordinates, got {scene.n_q} of {scene.name!r}: distances are "
+            f"measured with dense matrices"
         )
     if not isinstance(method, KNOWN):
         names = ", ".join(x.__name__ for x in KNOWN)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import identity
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate, study
@@ -215,6 +216,13 @@ def test_what_has_no_bar_is_refused_by_name():
         simulate(ball, Located(1e-2), error="yes")
     with pytest.raises(LcpStepError, match="without modes"):
         simulate(scenes.hybrid_abs(), EventDriven(), error=True)
+
+    n = 3000
+    large = Scene(
+        system=LinearSystem(identity(n, format="csr")), q0=np.zeros(n), v0=np.zeros(n), t_span=(0.0, 1.0)
+    )
+    with pytest.raises(LcpStepError, match="error: expected at most 2000 coordinates, got 3000"):
+        simulate(large, Moreau(0.5), error=True)
 
     class Other:
         def run(self, scene, kept, progress):
