@@ -93,8 +93,11 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
         if late:
             raise KeyboardInterrupt
 
+    method, span = companion.method, scene.t_span[1] - scene.t_span[0]
+    if getattr(method, "h", 0.0) > span:
+        method = replace(method, h=span)
     try:
-        found: Trajectory = companion.method.run(scene, kept, hurry)
+        found: Trajectory = method.run(scene, kept, hurry)
     except SimulationInterrupted as stopped:
         if not late:
             raise

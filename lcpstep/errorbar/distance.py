@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.partners import Alike, Partners
+from lcpstep.errorbar.partners import Alike
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
@@ -98,10 +98,10 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
 
 
 def distance(
-    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, pairs: Partners, around: float,
+    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, windows: Array, around: float,
     factor: float,
 ) -> Distance:  # fmt: skip
-    """Distances of two runs times a factor; of velocities without the time `around` each pair of impacts [s]."""
+    """Distances of two runs times a factor; the largest of velocities without windows and what is `around` them."""
     n, n_q = len(t), runs[0].scene.n_q
     times = np.concatenate([t, (t[:-1, None] + np.diff(t)[:, None] * GAUSS).ravel() if every else t[:0]])
     one, other = (at(x, times) for x in runs)
@@ -111,16 +111,15 @@ def distance(
     )
     far, fast = (np.max(np.abs(x), axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
-    struck = _between(pairs.windows, around, times)[:, None]
+    struck = _between(windows, around, times)[:, None]
     largest = _largest(np.where(struck & (np.arange(2 * n_q + 1) >= n_q), 0.0, apart), n) + floor
     integral = _integral(t, apart) + floor * (t - t[0])[:, None]
-    if not every and len(pairs.windows):
+    if not every and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
-    length = AT_REST * fall(m, runs[0]) * float(t[-1] - t[0]) + STILL * float(
-        np.max(floor[:n_q], initial=0.0)
-    )
+    length = AT_REST * fall(m, runs[0]) * float(t[-1] - t[0])
+    length += STILL * float(np.max(floor[:n_q], initial=0.0))
     size = 0.5 * float(np.max(np.ptp(one[0][:n], axis=0), initial=0.0))
     return Distance(position, velocity, power, max(size, length))
 

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.companions import Companion, companions, followed, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks
-from lcpstep.errorbar.partners import Partners, partners
+from lcpstep.errorbar.partners import Pairs, Partners, partners
 from lcpstep.kernels.model import Model
 from lcpstep.model import model
 from lcpstep.recording import Kept
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Trajectory
+from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]
 Found = list[tuple[Companion, Trajectory]]
@@ -38,7 +38,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
     """
     if len(run.t) < 2:
         return unknown(run, "only one state was kept")
-    start, end = float(run.t[0]), float(run.t[-1])
+    start, end = float(run.t[0]), _reached(run)
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
     nothing = np.zeros(0)
     kept = Kept(1, False, nothing) if every else Kept(0, False, looks(run, run, every, end))
@@ -54,7 +54,12 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
 
 
 def _reach(found: Found) -> float:
-    return min(float(x.t[-1]) for _, x in found)
+    return min(_reached(x) for _, x in found)
+
+
+def _reached(run: Trajectory) -> float:
+    """How far a run has come, whatever it keeps."""
+    return float(run.scene.t_span[1] if run.status == Status.DONE else run.t[-1])
 
 
 def unknown(run: Trajectory, reason: str) -> ErrorBar:
@@ -71,10 +76,10 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
 def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit."""
     companion, other = found[0]
-    until, reason = float(run.t[-1]), ""
+    until, reason = _reached(run), ""
     for c, x in found:
-        if x.t[-1] < until:
-            until = float(x.t[-1])
+        if _reached(x) < until:
+            until = _reached(x)
             reason = f"{in_words(c.method)} ends there, {x.message}"
     m = model(run.scene)
     logs = [_matched(m, run, x, every, until) for _, x in found]
@@ -88,7 +93,7 @@ def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf)
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
     factor = companion.factor or 1.0
-    apart = distance(m, (run, other), every, t, logs[0], around, factor)
+    apart = distance(m, (run, other), every, t, logs[0].windows, around, factor)
     texts = tuple(in_words(c.method) for c, _ in found)
     horizon = _lost(t, apart) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
@@ -97,22 +102,22 @@ def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf)
     position, velocity, energy = (
         Bar(b.largest[:n], b.integral[:n], b.unit) for b in (apart.position, apart.velocity, apart.energy)
     )
-    known = float(t[n - 1])
-    times, impulses = _of_impacts(run, other, logs[0], factor, known)
+    known = float(t[n - 1]) if reason or math.isfinite(limit) else until
+    times, impulses = _of_impacts(run, other, logs[0].pairs, factor, known)
     return ErrorBar(t[:n], position, velocity, energy, times, impulses, known, reason, horizon, texts)
 
 
 def _of_impacts(
-    run: Trajectory, other: Trajectory, seen: Partners, factor: float, until: float
+    run: Trajectory, other: Trajectory, pairs: Pairs, factor: float, until: float
 ) -> tuple[Array, Array]:
     """Errors of times and impulses, one for each row of the log."""
     times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))
-    known = (seen.end <= until)[seen.pair] & ~seen.weak[seen.pair]
-    rows, pair = seen.rows[known], seen.pair[known]
+    known = ((pairs.stop <= until) & ~pairs.weak)[pairs.of_row]
+    rows, pair = pairs.rows[known], pairs.of_row[known]
     # two runs that put impacts at the ends of their steps may put them at the same time
     unseen = 0.25 * resolved(run) if isinstance(other.method, Moreau) else 0.0
-    times[rows] = factor * seen.time[pair] + ROUNDING * np.max(np.abs(run.t)) + unseen
-    impulses[rows] = factor * seen.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
+    times[rows] = factor * pairs.time[pair] + ROUNDING * np.max(np.abs(run.t)) + unseen
+    impulses[rows] = factor * pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
     return times, impulses
 
 

@@ -55,29 +55,61 @@ class Blows:
     count: Places
 
 
-@dataclass(frozen=True, eq=False)
-class Partners:
-    """Pairs of blows up to the first different event.
+class Pairs(NamedTuple):
+    """Pairs of blows (k,): from the first to the last impact, differences of time and impulse; whether weak.
 
-    Attributes
-    ----------
-    start, end : (k,)   the time from the first to the last impact of each pair [s]
-    windows : (l, 2)   times in which one run has struck and the other has not, with as much before and after [s]
-    time, impulse : (k,)   differences [s], [N s]
-    weak : (k,)   whether the jump is small beside the largest
-    rows, pair : places of impacts in the first log, and the pair that each belongs to
-    differs : time of the first different event, infinite where there is none [s]
-    reason : what differs, in words
+    rows : places of their impacts in the first log, and `many` (k,) how many belong to each
     """
 
     start: Array
-    end: Array
-    windows: Array
+    stop: Array
     time: Array
     impulse: Array
     weak: NDArray[np.bool_]
     rows: Places
-    pair: Places
+    many: Places
+
+    @classmethod
+    def none(cls) -> Pairs:
+        """No pairs."""
+        numbers, places = np.zeros(0), np.zeros(0, dtype=np.intp)
+        return cls(numbers, numbers, numbers, numbers, np.zeros(0, dtype=bool), places, places)
+
+    @classmethod
+    def of(cls, a: Blows, b: Blows, i: Places, j: Places, weak: float) -> Pairs:
+        """The blows i of one run and j of the other."""
+        chosen = np.isin(np.repeat(np.arange(len(a.count)), a.count), i)
+        return cls(
+            np.minimum(a.first[i], b.first[j]), np.maximum(a.last[i], b.last[j]), np.abs(a.first[i] - b.first[j]),
+            np.abs(a.impulse[i] - b.impulse[j]), np.maximum(a.jump[i], b.jump[j]) <= weak, a.rows[chosen],
+            a.count[i],
+        )  # fmt: skip
+
+    @property
+    def of_row(self) -> Places:
+        """The pair that each of the rows belongs to."""
+        return np.repeat(np.arange(len(self.many)), self.many)
+
+    def windows(self, resolution: float) -> Array:
+        """Times in which one run has struck and the other has not, with as much before and after, (l, 2) [s]."""
+        usual = MARGIN * np.max(self.time[~self.weak], initial=resolution)
+        near = self.time <= max(usual, SLIGHT * float(np.ptp(self.start)) if len(self.start) else 0.0)
+        return np.column_stack([self.start - self.time, self.stop + self.time])[~self.weak | near]
+
+
+class Partners(NamedTuple):
+    """Pairs of blows, and the first different event.
+
+    Attributes
+    ----------
+    pairs : all pairs, those after the first different event too
+    windows : (l, 2)   times in which velocities of the two runs cannot be compared [s]
+    differs : time of the first different event, infinite where there is none [s]
+    reason : what differs, in words
+    """
+
+    pairs: Pairs
+    windows: Array
     differs: float
     reason: str
 
@@ -96,49 +128,29 @@ def partners(
         do not. Such events do not count as different
     """
     a, b = (np.asarray(log) for log in (a, b))  # record arrays look their fields up slowly
-    places = [np.flatnonzero((log["kind"] == Kind.IMPACT) & (log["time"] <= end)) for log in (a, b)]
+    struck = [np.flatnonzero((log["kind"] == Kind.IMPACT) & (log["time"] <= end)) for log in (a, b)]
     jumps = [np.abs(log["after"] - log["before"]) for log in (a, b)]
-    largest = max(float(np.max(jump[k], initial=0.0)) for jump, k in zip(jumps, places, strict=True))
+    largest = max(float(np.max(jump[k], initial=0.0)) for jump, k in zip(jumps, struck, strict=True))
     weak = max(WEAK * largest, still)
-    columns: list[list[Any]] = [[] for _ in range(7)]
-    suspects: list[Suspect] = []
-    tails, n = [np.zeros((0, 2))], 0
-    for contact in np.union1d(*(log["contact"][k] for log, k in zip((a, b), places, strict=True))):
-        own = (k[log["contact"][k] == contact] for log, k in zip((a, b), places, strict=True))
-        one, other = (blows(*x, resolution) for x in zip((a, b), jumps, own, strict=True))
-        i, j, found = matched(one, other, weak, resolution)
-        late = end - MARGIN * float(np.max(np.abs(one.first[i] - other.first[j]), initial=resolution))
+    pairs, suspects, windows = [Pairs.none()], [], [np.zeros((0, 2))]
+    for contact in np.union1d(a["contact"][struck[0]], b["contact"][struck[1]]):
+        one, other = (
+            blows(log, jump, k[log["contact"][k] == contact], resolution)
+            for log, jump, k in zip((a, b), jumps, struck, strict=True)
+        )
+        i, j, differing = matched(one, other, weak, resolution)
+        found = Pairs.of(one, other, i, j, weak)
+        late = end - MARGIN * float(np.max(found.time, initial=resolution))
         suspects += [
-            Suspect(x.time, x.jump, f"{x.reason} at contact {contact}") for x in found if x.time < late
+            x._replace(reason=f"{x.reason} at contact {contact}") for x in differing if x.time < late
         ]
-        begins = np.minimum(one.first[i], other.first[j])
-        chosen = np.isin(np.repeat(np.arange(len(one.count)), one.count), i)
-        for column, values in zip(
-            columns,
-            (
-                begins,
-                np.maximum(one.last[i], other.last[j]),
-                np.abs(one.first[i] - other.first[j]),
-                np.abs(one.impulse[i] - other.impulse[j]),
-                np.maximum(one.jump[i], other.jump[j]) <= weak,
-                one.rows[chosen],
-                n + np.repeat(np.arange(len(i)), one.count[i]),
-            ),
-            strict=True,
-        ):
-            column.append(values)
-        n += len(i)
-        tails += [np.array([[x.time, end]]) for x in found if x.time >= late]
-        tails.append(_tails((a, b), contact, begins, (one, other), end))
-    start, stop, time, impulse = (np.concatenate([*x, np.zeros(0)]) for x in columns[:4])
-    light, rows, pair = (np.concatenate([*x, np.zeros(0)]) for x in columns[4:])
-    flags, places_of, pair_of = light.astype(bool), rows.astype(np.intp), pair.astype(np.intp)
+        windows += [np.array([[x.time, end]]) for x in differing if x.time >= late]
+        windows.append(_tails((a, b), contact, found.start, (one, other), end))
+        pairs.append(found)
+    all_pairs = Pairs(*(np.concatenate(x) for x in zip(*pairs, strict=True)))
     first, harmless = _first(suspects, alike)
-    usual = MARGIN * np.max(time[~flags], initial=resolution)
-    near = time <= max(usual, SLIGHT * float(np.ptp(start)) if len(start) else 0.0)
-    windows = np.column_stack([start - time, stop + time])[~flags | near]
-    windows = np.concatenate([windows, *tails, harmless])
-    return Partners(start, stop, windows, time, impulse, flags, places_of, pair_of, first.time, first.reason)
+    windows += [all_pairs.windows(resolution), harmless]
+    return Partners(all_pairs, np.concatenate(windows), first.time, first.reason)
 
 
 def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
@@ -186,20 +198,15 @@ def matched(a: Blows, b: Blows, weak: float, resolution: float) -> tuple[Places,
     alone += [(a, k) for k in range(i, len(a.first))] + [(b, k) for k in range(j, len(b.first))]
     left, right = (np.array(x, dtype=np.intp) for x in (one, other))
     apart, larger = np.abs(a.jump[left] - b.jump[right]), np.maximum(a.jump[left], b.jump[right])
+    times, words = np.minimum(a.first[left], b.first[right]), "an impact of another strength"
     suspects = [
-        Suspect(
-            float(min(a.first[left[k]], b.first[right[k]])), float(larger[k]), "an impact of another strength"
-        )
+        Suspect(float(times[k]), float(larger[k]), words)
         for k in np.flatnonzero(apart > ALIKE * larger + weak)
     ]
-    for blow, k in alone:
-        if blow.jump[k] > weak:
-            whose = "run" if blow is a else "companion"
-            suspects.append(
-                Suspect(
-                    float(blow.first[k]), float(blow.jump[k]), f"an impact of the {whose} without partner"
-                )
-            )
+    for x, k in alone:
+        if x.jump[k] > weak:
+            words = f"an impact of the {'run' if x is a else 'companion'} without partner"
+            suspects.append(Suspect(float(x.first[k]), float(x.jump[k]), words))
     return left, right, suspects
 
 

@@ -16,6 +16,7 @@ from lcpstep.analysis.reference import find_reference
 from lcpstep.cli import main
 from lcpstep.errorbar import companions, estimate
 from lcpstep.errors import LcpStepError
+from lcpstep.recording import Kept
 from tests.known import KNOWN
 
 
@@ -133,6 +134,7 @@ def test_without_every_step_the_kept_states_are_compared(keep):
         assert set(some.error.t) <= set(some.t)
         assert some.error.position.sup <= 1.2 * whole.position.sup
         assert some.error.latest == pytest.approx(whole.latest)
+        assert some.error.until == whole.until == 10.0
 
 
 def test_friction_is_held_against_half_the_step():
@@ -230,6 +232,12 @@ def test_what_has_no_bar_is_refused_by_name():
 
     with pytest.raises(LcpStepError, match="Moreau, Located, EventDriven"):
         simulate(ball, Other(), error=True)
+
+
+def test_a_companion_takes_no_step_longer_than_the_span():
+    scene = scenes.bouncing_ball(t_end=0.1)
+    found = companions.followed(companions.Companion(Moreau(1.0)), scene, Kept.parse(1, scene.t_span), 0.0)
+    assert list(found.t) == [0.0, 0.1]
 
 
 def test_a_run_that_ends_early_has_a_bar_up_to_its_end():
