@@ -28,7 +28,7 @@ from lcpstep.trajectory import Status, Trajectory
 FINER = 24.0  # times more steps than a run
 FINE, FINEST = 60.0, 90.0  # the same, with friction
 MOST_STEPS = 100_000
-SECONDS = 10.0  # of CPU time for a run
+SECONDS = 2.0  # of CPU time for a run
 STEPS = (-0.7, 0.5)  # decades around the step that a scene asks for
 TOLERANCES = (-10.0, -4.0)  # decades
 MEASURES = ("position, sup", "velocity, L1", "velocity, sup", "impact times", "impulses", "energy, mean")
