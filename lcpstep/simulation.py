@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 from lagrangian import HybridScene, Scene
 from lagrangian.relations import check_derivatives
 from lcpstep.depth import too_deep
-from lcpstep.errors import LcpStepError, SimulationError
+from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
 from lcpstep.recording import Keep, Kept
 from lcpstep.trajectory import Status
@@ -35,11 +36,21 @@ def fitted(method: Method, t_span: tuple[float, float]) -> Method:
 
 @overload
 def simulate(
-    scene: Scene, method: Method, *, keep: Keep = 1, progress: Callable[[float], None] | None = None
+    scene: Scene,
+    method: Method,
+    *,
+    keep: Keep = 1,
+    progress: Callable[[float], None] | None = None,
+    error: bool = False,
 ) -> Trajectory: ...
 @overload
 def simulate(
-    scene: HybridScene, method: Method, *, keep: Keep = 1, progress: Callable[[float], None] | None = None
+    scene: HybridScene,
+    method: Method,
+    *,
+    keep: Keep = 1,
+    progress: Callable[[float], None] | None = None,
+    error: bool = False,
 ) -> HybridTrajectory: ...
 def simulate(
     scene: Scene | HybridScene,
@@ -47,6 +58,7 @@ def simulate(
     *,
     keep: Keep = 1,
     progress: Callable[[float], None] | None = None,
+    error: bool = False,
 ) -> Trajectory | HybridTrajectory:
     """Motion of a scene.
 
@@ -58,6 +70,8 @@ def simulate(
         1: every step (default); k: every k-th; increasing times: those; "impacts": those right after an event.
         The impact log is always complete.
     progress : called now and then with the time reached [s]
+    error : whether the trajectory gets an error bar, `Trajectory.error` (`lcpstep.errorbar.bars.ErrorBar`), from a
+        second run by another method, which takes about the time of the run again
 
     Returns
     -------
@@ -66,9 +80,9 @@ def simulate(
 
     Raises
     ------
-    TypeError   scene is no Scene, method no method, or progress no function
+    TypeError   scene is no Scene, method no method, progress no function, or error neither True nor False
     ValueError   keep is none of the above
-    LcpStepError   the method does not treat the scene
+    LcpStepError   the method does not treat the scene, or has no error bar for it
     SimulationError   a callback or the motion became infinite or not-a-number; carries the motion so far
     SimulationInterrupted   a KeyboardInterrupt; carries the motion so far
 
@@ -86,6 +100,10 @@ def simulate(
         raise TypeError(f"method: expected for example lcpstep.Moreau(h=1e-4), got {method!r}")
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: expected a function of the time reached, got {progress!r}")
+    if not isinstance(error, bool):
+        raise TypeError(f"error: expected True or False, got {error!r}")
+    if error:
+        _can_tell_errors(scene, method)
     kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
     forget()
     if isinstance(scene, HybridScene):
@@ -97,14 +115,47 @@ def simulate(
 
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
+    begin = time.process_time()
     run = method.run(scene, kept, report)
+    seconds = time.process_time() - begin
     if fault() is not None:
         from lcpstep.model import culprit
 
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)
     doubt = too_deep(run)
-    return replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
+    run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
+    return _with_error(run, kept, seconds) if error else run
+
+
+def _can_tell_errors(scene: Any, method: Method) -> None:
+    """LcpStepError where there is no error bar."""
+    from lcpstep.errorbar.companions import KNOWN
+    from lcpstep.model import LARGEST_DENSE
+    from lcpstep.stepping.sparse import is_sparse
+
+    if isinstance(scene, HybridScene):
+        raise LcpStepError(
+            f"error: expected a scene without modes, got {scene.name!r}; there is one method for those with modes"
+        )
+    if is_sparse(scene) and scene.n_q > LARGEST_DENSE:
+        raise LcpStepError(
+            f"error: expected at most {LARGEST_DENSE} coordinates, got {scene.n_q} of {scene.name!r}: distances are "
+            f"measured with dense matrices"
+        )
+    if not isinstance(method, KNOWN):
+        names = ", ".join(x.__name__ for x in KNOWN)
+        raise LcpStepError(f"error: expected one of the methods {names}, got {method!r}")
+
+
+def _with_error(run: Trajectory, kept: Kept, seconds: float) -> Trajectory:
+    """The run with its error bar; an interrupt leaves the run without one."""
+    from lcpstep.errorbar.estimate import error_bar
+
+    try:
+        return replace(run, error=error_bar(run, kept.all, seconds))
+    except KeyboardInterrupt:
+        raise SimulationInterrupted(lambda: run) from None
 
 
 def _compare_derivatives(run: Trajectory) -> None:

@@ -24,6 +24,7 @@ from lcpstep.analysis.errors import MEASURES, Difference
 from lcpstep.analysis.horizon import LOST, Growth, growth
 from lcpstep.analysis.reference import TIGHTEST, Reference, find_reference
 from lcpstep.analysis.work_precision import Level, Study
+from lcpstep.errorbar.companions import KNOWN
 from lcpstep.errors import DamagedFile, LcpStepError, StudyInterrupted, UnknownName
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
@@ -66,7 +67,7 @@ def study(
     h, tolerances : the levels of each method that has a step, or a tolerance. Default: the methods as they are given
         where there are several of a kind, else five steps from 1/250 of the span, or tolerances from 1e-4 to 1e-10
     reference : a method, a `Trajectory`, or a function t -> (q, v). Default: the closed form `scene.exact` where the
-        scene has one, else `EventDriven` at 1e-13, checked by a second run at 1e-11
+        scene has one, else `EventDriven` at 1e-13; checked by a run of an independent method
     measures : names of error measures, attributes of `lcpstep.analysis.errors.Difference`
     horizon : compare up to this time only [s]; at most up to where chaos separates trajectories
     repeats : rounds of timing; the median counts. Levels of more than two seconds are timed once
@@ -123,16 +124,18 @@ def _fill(
     """Reference, horizon, then level after level."""
     say = progress or (lambda _: None)
     say("reference")
-    found = find_reference(scene, given, measures)
-    result.reference, result.uncertainty = found.text, dict(found.uncertainty)
+    found = find_reference(scene, given)
+    result.reference = found.text
     result.notes += found.notes
-    _allow_for_rounding(scene, found, result)
     grown = _growth(scene, found, result)
     limit = _separation(scene, curves, found, grown)
     scene = _shortened(scene, grown, limit, horizon, result)
     size = grown.size if grown else math.inf
     if found.motion is not None and found.motion.t[-1] < scene.t_span[1]:
         result.compared_until = float(found.motion.t[-1])
+    result.uncertainty = found.uncertainty(measures, result.compared_until)
+    _allow_for_rounding(scene, found, result)
+    _allow_for_growth(found, grown, result)
     for name, methods in curves.items():
         for method in methods:
             say(f"{name}, {' = '.join(map(str, dial(method)))}")
@@ -158,16 +161,20 @@ def _level(
     value *= math.exp(float(np.mean(np.log(spread)))) if changeable(method) else 1.0
     start = Level(name, repr(method), which, value, "REFUSED")
     errors: dict[str, list[float]] = {m: [] for m in measures}
-    counts = []
-    for one in near:
+    counts: list[tuple[int, int, int]] = []
+    bars: dict[str, float] = {}
+    for k, one in enumerate(near):
+        with_bar = k == len(near) // 2 and isinstance(one, KNOWN)
         try:
-            run = simulate(scene, one)
+            run = simulate(scene, one, error=with_bar)
         except (LcpStepError, ValueError) as error:
             return replace(start, message=str(error))
         if run.status is not Status.DONE:
             return replace(start, status=run.status.name, message=run.message)
-        for measure, found_error in _errors(run, found, measures, result.compared_until).items():
+        own = _errors(run, found, measures, result.compared_until)
+        for measure, found_error in own.items():
             errors[measure].append(found_error)
+        bars |= _over_bar(run, own, result.compared_until)
         counts.append((run.counts.steps, run.counts.lcp_calls, run.counts.force_evaluations))
     seconds = _timed(scene, near, repeats)
     steps, lcp_calls, forces = (float(x) for x in np.mean(counts, axis=0))
@@ -185,7 +192,22 @@ def _level(
         force_evaluations=forces,
         limited=tuple(m for m, e in means.items() if m != "unmatched" and e < TRUSTED * unsure.get(m, 0.0)),
         separated=means.get("sup_position", 0.0) > LOST * size,
+        bars=bars,
     )
+
+
+def _over_bar(run: Trajectory, errors: dict[str, float], until: float) -> dict[str, float]:
+    """True errors over the bar of a run, by measure; none where it has no bar or one that ends before they do."""
+    bar = run.error
+    if bar is None or bar.until < until:
+        return {}
+    length = bar.until - float(bar.t[0])
+    told = {
+        "sup_position": bar.position.sup,
+        "l1_velocity": bar.velocity.l1,
+        "energy": bar.energy.l1 / length,
+    }
+    return {m: errors[m] / x for m, x in told.items() if m in errors and x > 0.0}
 
 
 def _errors(run: Trajectory, found: Reference, measures: Sequence[str], until: float) -> dict[str, float]:
@@ -310,7 +332,7 @@ def _allow_for_rounding(scene: Scene, found: Reference, result: Study) -> None:
 
 
 def _growth(scene: Scene, found: Reference, result: Study) -> Growth | None:
-    """Growth of a disturbance, and what rounding makes of the reference."""
+    """Growth of a disturbance."""
     grown, motion = None, found.motion if isinstance(found.motion, Trajectory) else None
     method = found.method or TIGHTEST
     try:
@@ -323,15 +345,18 @@ def _growth(scene: Scene, found: Reference, result: Study) -> Growth | None:
                 "how long the motion can be predicted is not known: its start cannot be disturbed"
             )
     result.growth = str(grown) if grown else "not known"
-    if grown and motion is not None:
-        share = ROUNDING * grown.size / grown.disturbance
-        until = min(grown.horizon, scene.t_span[1])
-        apart = Difference(motion, grown.disturbed, t_end=until)
-        for measure, value in result.uncertainty.items():
-            if measure != "unmatched":
-                rounding = share * float(getattr(apart, measure))
-                result.uncertainty[measure] = max(value, rounding)
     return grown
+
+
+def _allow_for_growth(found: Reference, grown: Growth | None, result: Study) -> None:
+    """Rounding grows as a disturbance does."""
+    if grown is None or not isinstance(found.motion, Trajectory):
+        return
+    share = ROUNDING * grown.size / grown.disturbance
+    apart = Difference(found.motion, grown.disturbed, t_end=min(grown.horizon, result.compared_until))
+    for measure, value in result.uncertainty.items():
+        if measure != "unmatched":
+            result.uncertainty[measure] = max(value, share * float(getattr(apart, measure)))
 
 
 def _separation(

@@ -88,6 +88,7 @@ class Trajectory:
     friction_impulse : (n, n_c)   impulse of each contact's friction since the state before [N s]; no columns
         where the scene has none
     scene, method : the question, and how it was answered
+    error : how far all this can be trusted, a `lcpstep.errorbar.bars.ErrorBar`; None where it was not asked for
     """
 
     scene: Scene
@@ -104,6 +105,7 @@ class Trajectory:
     joint_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
     friction_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
     doubt: str = ""
+    error: Any = None
 
     def at(self, t: ArrayLike) -> tuple[Array, Array]:
         """State at any time of the run.

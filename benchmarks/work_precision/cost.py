@@ -73,7 +73,7 @@ def cost(name: str, scene: Scene, h: float, rounds: int) -> StepCost:
     single = take_turns({m: clocked(work(x, 1)) for m, x in methods.items()}, 1)
     times = max(1, math.ceil(SECONDS / min(t.median for t in single.values())))
     taken = take_turns({m: clocked(work(x, times)) for m, x in methods.items()}, rounds)
-    reference = find_reference(scene, None, ()).motion
+    reference = find_reference(scene, None).motion
     errors = {m: Difference(run, reference).sup_position for m, run in runs.items()}
     impacts = float(np.sum(runs["Located"].impacts.impulse > 0.0)) / steps
     per = times * steps

@@ -1,13 +1,15 @@
 """What the errors of a study are measured against, and how well that is known itself.
 
 In this order: what the caller gives, the scene's motion in closed form, the event-driven run at its tightest.
-A method is run twice, the second time a hundred times looser (or at twice the step): the distance of the two
-bounds its error. A closed form is checked against an event-driven run wherever that fits the scene.
+A run is checked by one of an independent method, and their distance says how well it is known: an event-driven run
+by `Located` in exact pieces, or of order 4 in fine steps, anything else by the event-driven method. Where no other
+method treats the scene, the same one at a looser tolerance is left, which sees no error that does not depend on it.
+A closed form is checked against an event-driven run wherever that fits the scene.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,11 +22,13 @@ from lcpstep.analysis.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.simulation import Method, simulate
+from lcpstep.stepping.located import Located, require_linear
 from lcpstep.trajectory import IMPACT_DTYPE, Status, Trajectory
 
 Array = NDArray[np.float64]
 TIGHTEST = EventDriven(rtol=1e-13, atol=1e-13)
 LOOSER, COARSER = 100.0, 2.0
+PIECES, MOST = 100, 200_000  # steps of order 4 in one of the event-driven method, and in the span at most
 GRID = 2000
 AGREES = 1e-8  # of the size of the motion: a closed form and an event-driven run further apart contradict each other
 
@@ -84,16 +88,23 @@ class Reference:
     ----------
     motion : the motion, or None where there is none
     text : what it is, in words
-    uncertainty : how far it may be off, by measure; a measure that is missing is not known
+    check : the motion that it was checked by, or None
     method : the method it comes from, or was checked by; None where there is neither
     notes : what the reader of the errors must know
     """
 
     motion: Motion | None
     text: str
-    uncertainty: dict[str, float] = field(default_factory=dict)
+    check: Motion | None = None
     method: Method | None = None
     notes: tuple[str, ...] = ()
+
+    def uncertainty(self, measures: Sequence[str], until: float | None = None) -> dict[str, float]:
+        """How far it may be off up to a time, by measure: its distance to the check; empty where not known."""
+        if self.motion is None or self.check is None:
+            return {}
+        apart = Difference(self.motion, self.check, t_end=until)
+        return {m: float(getattr(apart, m)) for m in measures}
 
     @property
     def knows_impacts(self) -> bool:
@@ -101,7 +112,7 @@ class Reference:
         return not (isinstance(self.motion, KnownMotion) and self.method is None)
 
 
-def find_reference(scene: Scene, given: Any, measures: Sequence[str]) -> Reference:
+def find_reference(scene: Scene, given: Any) -> Reference:
     """The reference of a study.
 
     Parameters
@@ -115,44 +126,71 @@ def find_reference(scene: Scene, given: Any, measures: Sequence[str]) -> Referen
     """
     if given is None:
         if scene.exact is not None:
-            return from_formula(scene, scene.exact, measures)
-        return from_method(scene, TIGHTEST, measures)
+            return from_formula(scene, scene.exact)
+        return from_method(scene, TIGHTEST)
     if hasattr(given, "run") and not isinstance(given, type):
-        return from_method(scene, given, measures)
+        return from_method(scene, given)
     if hasattr(given, "at") and hasattr(given, "t"):
         return from_trajectory(scene, given)
     if callable(given) and not isinstance(given, type):
-        return from_formula(scene, given, measures)
+        return from_formula(scene, given)
     raise TypeError(f"reference: expected a method, a trajectory or a function t -> (q, v), got {given!r}")
 
 
-def from_method(scene: Scene, method: Method, measures: Sequence[str]) -> Reference:
-    """A run, checked by a second one."""
+def from_method(scene: Scene, method: Method) -> Reference:
+    """A run, checked by one of another method."""
+    motion, failure = _done(scene, method)
+    if motion is None:
+        note = f"no reference: {failure}. Errors are left out; give reference= a method, a trajectory or a function"
+        return Reference(None, "none", notes=(note,))
+    for other in independent(motion):
+        check, _ = _done(scene, other)
+        if check is not None:
+            return Reference(motion, f"{shown(method)}; checked by {shown(other)}", check, method)
+    return _checked_by_itself(scene, motion)
+
+
+def independent(motion: Trajectory) -> Iterator[Method]:
+    """Methods that share nothing with that of a run, the best for its scene first."""
+    if not isinstance(motion.method, EventDriven):
+        yield TIGHTEST
+        return
+    span, steps = float(motion.t[-1] - motion.t[0]), max(motion.counts.steps, 1)
     try:
-        motion = simulate(scene, method)
-    except (LcpStepError, ValueError) as error:
-        note = f"no reference: {error}. Errors are left out; give reference= a method, a trajectory or a function"
-        return Reference(None, "none", notes=(note,))
-    if motion.status is not Status.DONE:
-        note = f"no reference: the run of {method!r} ended early, {motion.message}. Errors are left out"
-        return Reference(None, "none", notes=(note,))
+        require_linear(motion.scene)
+        yield Located(span / steps, "exact")
+    except LcpStepError:
+        pass  # order 4 takes what is not linear
+    h = max(span / (PIECES * steps), span / MOST)
+    yield Located(h, 4)
+    yield Located(h)  # with joints
+
+
+def _checked_by_itself(scene: Scene, motion: Trajectory) -> Reference:
+    """A run that no other method checks, by the same one looser."""
+    method = motion.method
     name, value = dial(method)
     if not name:
         note = "how good the reference is cannot be told: its method has neither a step nor a tolerance to change"
         return Reference(motion, shown(method), method=method, notes=(note,))
     looser = with_value(method, value * (COARSER if name == "h" else LOOSER))
-    try:
-        check = simulate(scene, looser)
-    except (LcpStepError, ValueError) as error:
-        note = f"how good the reference is cannot be told: {looser!r} fails: {error}"
+    check, failure = _done(scene, looser)
+    if check is None:
+        note = f"how good the reference is cannot be told: {looser!r} fails: {failure}"
         return Reference(motion, shown(method), method=method, notes=(note,))
-    apart = Difference(motion, check)
-    return Reference(
-        motion,
-        f"{shown(method)}; checked by {shown(looser)}",
-        {m: float(getattr(apart, m)) for m in measures},
-        method,
-    )
+    note = f"the reference is checked by itself alone, at another {name}: no other method treats the scene"
+    return Reference(motion, f"{shown(method)}; checked by {shown(looser)}", check, method, (note,))
+
+
+def _done(scene: Scene, method: Method) -> tuple[Trajectory | None, str]:
+    """A run that reaches the end of the span, or None and why it does not."""
+    try:
+        motion = simulate(scene, method)
+    except (LcpStepError, ValueError) as error:
+        return None, str(error)
+    if motion.status is not Status.DONE:
+        return None, f"the run of {method!r} ended early, {motion.message}"
+    return motion, ""
 
 
 def from_trajectory(scene: Scene, motion: Trajectory) -> Reference:
@@ -166,21 +204,20 @@ def from_trajectory(scene: Scene, motion: Trajectory) -> Reference:
     return Reference(motion, f"the trajectory given, {method!r}", method=method, notes=tuple(notes))
 
 
-def from_formula(scene: Scene, state: Callable[[Any], Any], measures: Sequence[str]) -> Reference:
+def from_formula(scene: Scene, state: Callable[[Any], Any]) -> Reference:
     """A motion in closed form; its impact log is that of an event-driven run, where the two agree."""
     known = KnownMotion(scene, state)
-    check = from_method(scene, TIGHTEST, ())
-    if check.motion is None:
+    check, _ = _done(scene, TIGHTEST)
+    if check is None:
         note = "no event-driven run fits the scene: impacts of the closed form are not known, and it is not checked"
         return Reference(known, "closed form", notes=(note,))
     size = float(np.max(np.ptp(known.at(known.t)[0], axis=0)))
-    apart = Difference(known, check.motion).sup_position
+    apart = Difference(known, check).sup_position
     if not apart <= AGREES * size:
         note = (
             f"the closed form and the event-driven run differ by {apart:.2g}: one of them is wrong; see both"
         )
         return Reference(known, "closed form", notes=(note,))
-    known = KnownMotion(scene, state, check.motion.impacts)
+    known = KnownMotion(scene, state, check.impacts)
     text = f"closed form; the event-driven run agrees with it to {apart:.1e}"
-    agreement = Difference(known, check.motion)
-    return Reference(known, text, {m: float(getattr(agreement, m)) for m in measures}, check.method)
+    return Reference(known, text, check, TIGHTEST)

@@ -48,6 +48,7 @@ class Level:
     steps, lcp_calls, force_evaluations : means over the runs
     limited : measures whose error is within ten times what the reference may be off
     separated : whether the motion has lost the reference, so that its errors only say how large the motion is
+    bars : true error over the error bar of the run at the middle one of the nearby values, by measure
     """
 
     method: str
@@ -65,6 +66,7 @@ class Level:
     force_evaluations: float = math.nan
     limited: tuple[str, ...] = ()
     separated: bool = False
+    bars: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -189,6 +191,15 @@ class Study:
                 row += [x.errors.get(m, "") for m in self.measures]
                 out.writerow([*row, " ".join(x.limited), x.separated])
 
+    def _bars(self, method: str) -> str:
+        """From where to where the errors of a method are its bars, over the levels to be trusted."""
+        found = {}
+        for m in self.measures:
+            ratios = [x.bars[m] for x in self.curve(method, m) if m in x.bars]
+            if ratios:
+                found[m] = f"{m} {min(ratios):.2g} to {max(ratios):.2g}"
+        return ", ".join(found.values())
+
     def __str__(self) -> str:
         shown = [m for m in self.measures if any(m in x.errors for x in self.levels)]
         head = ["method", "at", "CPU [s]", "steps", "LCPs", "forces", *shown]
@@ -197,6 +208,8 @@ class Study:
         lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]
         for method, fits in self.orders().items():
             lines += [f"order of {method} in {e}: {fit}" for e, fit in fits.items()]
+        for method in self.methods:
+            lines += [f"error over error bar of {method}: {text}" for text in [self._bars(method)] if text]
         lines += [f"reference: {self.reference}", f"growth: {self.growth}"]
         if any(x.limited for x in self.levels):
             lines.append("~ the reference is not known well enough for this error")

@@ -22,6 +22,7 @@ from lcpstep.cli.common import (
     stepping_arguments,
 )
 from lcpstep.compare import Comparison, compare
+from lcpstep.errorbar.estimate import error_bar
 from lcpstep.maps import Sections, sections
 from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
@@ -58,6 +59,9 @@ def add(commands: Any) -> None:
     p.add_argument("--map-periods", type=int, default=3000, help="periods in these maps; 0: none (3000)")
     p.add_argument("--out", type=Path, default=Path("out"), metavar="DIR", help="where the pictures go (out)")
     p.add_argument("--no-pictures", action="store_true", help="print the table only")
+    p.add_argument(
+        "--error", action="store_true", help="error bars of both runs, each by a run of another method"
+    )
     p.add_argument("--json", action="store_true", help="print JSON in place of the table")
     p.set_defaults(run=run_compare)
 
@@ -74,7 +78,7 @@ def run_compare(options: argparse.Namespace) -> int:
         title = scene.name if rpm is None else f"{rpm:g} rpm"
         with progress_bar(scene, title) as progress:
             results.append((title, compare(scene, moreau(options), event_driven(options), progress)))
-    table = [_row(title, c) for title, c in results]
+    table = [_row(title, c) | (_bars(c) if options.error else {}) for title, c in results]
     maps = {} if options.no_pictures or not cam or options.map_periods < 1 else _maps(options)
     pictures = [] if options.no_pictures else _draw(options, results, maps)
     if options.json:
@@ -105,6 +109,12 @@ def _row(title: str, c: Comparison) -> dict[str, Any]:
     }
 
 
+def _bars(c: Comparison) -> dict[str, Any]:
+    """Error bars of the fast run and of the reference."""
+    bars = [error_bar(x.trajectory, True, x.seconds) for x in (c.fast, c.reference)]
+    return {"error": [bar.as_dict() for bar in bars], "error_in_words": [str(bar) for bar in bars]}
+
+
 def _table(rows: list[dict[str, Any]]) -> str:
     """Two columns a quantity, time-stepping | event-driven, then the errors of the former."""
     head = (
@@ -122,6 +132,8 @@ def _table(rows: list[dict[str, Any]]) -> str:
             f"   {first:32}{r['agree_until']:>10.4f} s"
         )
         lines += [f"{'':14}{s}" for s in (*r["status"], *r["doubt"]) if s != "DONE"]
+        bars = zip(("step", "event"), r.get("error_in_words", ()), strict=False)
+        lines += [f"{'':14}error bar, {name}: {text}" for name, text in bars]
     return "\n".join(lines)
 
 

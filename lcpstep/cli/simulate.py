@@ -64,6 +64,7 @@ def add(commands: Any) -> None:
     p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
     p.add_argument("--energy", action="store_true", help="balance the energy along the kept states")
+    p.add_argument("--error", action="store_true", help="say how far the motion is right, by a second run")
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=run_simulate)
 
@@ -82,7 +83,7 @@ def run_simulate(options: argparse.Namespace) -> int:
         raise FileExistsError(f"--out: {options.out} exists already")
     try:
         with progress_bar(scene, options.method) as progress:
-            run = simulate(scene, method, keep=options.every, progress=progress)
+            run = simulate(scene, method, keep=options.every, progress=progress, error=options.error)
     except (SimulationError, SimulationInterrupted) as stopped:
         interrupt.answer()
         _save(options.out, stopped.trajectory)
@@ -134,16 +135,20 @@ def _summary(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
     if isinstance(run, HybridTrajectory):
         return _modes_summary(run)
     kinds = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
-    return _ended(run) | {
-        "q_end": run.q[-1].tolist(),
-        "v_end": run.v[-1].tolist(),
-        "steps": run.counts.steps,
-        "lcp_calls": run.counts.lcp_calls,
-        "force_evaluations": run.counts.force_evaluations,
-        "events": kinds,
-        "penetration": float(np.max(run.penetration, initial=0.0)),
-        "joint_drift": float(np.max(run.joint_drift, initial=0.0)),
-    }
+    return (
+        _ended(run)
+        | {
+            "q_end": run.q[-1].tolist(),
+            "v_end": run.v[-1].tolist(),
+            "steps": run.counts.steps,
+            "lcp_calls": run.counts.lcp_calls,
+            "force_evaluations": run.counts.force_evaluations,
+            "events": kinds,
+            "penetration": float(np.max(run.penetration, initial=0.0)),
+            "joint_drift": float(np.max(run.joint_drift, initial=0.0)),
+        }
+        | ({"error": run.error.as_dict()} if run.error else {})
+    )
 
 
 def _balance(run: Trajectory) -> dict[str, Any]:
@@ -168,6 +173,7 @@ def _sentence(run: Trajectory, balance: dict[str, Any]) -> str:
         f"largest penetration {s['penetration']:.3g} m"
         + (f", joint drift {s['joint_drift']:.3g} m" if run.scene.n_j else "")
         + "".join(f"\nenergy: {_words(e)}" for e in balance.values())
+        + (f"\nerror bar: {run.error}" if run.error else "")
     )
 
 

@@ -103,7 +103,7 @@ def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
     """`lcpstep study --solvers`."""
     if "moreau" not in options.methods:
         raise ValueError("--solvers: only --methods moreau leaves the complementarity solver to choose")
-    reference = find_reference(scene, None, ())
+    reference = find_reference(scene, None)
     if reference.motion is None:
         raise ValueError(f"--solvers: {reference.notes[0]}")
     steps = options.h or [(scene.t_span[1] - scene.t_span[0]) / n for n in (1000, 10_000)]

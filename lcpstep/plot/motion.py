@@ -17,6 +17,7 @@ from lcpstep.trajectory import Kind, Trajectory
 SAMPLES = 4000  # of a curve
 DECADES = 1e-5  # how far below its maximum the distance of two motions is drawn
 JUMPS = "0.75"  # colour of the velocity jumps
+BAND = 0.3  # how much the band of an error bar covers
 
 
 def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
@@ -74,7 +75,10 @@ def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
 
 
 def overview(run: Trajectory | HybridTrajectory) -> Any:
-    """Position, velocity and impulses of one run over time; of a system with modes, its states and its mode."""
+    """Position, velocity and impulses of one run over time; of a system with modes, its states and its mode.
+
+    The error bar of a run that has one is a band around positions and velocities: the largest error until then.
+    """
     from matplotlib.figure import Figure
 
     if isinstance(run, HybridTrajectory):
@@ -85,6 +89,9 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     q, v = run.at(t)
     position.plot(t, q, lw=1.0)
     velocity.plot(t, v, lw=1.0)
+    if run.error is not None:
+        for ax, which, bar in ((position, 0, run.error.position), (velocity, 1, run.error.velocity)):
+            band(ax, run, which, bar)
     jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
     if len(jumps):
         impulse.stem(jumps.time, jumps.impulse, basefmt="k-", markerfmt=".")
@@ -94,6 +101,18 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     impulse.set_xlabel("time t [s]")
     position.set_title(f"{run.scene.name}: {_name(run)}")
     return figure
+
+
+def band(ax: Any, run: Trajectory, which: int, bar: Any) -> None:
+    """Positions (0) or velocities (1) of a run with an error bar, as far as it holds, give or take the error."""
+    known = run.error.t
+    t = np.unique(np.concatenate([known, run.t[run.t <= known[-1]]]))
+    x = run.at(t)[which]
+    for k, (values, errors) in enumerate(zip(x.T, bar.largest.T, strict=True)):
+        e = np.interp(t, known, errors)
+        ax.fill_between(t, values - e, values + e, color=f"C{k % 10}", alpha=BAND, lw=0.0)
+    if run.error.reason:
+        ax.axvline(run.error.until, color="0.5", lw=0.8, ls=":")
 
 
 def _states_and_mode(run: HybridTrajectory) -> Any:

@@ -1,0 +1,1 @@
+"""Error bars of random scenes against true errors."""

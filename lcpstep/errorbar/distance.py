@@ -1,0 +1,158 @@
+"""How far a run is from its companion, as functions of time.
+
+    largest(t) = sup over s <= t of |x(s) - y(s)|,        integral(t) = integral up to t of |x - y|
+
+for positions, velocities and energy. Between an impact and its partner in the other run one of the two velocities has
+jumped and the other not: there the pointwise distance of velocities and energies is as large as the jump however
+near the two motions are. Their `largest` leaves these times out. The integrals take all: by Gauss' rule with two
+points between breaks, of which every event of either run is one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.errorbar.bars import Bar
+from lcpstep.errorbar.partners import Alike
+from lcpstep.kernels import states
+from lcpstep.kernels.model import Model
+from lcpstep.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+LEAST, MOST = 199, 599  # breaks besides the events
+GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
+SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
+AT_REST = 1e-6  # of the length that forces would move it by
+STILL = 1e4  # times rounding: a motion that is no larger stands still
+SLOW = 1e-6  # the velocity with which forces and masses are asked for [m/s]
+ROUNDING = 4.0  # last digits of what a number is made of
+EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class Distance:
+    """Distances of two runs, one `Bar` for each quantity, none below what rounding makes of its numbers."""
+
+    position: Bar
+    velocity: Bar
+    energy: Bar
+    size: float  # half the range of the coordinate that moves most, or what is no motion but rounding
+
+
+def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
+    """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone."""
+    few = len(run.t) <= MOST
+    wanted = np.linspace(float(run.t[0]), end, LEAST if few else MOST)
+    if not every:
+        kept = run.t[run.t <= end]
+        return kept if len(kept) <= MOST else kept[np.unique(np.searchsorted(kept, wanted, side="right") - 1)]
+    events = event_times(run, other)
+    middles = 0.5 * (events[1:] + events[:-1])[:: 1 + len(events) // MOST]
+    t = np.unique(np.concatenate([wanted, events, middles, run.t if few else wanted]))
+    return t[(t >= run.t[0]) & (t <= end)]
+
+
+def event_times(run: Trajectory, other: Trajectory) -> Array:
+    """When anything happened in either run."""
+    return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
+
+
+def at(run: Trajectory, t: Array) -> tuple[Array, Array]:
+    """States at times in any order, asked for once: some runs are run again for those between kept ones."""
+    times, place = np.unique(t, return_inverse=True)
+    k = np.searchsorted(run.t, times, side="right") - 1
+    q, v = (run.q[k], run.v[k]) if np.array_equal(run.t[k], times) else run.at(times)
+    return q[place], v[place]
+
+
+def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
+    """From when on two runs move alike again after an event of one of them, nan where they do not.
+
+    Looked at after the event and those of other contacts at the same time, or after one or two more, in a state that
+    was kept where there is one. Balls that touch may hand an impulse on in one problem or in several, and part alike.
+    """
+    events = event_times(run, other)
+    last = np.append(np.flatnonzero(np.diff(events) > resolution), len(events) - 1)  # of those at one time
+    following = np.append(events[1:], math.inf)
+
+    def again(time: Array, jump: Array) -> Array:
+        first = last[np.searchsorted(last, np.searchsorted(events, time))]
+        end = np.minimum(first + np.arange(FURTHER)[:, None], len(events) - 1)  # (FURTHER, k)
+        until = np.minimum(following[end], min(run.t[-1], other.t[-1]))
+        k = np.minimum(np.searchsorted(run.t, events[end], side="right"), len(run.t) - 1)
+        kept = (run.t[k] > events[end]) & (run.t[k] < until)
+        after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
+        told = until > events[end]
+        apart = np.max(np.abs(at(run, after[told])[1] - at(other, after[told])[1]), axis=1)
+        found = np.full(end.shape, math.inf)
+        found[told] = np.where(apart <= SAME * np.broadcast_to(jump, end.shape)[told], after[told], math.inf)
+        soonest = np.min(found, axis=0)
+        return np.where(np.isfinite(soonest), soonest, math.nan)
+
+    return again
+
+
+def distance(
+    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, windows: Array, around: float,
+    factor: float,
+) -> Distance:  # fmt: skip
+    """Distances of two runs times a factor; the largest of velocities without windows and what is `around` them."""
+    n, n_q = len(t), runs[0].scene.n_q
+    times = np.concatenate([t, (t[:-1, None] + np.diff(t)[:, None] * GAUSS).ravel() if every else t[:0]])
+    one, other = (at(x, times) for x in runs)
+    energies = [energy(m, times, *x) for x in (one, other)]
+    apart = factor * np.abs(
+        np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]])
+    )
+    far, fast = (np.max(np.abs(x), axis=0) for x in one)
+    floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
+    struck = _between(windows, around, times)[:, None]
+    largest = _largest(np.where(struck & (np.arange(2 * n_q + 1) >= n_q), 0.0, apart), n) + floor
+    integral = _integral(t, apart) + floor * (t - t[0])[:, None]
+    if not every and len(windows):
+        integral[:, n_q:] = math.nan  # where impacts fall between kept states
+    columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
+    position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
+    length = AT_REST * fall(m, runs[0]) * float(t[-1] - t[0])
+    length += STILL * float(np.max(floor[:n_q], initial=0.0))
+    size = 0.5 * float(np.max(np.ptp(one[0][:n], axis=0), initial=0.0))
+    return Distance(position, velocity, power, max(size, length))
+
+
+def _largest(x: Array, n: int) -> Array:
+    """Largest values until each of n times, of those at the times and at the nodes between them."""
+    peaks = x[:n].copy()
+    if len(x) > n:
+        peaks[1:] = np.maximum(peaks[1:], np.max(x[n:].reshape(n - 1, len(GAUSS), -1), axis=1))
+    return np.asarray(np.maximum.accumulate(peaks))
+
+
+def _integral(t: Array, x: Array) -> Array:
+    """Integral up to each time, by the nodes between times, or by the times where there are none."""
+    n = len(t)
+    means = 0.5 * (x[1:n] + x[: n - 1]) if len(x) == n else x[n:].reshape(n - 1, len(GAUSS), -1).mean(axis=1)
+    return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
+
+
+def _between(windows: Array, around: float, t: Array) -> NDArray[np.bool_]:
+    """Whether times lie in intervals, or that near to them."""
+    start, end = np.sort(windows[:, 0] - around), np.sort(windows[:, 1] + around)
+    return np.asarray(np.searchsorted(start, t, side="right") > np.searchsorted(end, t, side="left"))
+
+
+def energy(m: Model, t: Array, q: Array, v: Array) -> Array:
+    """Kinetic energy and that of constant stiffness and forces, (n, 1) [J]."""
+    return np.asarray(states.energy(m, *map(np.ascontiguousarray, (t, q, v))))[:, None]
+
+
+def fall(m: Model, run: Trajectory) -> float:
+    """The speed that the forces at the start would give it over the run, if nothing held it [m/s]."""
+    n = run.scene.n_q
+    slow = np.eye(n) * SLOW
+    kinetic, power = states.power(m, np.full(n, run.t[0]), np.repeat(run.q[:1], n, axis=0), slow)
+    return float(np.max(np.abs(power) / (2.0 * kinetic) * SLOW, initial=0.0)) * float(run.t[-1] - run.t[0])

@@ -1,0 +1,142 @@
+"""The error bar of a run, from its distance to a companion and the first event on which the two disagree."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.errorbar.bars import Bar, ErrorBar
+from lcpstep.errorbar.companions import Companion, companions, followed, in_words
+from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks
+from lcpstep.errorbar.partners import Pairs, Partners, partners
+from lcpstep.kernels.model import Model
+from lcpstep.model import model
+from lcpstep.recording import Kept
+from lcpstep.stepping.moreau import Moreau
+from lcpstep.trajectory import Status, Trajectory
+
+Array = NDArray[np.float64]
+Found = list[tuple[Companion, Trajectory]]
+LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
+STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
+SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
+ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
+
+
+def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
+    """Error bar of a run.
+
+    Parameters
+    ----------
+    run : by `Moreau`, `Located` or `EventDriven`
+    every : whether every step was kept; if not, states are compared where they were kept, and the integrals of
+        velocity and energy are not known
+    seconds : CPU time that a companion may take, where it takes more than a second [s]
+    """
+    if len(run.t) < 2:
+        return unknown(run, "only one state was kept")
+    start, end = float(run.t[0]), _reached(run)
+    scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
+    nothing = np.zeros(0)
+    kept = Kept(1, False, nothing) if every else Kept(0, False, looks(run, run, every, end))
+    best: Found = []
+    for group in companions(run):
+        runs = [(c, followed(c, scene, kept, seconds)) for c in group]
+        found = [(c, x) for c, x in runs if x is not None and len(x.t) > 1]
+        if runs[0][1] is not None and found and (not best or _reach(found) > _reach(best)):
+            best = found
+        if best and _reach(best) >= end:
+            break
+    return against(run, every, best) if best and _reach(best) > start else unknown(run, "no companion")
+
+
+def _reach(found: Found) -> float:
+    return min(_reached(x) for _, x in found)
+
+
+def _reached(run: Trajectory) -> float:
+    """How far a run has come, whatever it keeps."""
+    return float(run.scene.t_span[1] if run.status == Status.DONE else run.t[-1])
+
+
+def unknown(run: Trajectory, reason: str) -> ErrorBar:
+    """The bar of a run that has none."""
+    start, missing = run.t[:1], np.full(len(run.impacts), math.nan)
+    position, velocity, energy = (
+        Bar(np.full((1, k), math.inf), np.full((1, k), math.inf), unit)
+        for k, unit in ((run.scene.n_q, "m"), (run.scene.n_q, "m/s"), (1, "J"))
+    )
+    at = float(start[0])
+    return ErrorBar(start, position, velocity, energy, missing, missing, at, reason, at, ())
+
+
+def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf) -> ErrorBar:
+    """The bar from a companion that measures and others that look for the same events, up to a limit."""
+    companion, other = found[0]
+    until, reason = _reached(run), ""
+    for c, x in found:
+        if _reached(x) < until:
+            until = _reached(x)
+            reason = f"{in_words(c.method)} ends there, {x.message}"
+    m = model(run.scene)
+    logs = [_matched(m, run, x, every, until) for _, x in found]
+    for (c, _), pairs in zip(found, logs, strict=True):
+        if pairs.differs < until:
+            until = pairs.differs
+            reason = f"there the run and {in_words(c.method)} see different events, {pairs.reason}"
+    around = ROUNDING * float(np.max(np.abs(run.t)))
+    around += 0.5 * resolved(run) if isinstance(run.method, Moreau) else 0.0
+    t = looks(run, other, every, min(limit, until - around if reason else until))
+    if len(t) < 2 or not t[-1] > t[0]:
+        return unknown(run, reason or "no states to compare")
+    factor = companion.factor or 1.0
+    apart = distance(m, (run, other), every, t, logs[0].windows, around, factor)
+    texts = tuple(in_words(c.method) for c, _ in found)
+    horizon = _lost(t, apart) if math.isinf(limit) else math.inf
+    n = max(int(np.searchsorted(t, horizon)), 1)
+    if n < len(t):
+        reason = "from there on its error is more than a quarter of the range of the motion"
+    position, velocity, energy = (
+        Bar(b.largest[:n], b.integral[:n], b.unit) for b in (apart.position, apart.velocity, apart.energy)
+    )
+    known = float(t[n - 1]) if reason or math.isfinite(limit) else until
+    times, impulses = _of_impacts(run, other, logs[0].pairs, factor, known)
+    return ErrorBar(t[:n], position, velocity, energy, times, impulses, known, reason, horizon, texts)
+
+
+def _of_impacts(
+    run: Trajectory, other: Trajectory, pairs: Pairs, factor: float, until: float
+) -> tuple[Array, Array]:
+    """Errors of times and impulses, one for each row of the log."""
+    times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))
+    known = ((pairs.stop <= until) & ~pairs.weak)[pairs.of_row]
+    rows, pair = pairs.rows[known], pairs.of_row[known]
+    # two runs that put impacts at the ends of their steps may put them at the same time
+    unseen = 0.25 * resolved(run) if isinstance(other.method, Moreau) else 0.0
+    times[rows] = factor * pairs.time[pair] + ROUNDING * np.max(np.abs(run.t)) + unseen
+    impulses[rows] = factor * pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
+    return times, impulses
+
+
+def _matched(m: Model, run: Trajectory, other: Trajectory, every: bool, until: float) -> Partners:
+    """Partners of the impacts of two runs; a jump is none that is rounding of what moves, or would."""
+    still = STILL * (float(np.max(np.abs(run.v))) + fall(m, run))
+    same = alike(run, other, resolved(run)) if every else None
+    return partners(run.impacts, other.impacts, until, resolved(run), still, same)
+
+
+def resolved(run: Trajectory) -> float:
+    """Within what time impacts of a contact are one [s]."""
+    span = float(run.t[-1] - run.t[0])
+    if not isinstance(run.method, Moreau):
+        return SHORT * span
+    return 2.0 * min(run.method.h, span / max(run.counts.steps, 1))
+
+
+def _lost(t: Array, apart: Distance) -> float:
+    """Time from which on the error says only how large the motion is."""
+    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * apart.size)
+    return float(t[lost[0]]) if len(lost) else math.inf

@@ -1,0 +1,227 @@
+"""Impacts of two runs, matched contact by contact in their order, and the first one on which they disagree.
+
+Impacts of a contact that follow each other faster than the runs resolve count as one blow. Two blows in the same
+place of the order are partners if they are nearer to each other than half the way to their neighbours. A blow that
+has none is a different event, unless it is weak; partners whose velocity jumps are not alike are different events too
+(contacts struck in another order, or at once and one after another).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.trajectory import Kind
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]
+Alike = Callable[[Array, Array], Array]
+WEAK = 0.02  # of the largest jump: the error of the motion shows what a weaker impact without partner does
+ALIKE = 0.5  # of the larger jump, by which those of partners may differ
+NEAR = 0.5  # of the time to the next impact of the contact
+SLIGHT = 1e-3  # of the time over which impacts fall, that those of a weak pair may be apart to be left out
+MARGIN = 4.0  # largest differences of partners' times, by which an impact may fall beyond the end of a run
+
+
+class Suspect(NamedTuple):
+    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it."""
+
+    time: float
+    jump: float
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Blows:
+    """Impacts of one contact, those without time between them as one.
+
+    Attributes
+    ----------
+    first, last : (n,)   times of the first and the last impact of each [s]
+    jump, impulse : (n,)   sums of the jumps of the gap velocity [m/s], and of the impulses [N s]
+    rows : places of the impacts in the log, and `count` (n,) how many each has
+    """
+
+    first: Array
+    last: Array
+    jump: Array
+    impulse: Array
+    rows: Places
+    count: Places
+
+
+class Pairs(NamedTuple):
+    """Pairs of blows (k,): from the first to the last impact, differences of time and impulse; whether weak.
+
+    rows : places of their impacts in the first log, and `many` (k,) how many belong to each
+    """
+
+    start: Array
+    stop: Array
+    time: Array
+    impulse: Array
+    weak: NDArray[np.bool_]
+    rows: Places
+    many: Places
+
+    @classmethod
+    def none(cls) -> Pairs:
+        """No pairs."""
+        numbers, places = np.zeros(0), np.zeros(0, dtype=np.intp)
+        return cls(numbers, numbers, numbers, numbers, np.zeros(0, dtype=bool), places, places)
+
+    @classmethod
+    def of(cls, a: Blows, b: Blows, i: Places, j: Places, weak: float) -> Pairs:
+        """The blows i of one run and j of the other."""
+        chosen = np.isin(np.repeat(np.arange(len(a.count)), a.count), i)
+        return cls(
+            np.minimum(a.first[i], b.first[j]), np.maximum(a.last[i], b.last[j]), np.abs(a.first[i] - b.first[j]),
+            np.abs(a.impulse[i] - b.impulse[j]), np.maximum(a.jump[i], b.jump[j]) <= weak, a.rows[chosen],
+            a.count[i],
+        )  # fmt: skip
+
+    @property
+    def of_row(self) -> Places:
+        """The pair that each of the rows belongs to."""
+        return np.repeat(np.arange(len(self.many)), self.many)
+
+    def windows(self, resolution: float) -> Array:
+        """Times in which one run has struck and the other has not, with as much before and after, (l, 2) [s]."""
+        usual = MARGIN * np.max(self.time[~self.weak], initial=resolution)
+        near = self.time <= max(usual, SLIGHT * float(np.ptp(self.start)) if len(self.start) else 0.0)
+        return np.column_stack([self.start - self.time, self.stop + self.time])[~self.weak | near]
+
+
+class Partners(NamedTuple):
+    """Pairs of blows, and the first different event.
+
+    Attributes
+    ----------
+    pairs : all pairs, those after the first different event too
+    windows : (l, 2)   times in which velocities of the two runs cannot be compared [s]
+    differs : time of the first different event, infinite where there is none [s]
+    reason : what differs, in words
+    """
+
+    pairs: Pairs
+    windows: Array
+    differs: float
+    reason: str
+
+
+def partners(
+    a: Any, b: Any, end: float, resolution: float, still: float = 0.0, alike: Alike | None = None
+) -> Partners:
+    """Match two impact logs.
+
+    Parameters
+    ----------
+    end : up to this time [s]
+    resolution : impacts of a contact that are nearer to each other are one [s]
+    still : jumps below it are rounding [m/s]
+    alike : from when on two runs move alike again after events, given by their times and jumps (k,); nan where they
+        do not. Such events do not count as different
+    """
+    a, b = (np.asarray(log) for log in (a, b))  # record arrays look their fields up slowly
+    struck = [np.flatnonzero((log["kind"] == Kind.IMPACT) & (log["time"] <= end)) for log in (a, b)]
+    jumps = [np.abs(log["after"] - log["before"]) for log in (a, b)]
+    largest = max(float(np.max(jump[k], initial=0.0)) for jump, k in zip(jumps, struck, strict=True))
+    weak = max(WEAK * largest, still)
+    pairs, suspects, windows = [Pairs.none()], [], [np.zeros((0, 2))]
+    for contact in np.union1d(a["contact"][struck[0]], b["contact"][struck[1]]):
+        one, other = (
+            blows(log, jump, k[log["contact"][k] == contact], resolution)
+            for log, jump, k in zip((a, b), jumps, struck, strict=True)
+        )
+        i, j, differing = matched(one, other, weak, resolution)
+        found = Pairs.of(one, other, i, j, weak)
+        late = end - MARGIN * float(np.max(found.time, initial=resolution))
+        suspects += [
+            x._replace(reason=f"{x.reason} at contact {contact}") for x in differing if x.time < late
+        ]
+        windows += [np.array([[x.time, end]]) for x in differing if x.time >= late]
+        windows.append(_tails((a, b), contact, found.start, (one, other), end))
+        pairs.append(found)
+    all_pairs = Pairs(*(np.concatenate(x) for x in zip(*pairs, strict=True)))
+    first, harmless = _first(suspects, alike)
+    windows += [all_pairs.windows(resolution), harmless]
+    return Partners(all_pairs, np.concatenate(windows), first.time, first.reason)
+
+
+def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
+    """The first of the events after which the motions differ, and the times from others to where they are alike."""
+    suspects = sorted(suspects, key=lambda x: x.time)
+    again = np.full(len(suspects), math.nan)
+    if suspects and alike is not None:
+        again = alike(*(np.array([getattr(x, name) for x in suspects]) for name in ("time", "jump")))
+    harmful = [x for x, time in zip(suspects, again, strict=True) if not math.isfinite(time)]
+    harmless = [(x.time, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
+    first = harmful[0] if harmful else Suspect(math.inf, 0.0, "")
+    return first, np.array(harmless).reshape(-1, 2)
+
+
+def blows(log: Any, jumps: Array, rows: Places, resolution: float) -> Blows:
+    """The impacts of a contact, in these rows of a log, joined where they follow each other within the resolution."""
+    time = log["time"][rows]
+    begins = np.flatnonzero(np.diff(time, prepend=-math.inf) > resolution)
+    count = np.diff(begins, append=len(rows))
+    if not len(rows):
+        return Blows(time, time, time, time, rows, count)
+    jump, impulse = (np.add.reduceat(x[rows], begins) for x in (jumps, log["impulse"]))
+    return Blows(time[begins], time[begins + count - 1], jump, impulse, rows, count)
+
+
+def matched(a: Blows, b: Blows, weak: float, resolution: float) -> tuple[Places, Places, list[Suspect]]:
+    """Partners of one contact (k,), (k,), and the events that differ."""
+    room_a, room_b = (_room(x.first, resolution) for x in (a, b))
+    n = min(len(a.first), len(b.first))
+    near = np.abs(a.first[:n] - b.first[:n]) <= np.minimum(room_a[:n], room_b[:n])
+    i = j = int(np.argmin(np.append(near, False)))
+    one, other, alone = list(range(i)), list(range(j)), []
+    while i < len(a.first) and j < len(b.first):
+        own = a.first[i] < b.first[j]
+        if abs(a.first[i] - b.first[j]) <= min(room_a[i], room_b[j]):
+            one.append(i)
+            other.append(j)
+            i, j = i + 1, j + 1
+        elif own:
+            alone.append((a, i))
+            i += 1
+        else:
+            alone.append((b, j))
+            j += 1
+    alone += [(a, k) for k in range(i, len(a.first))] + [(b, k) for k in range(j, len(b.first))]
+    left, right = (np.array(x, dtype=np.intp) for x in (one, other))
+    apart, larger = np.abs(a.jump[left] - b.jump[right]), np.maximum(a.jump[left], b.jump[right])
+    times, words = np.minimum(a.first[left], b.first[right]), "an impact of another strength"
+    suspects = [
+        Suspect(float(times[k]), float(larger[k]), words)
+        for k in np.flatnonzero(apart > ALIKE * larger + weak)
+    ]
+    for x, k in alone:
+        if x.jump[k] > weak:
+            words = f"an impact of the {'run' if x is a else 'companion'} without partner"
+            suspects.append(Suspect(float(x.first[k]), float(x.jump[k]), words))
+    return left, right, suspects
+
+
+def _room(time: Array, resolution: float) -> Array:
+    """How far the partner of each impact may be."""
+    between = np.diff(time, prepend=-math.inf, append=math.inf)
+    return np.asarray(NEAR * np.minimum(between[:-1], between[1:]) + resolution)
+
+
+def _tails(logs: tuple[Any, Any], contact: int, last: Array, both: tuple[Blows, Blows], end: float) -> Array:
+    """From the last impacts of chattering sequences that have partners to where the sequences end in both runs."""
+    struck, found = np.concatenate([x.first for x in both]), []
+    for log in logs:
+        for stop in log["time"][(log["kind"] == Kind.ACCUMULATION) & (log["contact"] == contact)]:
+            before = last[last <= stop]
+            since = np.max(before) if len(before) else np.min(struck[struck <= stop], initial=stop)
+            found.append((since, min(stop, end)))
+    return np.array(found).reshape(-1, 2)
