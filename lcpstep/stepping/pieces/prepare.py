@@ -13,6 +13,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.turns import turns
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -53,7 +54,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     trapezoidal = m.linear and scene.n_j == 0
     stiff = bool(trapezoidal and (np.any(a["C"]) or np.any(a["K"])))
     unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
-    moving = m.motion.given or m.carried
+    moving, stops = m.motion.given or m.carried, turns(scene).stops
     constant = bool(trapezoidal and m.flat)
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     if trapezoidal:
@@ -73,8 +74,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "slack": ROUNDING * float(size or 1.0), "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": longest(scene, m, method),
-        "corners": np.array(scene.corners, dtype=np.float64), "period": scene.period,
-        "margin": MARGIN * t_scale if len(np.asarray(scene.corners)) else 0.0,
+        "corners": np.array(stops, dtype=np.float64), "period": scene.period,
+        "margin": MARGIN * t_scale if len(stops) else 0.0,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip
 
