@@ -92,11 +92,18 @@ def simulate(
     if isinstance(scene, HybridScene):
         if not hasattr(method, "run_hybrid"):
             raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
+        if getattr(method, "audit", False):
+            raise LcpStepError("method: runs of systems with modes are not audited; expected audit=False")
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
         if fault() is not None:
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
-    run = method.run(scene, kept, report)
+    if getattr(method, "audit", False):
+        from lcpstep.audit import audited
+
+        run = audited(method, scene, kept, report)
+    else:
+        run = method.run(scene, kept, report)
     if fault() is not None:
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)

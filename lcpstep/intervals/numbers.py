@@ -63,10 +63,13 @@ class Interval:
     lo, hi : (n,) or numbers   the bounds
     """
 
-    __slots__ = ("hi", "lo")
+    __slots__ = ("hi", "lo", "minus")
 
-    def __init__(self, lo: Any, hi: Any) -> None:
+    def __init__(self, lo: Any, hi: Any, minus: Any = None) -> None:
         self.lo, self.hi = lo, hi
+        self.minus = (
+            minus  # the number that this is minus of, where that is known: -x * x is no product of two
+        )
 
     def __repr__(self) -> str:
         return f"Interval({self.lo}, {self.hi})"
@@ -105,6 +108,8 @@ class Interval:
             return NotImplemented
         if other is self:
             return self.power(2)
+        if isinstance(other, Interval) and (other.minus is self or self.minus is other):
+            return -self.power(2)
         if c is d:
             x, y = self.lo * c, self.hi * c
             return outwards(np.minimum(x, y), np.maximum(x, y))
@@ -153,7 +158,7 @@ class Interval:
         return outwards(np.where(zero, 0.0, np.minimum(x, y)), np.maximum(x, y), 1.0 + n)
 
     def __neg__(self) -> Interval:
-        return Interval(-self.hi, -self.lo)
+        return Interval(-self.hi, -self.lo, self)
 
     def __pos__(self) -> Interval:
         return self
