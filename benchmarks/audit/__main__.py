@@ -5,11 +5,10 @@ from __future__ import annotations
 import argparse
 import time
 from collections import Counter
-from unittest.mock import patch
 
 import numpy as np
 
-from benchmarks.audit.cases import KINDS, Case
+from benchmarks.audit.cases import KINDS, Case, blind
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
 from lcpstep.trajectory import Trajectory
@@ -29,7 +28,7 @@ def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> Non
     """One case by one method: without looks where it turns fast, as it is, and audited."""
     met = case.least < 0.0
     found["cases"] += 1
-    with patch("lcpstep.turns.stops.sources", return_value=[]):
+    with blind():
         plain = simulate(case.scene, method)
         answer = audit(plain)
     if met and not struck(plain):

@@ -8,9 +8,11 @@ form: its smallest gap is found by looking at it densely where it can be small, 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +74,16 @@ def ground_bias(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
 def swing(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
     """Forces of a body that goes along the ground at constant speed and swings above it."""
     out[0], out[1] = 0.0, -TURN * TURN * q[1]
+
+
+@contextmanager
+def blind() -> Iterator[None]:
+    """Without the knowledge of what turns fast: the scan is as fine as the motion alone asks for."""
+    with (
+        patch("lcpstep.turns.stops.sources", return_value=[]),
+        patch("lcpstep.events.scan.fastest_turn", return_value=math.inf),
+    ):
+        yield
 
 
 def moving(kind: str, rng: np.random.Generator) -> Case:

@@ -28,7 +28,7 @@ def audited(method: Any, scene: Scene, kept: Kept, progress: Callable[[float], N
     for _ in range(MOST):
         run = method.run(asked, everything, progress)
         found = audit(run)
-        if not found.missed or found.missed[0] in taken:
+        if not found.missed:
             break
         taken.append(found.missed[0])
         asked = looking_at(asked, found.missed[0])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.audit.flat import own
 from lcpstep.audit.motion import Bounds, Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval, NotEnclosed, enclose
@@ -26,12 +27,14 @@ class Curved:
     Parameters
     ----------
     scene : Scene;  m : Model;  motion : Polynomials
-    error : (absolute, relative)   of the positions; the first may be (m,), one for each piece
+    error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
     """
 
     def __init__(self, scene: Scene, m: Model, motion: Polynomials, error: tuple[Any, float]) -> None:
         self.scene, self.m, self.motion, self.error, self.why = scene, m, motion, error, ""
-        self.contacts: Any = scene.contacts
+        contacts: Any = scene.contacts
+        bound, self.contacts = contacts.lipschitz, contacts
+        self.bound = None if bound is None else np.asarray(bound, dtype=float)
         self.p, self.n_c, self.n_q = np.array(scene.p), scene.n_c, scene.n_q
 
     def seen(self, w: Windows, *, rough: bool) -> Seen:
@@ -41,28 +44,38 @@ class Curved:
         n, rows = len(w.a), np.arange(len(w.a))
         nothing = np.full(n, -np.inf)
         size = np.max(np.abs(np.concatenate([q_a, q_b], axis=1)), axis=1)
-        absolute = self.error[0][w.k] if np.ndim(self.error[0]) else self.error[0]
-        state = absolute + self.error[1] * size
-        if self.why or np.any(w.closed):
+        state = own(self.error[0], w.k) + self.error[1] * np.repeat(size[:, None], self.n_q, axis=1)
+        limit = None if self.bound is None else self.bound[w.c]
+        if limit is not None:  # no more is asked for
+            smooth = np.ones(n, dtype=bool)
             return Seen(
-                nothing, nothing, -nothing, nothing, -nothing, at_a, at_b, state, np.zeros(n), w.closed
+                nothing, nothing, -nothing, -limit, limit, at_a, at_b, state.max(axis=1), np.zeros(n), smooth
             )
-        slack = [Interval(x.place.lo - state, x.place.hi + state) for x in boxes]
+        if self.why:
+            flags = np.zeros(n, dtype=bool)
+            return Seen(
+                nothing,
+                nothing,
+                -nothing,
+                nothing,
+                -nothing,
+                at_a,
+                at_b,
+                state.max(axis=1),
+                np.zeros(n),
+                flags,
+            )
+        slack = [Interval(x.place.lo - e, x.place.hi + e) for x, e in zip(boxes, state.T, strict=True)]
         try:
             gap, G, rate, curve, smooth = self.enclosed(w, slack, boxes)
         except NotEnclosed as why:
             self.why = str(why)
             return self.seen(w, rough=rough)
-        speed, weight = rate, np.zeros(n)
+        speed, error = rate, ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
         for i in range(self.n_q):
             g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
             speed = speed + g * boxes[i].speed
-            weight = weight + g.size
-        bound = getattr(self.contacts, "lipschitz", None)
-        if bound is not None:
-            limit = np.broadcast_to(np.asarray(bound, dtype=float), (self.n_c,))[w.c]
-            curve, smooth = Interval(-limit, limit), np.ones(n, dtype=bool)
-        error = weight * state + ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
+            error = error + g.size * state[:, i]
         return Seen(
             gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
         )

@@ -18,13 +18,18 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-14  # of the numbers that a gap is the difference of
 
 
+def own(error: Any, k: Any) -> Any:
+    """The absolute error of every coordinate in the pieces k, (n, n_q) or one for all."""
+    return error[k] if np.ndim(error) else error
+
+
 class Flat:
     """Flat contacts and a computed motion.
 
     Parameters
     ----------
     scene : Scene;  m : Model;  motion : Oscillation or Polynomials
-    error : (absolute, relative)   of the positions; the first may be (m,), one for each piece
+    error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
     """
 
     why = ""  # nothing is known from samples alone
@@ -53,9 +58,8 @@ class Flat:
             s_a, s_b = self.obstacle.values(w.c, w.a), self.obstacle.values(w.c, w.b)
             size = size + np.maximum(np.abs(s_a), np.abs(s_b))
             at_a, at_b, smooth = at_a - s_a, at_b - s_b, ~branched
-        weight = np.sum(np.abs(G), axis=1)
-        absolute = self.error[0][w.k] if np.ndim(self.error[0]) else self.error[0]
-        error = weight * absolute + (self.error[1] + ROUNDING) * size
+        absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
+        error = absolute + (self.error[1] + ROUNDING) * size
         return Seen(
             gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
         )
@@ -76,13 +80,8 @@ class Flat:
 
     def pressed(self, w: Windows, *, rough: bool) -> Seen:
         """Of one closed contact: what presses it, as if that were the gap, -(G y'' - sigma'') on the obstacle."""
-        o: Any = getattr(self.motion, "o", None)
-        n = len(w.a)
-        if o is None:
-            nothing = np.full(n, -np.inf)
-            return Seen(
-                nothing, nothing, -nothing, nothing, -nothing, nothing, nothing, *np.zeros((2, n)), w.closed
-            )
+        assert isinstance(self.motion, Oscillation)
+        o, n = self.motion.o, len(w.a)
         G, offset, m = self.G[0, 0], self.offset[0], self.linear
         force: Any = Interval(np.full(n, G * o.f0 + o.w2 * offset), np.full(n, G * o.f0 + o.w2 * offset))
         if o.Omega != 0.0:

@@ -1,7 +1,7 @@
 """Bounds of the computed motion over windows of time.
 
-Between two kept states a motion is a polynomial, whose coefficients in Bernstein's basis of a window enclose it there,
-or, for one linear degree of freedom in closed form, a decaying oscillation and a steady one,
+Between two kept states a motion is a polynomial, whose coefficients in Bernstein's basis of a window enclose it
+there, or, for one linear degree of freedom in closed form, a decaying oscillation and a steady one,
 
     y = rest + exp(-delta tau) R cos(w tau - phi) + S cos(Omega t - psi)
 
@@ -36,7 +36,7 @@ class Bounds(NamedTuple):
 def _nodes(degree: int) -> tuple[Array, Array]:
     """Places in [0, 1], and the matrix from values there to Bernstein's coefficients."""
     x = np.arange(degree + 1) / degree
-    return x, np.linalg.inv(basis(x, degree))
+    return x, np.asarray(np.linalg.inv(basis(x, degree)), dtype=float)
 
 
 def basis(x: Array, degree: int) -> Array:
@@ -119,7 +119,7 @@ def parabolas(t: Array, q: Array, v: Array, a: Array) -> Polynomials:
 
 
 def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
-    """Through the states at the start of each piece, positions at equal shares of it (m, k, n_q), and the next one."""
+    """Through the state at the start of each piece, positions at equal shares of it (m, k, n_q), and the next one."""
     k = inner.shape[1]
     degree = k + 2
     shares = np.arange(1, k + 2) / (k + 1)

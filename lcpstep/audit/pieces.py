@@ -109,14 +109,15 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
 
 
 def between(run: Trajectory, jumps: Mask) -> Array:
-    """How far the parabolas between kept states are from the motion: what their velocities miss, over the step."""
+    """How far the parabolas between kept states may be from the motion, (m, n_q): what their velocities miss."""
     h = np.diff(run.t)
     with np.errstate(all="ignore"):
         end = 2.0 * np.diff(run.q, axis=0) / h[:, None] - run.v[:-1]
-    missed = np.where(h > 0.0, h * np.max(np.abs(run.v[1:] - end), axis=1), 0.0)
-    smooth = np.where(jumps[1:] | ~np.isfinite(missed), 0.0, missed)
-    nearby = np.maximum(np.maximum(np.append(0.0, smooth[:-1]), np.append(smooth[1:], 0.0)), smooth)
-    return np.asarray(0.5 * nearby)
+        missed = h[:, None] * np.abs(run.v[1:] - end)
+    smooth = np.where(jumps[1:, None] | ~np.isfinite(missed), 0.0, missed)
+    zero = np.zeros((1, run.q.shape[1]))
+    nearby = np.maximum(np.vstack([zero, smooth[:-1]]), np.vstack([smooth[1:], zero]))
+    return np.asarray(0.5 * np.maximum(nearby, smooth))
 
 
 def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:

@@ -14,8 +14,8 @@ class Window:
     Attributes
     ----------
     start, end : [s];  contact : its number
-    gap : the smallest gap that could be shown [m]; of what was sampled, the smallest that was seen; -inf where nothing
-        could be shown
+    gap : the smallest gap that could be shown [m]; of what was sampled, the smallest that was seen; -inf where
+        nothing could be shown
     why : in words
     sampled : whether it was looked at in samples
     """
@@ -29,7 +29,8 @@ class Window:
 
     def __str__(self) -> str:
         seen = "seen" if self.sampled else "shown"
-        return f"{self.start:.9g} .. {self.end:.9g} s, contact {self.contact}: smallest gap {seen} {self.gap:.3g} m; {self.why}"
+        where = f"{self.start:.9g} .. {self.end:.9g} s, contact {self.contact}"
+        return f"{where}: smallest gap {seen} {self.gap:.3g} m; {self.why}"
 
 
 @dataclass(frozen=True)

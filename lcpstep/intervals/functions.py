@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.intervals.numbers import Condition, Interval, bounds, sides
+from lcpstep.intervals.conditions import Condition, sides
+from lcpstep.intervals.numbers import Interval, bounds
 from lcpstep.intervals.paths import NotEnclosed, current
 
 

@@ -11,48 +11,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lcpstep.intervals.paths import Mask, NotEnclosed, current
-
-Array = NDArray[np.float64]
-OUT = 2.0**-51  # relative; more than rounding
-TINY = 1e-300
-NEVER = np.bool_(False)
-
-
-class Condition:
-    """A comparison: where it certainly holds, and where it certainly does not."""
-
-    def __init__(self, yes: Any, no: Any) -> None:
-        self.yes, self.no = yes, no
-
-    def __bool__(self) -> bool:
-        """One way or the other: see `paths`."""
-        paths = current()
-        yes, no = paths.spread(self.yes), paths.spread(self.no)
-        return bool(paths.choose([(True, ~no), (False, ~yes)]))
-
-    def __and__(self, other: Any) -> Condition:
-        """Both."""
-        yes, no = sides(other)
-        return Condition(self.yes & yes, self.no | no)
-
-    def __or__(self, other: Any) -> Condition:
-        """At least one."""
-        yes, no = sides(other)
-        return Condition(self.yes | yes, self.no & no)
-
-    def __invert__(self) -> Condition:
-        """The opposite."""
-        return Condition(self.no, self.yes)
-
-    __rand__, __ror__ = __and__, __or__
-
-
-def sides(x: Any) -> tuple[Any, Any]:
-    """Where x certainly holds and where it certainly does not."""
-    return (x.yes, x.no) if isinstance(x, Condition) else (np.bool_(x), ~np.bool_(x))
+from lcpstep.intervals.conditions import Condition
+from lcpstep.intervals.paths import NotEnclosed, current
+from lcpstep.intervals.rounding import moved_out, wave
 
 
 class Interval:
@@ -254,11 +216,11 @@ class Interval:
 
     def sin(self) -> Interval:
         """Sine."""
-        return wave(self, 0.25, np.sin)
+        return Interval(*wave(self.lo, self.hi, 0.25, np.sin))
 
     def cos(self) -> Interval:
         """Cosine."""
-        return wave(self, 0.0, np.cos)
+        return Interval(*wave(self.lo, self.hi, 0.0, np.cos))
 
     def tan(self) -> Interval:
         """Tangent."""
@@ -325,7 +287,7 @@ def bounds(x: Any) -> tuple[Any, Any]:
 
 def outwards(lo: Any, hi: Any, units: float = 1.0) -> Interval:
     """Bounds moved by more than the rounding of what made them."""
-    return Interval(lo - (units * OUT * np.abs(lo) + TINY), hi + (units * OUT * np.abs(hi) + TINY))
+    return Interval(*moved_out(lo, hi, units))
 
 
 def known(x: Interval) -> Interval:
@@ -346,22 +308,3 @@ def inverse(x: Any) -> Any:
     zero = (x.lo <= 0.0) & (x.hi >= 0.0)
     y = outwards(1.0 / x.hi, 1.0 / x.lo)
     return Interval(np.where(zero, -np.inf, y.lo), np.where(zero, np.inf, y.hi))
-
-
-def wave(x: Interval, shift: float, f: Any) -> Interval:
-    """Sine (shift 1/4) or cosine (0): their extremes lie at whole and half turns after the shift."""
-    a, b = f(x.lo), f(x.hi)
-    slack = 1e-15 * (1.0 + np.maximum(np.abs(x.lo), np.abs(x.hi)))
-    first, last = (x.lo - slack) / (2.0 * np.pi) - shift, (x.hi + slack) / (2.0 * np.pi) - shift
-    top = np.floor(last) >= np.ceil(first)
-    bottom = np.floor(last - 0.5) >= np.ceil(first - 0.5)
-    y = outwards(np.minimum(a, b), np.maximum(a, b), 8.0)
-    lo, hi = np.maximum(y.lo, -1.0), np.minimum(y.hi, 1.0)
-    return Interval(np.where(bottom, -1.0, lo), np.where(top, 1.0, hi))
-
-
-def united(x: Interval, y: Interval, where: Mask) -> Interval:
-    """The hull of both in these windows, x elsewhere."""
-    return Interval(
-        np.where(where, np.minimum(x.lo, y.lo), x.lo), np.where(where, np.maximum(x.hi, y.hi), x.hi)
-    )
