@@ -97,10 +97,12 @@ class Contacts(Pickled):
         differenced along the motion where not given (the event-driven integrator needs it)
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
     friction : Coulomb, or None for contacts without
+    lipschitz : (n_c,) or one number for all contacts, or None
+        Bound of |du/dt| in free motion [m/s^2], for audits of callbacks of which bounds cannot be found.
 
     Raises
     ------
-    ValueError   a shape does not fit or a restitution lies outside [0, 1]
+    ValueError   a shape does not fit, a restitution lies outside [0, 1], or a bound is not positive
     """
 
     n_c: int
@@ -110,10 +112,16 @@ class Contacts(Pickled):
     bias: Callback | None = None
     restitution: ArrayLike = 0.0
     friction: Coulomb | None = None
+    lipschitz: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_c", checks.count("n_c", self.n_c))
         object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
+        if self.lipschitz is not None:
+            bounds = checks.per_contact("lipschitz", self.lipschitz, self.n_c)
+            if not np.all(bounds > 0.0):
+                raise ValueError(f"lipschitz: expected positive numbers, got {self.lipschitz!r}")
+            object.__setattr__(self, "lipschitz", bounds)
         if self.friction is not None:
             checks.instance("friction", self.friction, Coulomb)
             object.__setattr__(self, "friction", self.friction.fitted(self.n_c))

@@ -109,6 +109,8 @@ def simulate(
     if isinstance(scene, HybridScene):
         if not hasattr(method, "run_hybrid"):
             raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
+        if getattr(method, "audit", False):
+            raise LcpStepError("method: runs of systems with modes are not audited; expected audit=False")
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
         if fault() is not None:
             from lcpstep.model import hybrid_culprit
@@ -116,7 +118,12 @@ def simulate(
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
     begin = time.process_time()
-    run = method.run(scene, kept, report)
+    if getattr(method, "audit", False):
+        from lcpstep.audit import audited
+
+        run = audited(method, scene, kept, report)
+    else:
+        run = method.run(scene, kept, report)
     seconds = time.process_time() - begin
     if fault() is not None:
         from lcpstep.model import culprit
@@ -132,7 +139,7 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
     """LcpStepError where there is no error bar."""
     from lcpstep.errorbar.companions import KNOWN
     from lcpstep.model import LARGEST_DENSE
-    from lcpstep.stepping.sparse import is_sparse
+    from lcpstep.stepping.moreau import is_sparse
 
     if isinstance(scene, HybridScene):
         raise LcpStepError(

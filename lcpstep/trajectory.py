@@ -83,6 +83,7 @@ class Trajectory:
         Fields time [s], contact, before, after (gap velocities [m/s]), impulse [N s], kind (`Kind`).
     status : Status   DONE, or why the run ended early; `message` says it in words
     doubt : what is wrong with a run although it is DONE; also part of `message`, and "" where nothing is known
+    audit : lcpstep.audit.Audit   what could be shown to be free of unnoticed events; None where it was not asked for
     counts : Counts   steps, complementarity problems solved, force evaluations, events
     joint_impulse : (n, n_j)   impulse of each joint since the state before [N s]
     friction_impulse : (n, n_c)   impulse of each contact's friction since the state before [N s]; no columns
@@ -106,6 +107,7 @@ class Trajectory:
     friction_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
     doubt: str = ""
     error: Any = None
+    audit: Any = None
 
     def at(self, t: ArrayLike) -> tuple[Array, Array]:
         """State at any time of the run.

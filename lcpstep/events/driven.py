@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from lagrangian import HybridScene, Scene, checks
@@ -24,6 +24,8 @@ class EventDriven:
     ----------
     rtol, atol : tolerances of the smooth integration and of the chatter map (position [m]); at least 1e-14 for rtol
     max_events : bound on the number of events of a run
+    audit : whether the finished run is searched for events that it has not noticed, see `lcpstep.audit`; those that
+        are found are taken, and `Trajectory.audit` says what could be shown
 
     Raises
     ------
@@ -54,6 +56,7 @@ class EventDriven:
     rtol: float = 1e-12
     atol: float = 1e-12
     max_events: int = 10_000_000
+    audit: bool = field(default=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rtol", checks.number("rtol", self.rtol, least=LEAST_TOLERANCE, most=1.0))
@@ -62,6 +65,7 @@ class EventDriven:
         if most != int(most):
             raise ValueError(f"max_events: expected a whole number, got {self.max_events!r}")
         object.__setattr__(self, "max_events", int(most))
+        checks.instance("audit", self.audit, bool)
 
     def run_hybrid(
         self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]

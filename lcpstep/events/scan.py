@@ -12,6 +12,7 @@ from lagrangian import Scene
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
+from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 PER_PERIOD, PER_FORCING, PER_SPAN = (
@@ -42,11 +43,15 @@ def fastest_turn(scene: Scene, m: Model) -> float:
     """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
 
     2 pi max |s'| / max |s''| of samples, which need not be dense for that; what has no period may speed up, and is
-    looked at in windows of time.
+    looked at in windows of time. Stretches that turn fast by themselves are left out: runs stop there
+    (`lcpstep.turns`).
     """
     windows = 1 if math.isfinite(scene.period) else WINDOWS
     fastest = 0.0
-    for rates in _rates(scene, m, sample_times(scene), SLOPE * sampled_length(scene)):
+    times = sample_times(scene)
+    even = turns(scene).elsewhere(times, scene.period)
+    for rates in _rates(scene, m, times, SLOPE * sampled_length(scene)):
+        rates[~even] = 0.0
         largest = np.abs(rates).reshape(windows, -1, rates.shape[1], 2).max(axis=1)
         speed, acceleration = largest[..., 0], largest[..., 1]
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))

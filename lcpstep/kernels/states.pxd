@@ -6,6 +6,7 @@ from lcpstep.pointers cimport after, max, min
 cdef void find_extremes(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double* g, double* low, double* high
 ) noexcept
+cdef void find_gaps(Model m, Py_ssize_t count, double* t, double* q, double* v, double* out) noexcept
 cdef void find_rates(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double* G, double* g_t, bint moved, double* out
 ) noexcept

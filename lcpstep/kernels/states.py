@@ -37,6 +37,21 @@ def find_extremes(
                 low[c], high[c] = min(low[c], g[c]), max(high[c], g[c])
 
 
+def gaps_at(m: Model, t: Any, q: Any) -> Any:
+    """Every gap at these times and positions, (n, n_c)."""
+    count, found, rest = len(t), np.zeros((len(t), m.n_c)), np.zeros(m.n_q)
+    at, x, x_t, out = doubles(t), doubles(q), doubles(rest), doubles(found)
+    find_gaps(m, count, at, x, x_t, out)
+    return found
+
+
+def find_gaps(m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, out: Doubles) -> None:
+    """Kernel of `gaps_at`."""
+    with cython.nogil:
+        for k in range(count):
+            gaps(m, t[k], after(q, k * m.n_q), v, after(out, k * m.n_c))
+
+
 def own_rates(m: Model, t: Any, q: Any, v: Any, moved: bool) -> Any:
     """g_t of every contact, (n, n_c); with `moved` the whole gap velocity G v + g_t."""
     count, rates = len(t), np.zeros((len(t), m.n_c))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
@@ -35,6 +35,8 @@ class Located:
     tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
         tolerance * (1 + size of the motion) over the span, in the scene's units. A tolerance that cannot be met ends
         the run with the status STEP_TOO_SMALL
+    audit : whether the finished run is searched for events that it has not noticed, see `lcpstep.audit`; those that
+        are found are taken, and `Trajectory.audit` says what could be shown
 
     Raises
     ------
@@ -56,6 +58,7 @@ class Located:
     max_events: int = 10_000_000
     max_per_step: int = 10_000_000
     tolerance: float | None = None
+    audit: bool = field(default=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
@@ -63,6 +66,7 @@ class Located:
             raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
         object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
         object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))
+        checks.instance("audit", self.audit, bool)
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
             if self.order == "exact":

@@ -21,6 +21,7 @@ from lagrangian import Scene
 from lcpstep.events.scan import SAMPLES, sample_times, sampled, sampled_length
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
+from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 PER_PIECE = 8  # samples between two corners
@@ -74,7 +75,7 @@ def reach(scene: Scene, m: Model) -> Reach:
 
 def _between_corners(scene: Scene) -> Array:
     """Times inside of every smooth piece of the period at the start of the span."""
-    corners = np.asarray(scene.corners, dtype=float)
+    corners = turns(scene).stops
     if len(corners) == 0 or not math.isfinite(scene.period):
         return np.zeros(0)
     start = scene.period * math.floor(scene.t_span[0] / scene.period)

@@ -22,6 +22,7 @@ from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.model import Model
 from lcpstep.model import model
 from lcpstep.recording import Kept, Recorder, States
+from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ def bounds(scene: Scene, m: Model, o: Any, method: Any) -> dict[str, float]:
 
 def flight_of(scene: Scene, m: Model, o: Any, given: dict[str, float], *counted: Any) -> Flight:
     """What the kernels are handed; the state starts as the scene's. counted: record and tally, or nothing."""
-    flight = Flight(scene.t_span, scene.corners, scene.period, m, o, given, *counted)
+    flight = Flight(scene.t_span, turns(scene).stops, scene.period, m, o, given, *counted)
     flight.state[0], flight.state[1] = scene.q0, scene.v0
     return flight
 

@@ -22,6 +22,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
+from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 MOST_ROWS = 2**22  # numbers in a buffer of kept states
@@ -52,7 +53,7 @@ def start(scene: Scene, method: Any) -> Mechanism:
     smooth = Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol)
     smooth.state[: scene.n_q], smooth.state[scene.n_q :] = scene.q0, scene.v0
     smooth.next_step = FIRST_STEP * scan
-    corners = () if constant else scene.corners
+    corners = () if constant else turns(scene).stops
     smooth.mechanism = Mechanism(
         m, joints, scene.n_j, constant, smooth, scan, scene.t_span, corners, scene.period, *quadrature()
     )

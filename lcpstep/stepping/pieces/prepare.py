@@ -16,6 +16,7 @@ from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.start import MARGIN
 from lcpstep.stepping.steps import largest
+from lcpstep.turns import turns
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -56,7 +57,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     trapezoidal = m.linear and scene.n_j == 0
     stiff = bool(trapezoidal and (np.any(a["C"]) or np.any(a["K"])))
     unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
-    moving = m.motion.given or m.carried
+    moving, stops = m.motion.given or m.carried, turns(scene).stops
     constant = bool(trapezoidal and m.flat)
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     if trapezoidal:
@@ -76,8 +77,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "slack": ROUNDING * size(scene, m, method), "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": longest(scene, m, method),
-        "corners": np.array(scene.corners, dtype=np.float64), "period": scene.period,
-        "margin": MARGIN * t_scale if len(np.asarray(scene.corners)) else 0.0,
+        "corners": np.array(stops, dtype=np.float64), "period": scene.period,
+        "margin": MARGIN * t_scale if len(stops) else 0.0,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip
 

@@ -1,0 +1,72 @@
+"""Run random cases with and without the audit: `python -m benchmarks.audit --cases 10000 --seed 1`."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import Counter
+
+import numpy as np
+
+from benchmarks.audit.cases import KINDS, Case, blind
+from lcpstep import EventDriven, Located, simulate
+from lcpstep.audit import audit
+from lcpstep.trajectory import Trajectory
+
+CLEAR = {
+    EventDriven: 1e-10,
+    Located: 1e-4,
+}  # of a gap: whether it is met is no question of the method's error
+
+
+def struck(run: Trajectory) -> bool:
+    """Whether the run has seen the event."""
+    return len(run.impacts) > 0
+
+
+def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> None:
+    """One case by one method: without looks where it turns fast, as it is, and audited."""
+    met = case.least < 0.0
+    found["cases"] += 1
+    with blind():
+        plain = simulate(case.scene, method)
+        answer = audit(plain)
+    if met and not struck(plain):
+        found["missed without looks"] += 1
+        found["of these not reported"] += not answer.missed and not answer.windows
+    if not met and answer.missed:
+        found["reported, but none"] += 1
+    own = simulate(case.scene, method)
+    found["missed by default"] += met and not struck(own)
+    kind = type(method)
+    audited = simulate(case.scene, kind(audit=True) if kind is EventDriven else kind(1e-3, audit=True))
+    found["missed with the audit on"] += met and not struck(audited)
+    found["struck, but none"] += not met and struck(audited)
+    found["flights"] += audited.audit.flights
+    found["certified"] += audited.audit.certified
+
+
+def main() -> None:
+    """Print a table by kind and method."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    rng = np.random.default_rng(options.seed)
+    counts: dict[tuple[str, str], Counter[str]] = {}
+    names = list(KINDS)
+    start = time.process_time()
+    for k in range(options.cases):
+        kind = names[k % len(names)]
+        case = KINDS[kind](kind, rng)
+        method = EventDriven() if k // len(names) % 4 else Located(1e-3)
+        if abs(case.least) < CLEAR[type(method)]:
+            continue
+        judge(case, method, counts.setdefault((kind, type(method).__name__), Counter()))
+    for (kind, name), found in counts.items():
+        print(f"{kind}, {name}: " + ", ".join(f"{key} {n}" for key, n in found.items() if n))
+    print(f"{time.process_time() - start:.0f} CPU s")
+
+
+if __name__ == "__main__":
+    main()

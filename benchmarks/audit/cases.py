@@ -1,0 +1,167 @@
+"""Scenes in which an event is easily missed, drawn at random, each with what is true of its first flight.
+
+An oscillator of one turn a second, or a free body, passes an obstacle that reaches towards it for a short time, or at
+one place; the widths are 1e-1 to 1e-5 of a period. Whether it is met, the free motion says, which is known in closed
+form: its smallest gap is found by looking at it densely where it can be small, and polished.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+
+Array = NDArray[np.float64]
+TURN = 2.0 * math.pi
+LOOKS = 4001
+ZOOMS = 6
+SPAN = 10.0
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, what kind it is, how narrow, and the smallest gap of its free motion."""
+
+    kind: str
+    width: float
+    scene: Scene
+    least: float
+
+
+def bell(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """An obstacle that reaches up for a short time: p = (height, width, time)."""
+    s = (t - p[2]) / p[1]
+    e = p[0] * math.exp(-s * s)
+    out[0, 0], out[0, 1], out[0, 2] = e, -2.0 * s * e / p[1], (4.0 * s * s - 2.0) * e / p[1] ** 2
+
+
+def bump(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """The same with a beginning and an end."""
+    s = (t - p[2]) / p[1]
+    out[0, 0] = out[0, 1] = out[0, 2] = 0.0
+    if abs(s) < 1.0:
+        w = 1.0 - s * s
+        out[0, 0], out[0, 1] = p[0] * w**3, -6.0 * p[0] * s * w * w / p[1]
+        out[0, 2] = (24.0 * s * s * w - 6.0 * w * w) * p[0] / p[1] ** 2
+
+
+def ground(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """A bump at one place of the ground: p = (height, width, place, offset)."""
+    s = (q[0] - p[2]) / p[1]
+    out[0] = q[1] + p[3] - p[0] * math.exp(-s * s)
+
+
+def ground_q(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Its Jacobian."""
+    s = (q[0] - p[2]) / p[1]
+    out[0, 0], out[0, 1] = 2.0 * s / p[1] * p[0] * math.exp(-s * s), 1.0
+
+
+def ground_bias(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Its acceleration at v' = 0."""
+    s = (q[0] - p[2]) / p[1]
+    out[0] = (2.0 - 4.0 * s * s) / p[1] ** 2 * p[0] * math.exp(-s * s) * v[0] * v[0]
+
+
+def swing(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """Forces of a body that goes along the ground at constant speed and swings above it."""
+    out[0], out[1] = 0.0, -TURN * TURN * q[1]
+
+
+@contextmanager
+def blind() -> Iterator[None]:
+    """Without the knowledge of what turns fast: the scan is as fine as the motion alone asks for."""
+    with (
+        patch("lcpstep.turns.stops.sources", return_value=[]),
+        patch("lcpstep.events.scan.fastest_turn", return_value=math.inf),
+    ):
+        yield
+
+
+def moving(kind: str, rng: np.random.Generator) -> Case:
+    """An oscillator above an obstacle that reaches up once, by a free height or just as far as the motion."""
+    width = 10.0 ** rng.uniform(-5.0, -1.0)
+    phase, at = rng.uniform(0.0, TURN), rng.uniform(0.3, SPAN - 0.3)
+    motion = bell if rng.random() < 0.5 else bump
+    above = math.cos(TURN * at + phase) + 1.05
+    height = rng.uniform(0.05, 1.0)
+    if kind == "tangent":
+        height = above * (1.0 + rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -2.0))
+    p = np.array([height, width, at])
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=TURN**2),
+        contacts=LinearContacts(G=1.0, offset=1.05, restitution=0.8, motion=motion),
+        q0=math.cos(phase), v0=-TURN * math.sin(phase), t_span=(0.0, SPAN), p=p, name=f"{kind} {width:.2g}",
+    )  # fmt: skip
+    out = np.zeros((1, 3))
+
+    def gap(t: float) -> float:
+        motion(t, None, None, p, out)
+        return math.cos(TURN * t + phase) + 1.05 - float(out[0, 0])
+
+    return Case(kind, width, scene, smallest(gap, at - 4.0 * width, at + 4.0 * width))
+
+
+def over_ground(kind: str, rng: np.random.Generator) -> Case:
+    """A body that passes over a narrow bump of the ground, as functions of its place."""
+    width = 10.0 ** rng.uniform(-5.0, -1.0)
+    phase, at = rng.uniform(0.0, TURN), rng.uniform(0.3, SPAN - 0.3)
+    above = math.cos(TURN * at + phase) + 1.05
+    height = rng.uniform(0.05, 1.0)
+    if kind == "ground, tangent":
+        height = above * (1.0 + rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-7.0, -2.0))
+    p = np.array([height, width, at, 1.05])
+    scene = Scene(
+        system=System(2, np.eye(2), swing),
+        contacts=Contacts(1, ground, ground_q, bias=ground_bias, restitution=0.8),
+        q0=[0.0, math.cos(phase)], v0=[1.0, -TURN * math.sin(phase)], t_span=(0.0, SPAN), p=p,
+        name=f"{kind} {width:.2g}",
+    )  # fmt: skip
+
+    def gap(t: float) -> float:
+        s = (t - at) / width
+        return math.cos(TURN * t + phase) + 1.05 - height * math.exp(-s * s)
+
+    return Case(kind, width, scene, smallest(gap, at - 4.0 * width, at + 4.0 * width))
+
+
+def grazing(kind: str, rng: np.random.Generator) -> Case:
+    """A forced oscillator whose wall lies as far as it swings, to a share of 1e-2 to 1e-9: double roots."""
+    rate, phase = rng.uniform(0.5, 4.0) * TURN, rng.uniform(0.0, TURN)
+    amplitude = rng.uniform(0.1, 2.0)
+    share = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-9.0, -2.0)
+    offset = amplitude * (1.0 + share)
+    q0 = amplitude * math.cos(phase)
+    while q0 + offset <= 1e-3 * amplitude:
+        phase = rng.uniform(0.0, TURN)
+        q0 = amplitude * math.cos(phase)
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=rate**2), contacts=LinearContacts(G=1.0, offset=offset, restitution=0.8),
+        q0=q0, v0=-amplitude * rate * math.sin(phase), t_span=(0.0, SPAN), name=kind,
+    )  # fmt: skip
+    return Case(kind, 1.0, scene, amplitude * share)
+
+
+KINDS: dict[str, Callable[[str, np.random.Generator], Case]] = {
+    "burr": moving, "tangent": moving, "ground": over_ground, "ground, tangent": over_ground, "double root": grazing,
+}  # fmt: skip
+
+
+def smallest(gap: Callable[[float], float], a: float, b: float) -> float:
+    """The smallest value between a and b: dense looks, and denser ones around the best."""
+    best = math.inf
+    for _ in range(ZOOMS):
+        times = np.linspace(a, b, LOOKS if math.isinf(best) else LOOKS // 40)
+        values = [gap(float(t)) for t in times]
+        k = int(np.argmin(values))
+        best = min(best, values[k])
+        a, b = float(times[max(k - 1, 0)]), float(times[min(k + 1, len(times) - 1)])
+    return best

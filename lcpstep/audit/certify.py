@@ -1,0 +1,231 @@
+"""The search for windows of a run that could hold an unnoticed event.
+
+Every flight is divided into windows; those in which the bounds of the gap leave no room for a zero are done, the
+others are halved, down to a size at which they are reported. A window with a gap below zero holds an event that the
+run has missed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.audit.pieces import Pieces
+from lcpstep.audit.result import Audit, Found, Window
+from lcpstep.audit.sampled import sampled
+from lcpstep.audit.windows import Windows, joined, judged
+from lcpstep.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+PORTION = 1 << 15  # windows at a time
+SMALLEST = 1e-10  # of the scale of times: windows are not halved any more
+AT_EVENT = 1e-7  # of it: what is so near to an event of the run is part of it
+BESIDE, ERRORS = 1e-3, 3.0  # so is what is near, where the gap is above minus so many errors
+NEGLIGIBLE = 1e-9  # of the largest gap: no error that is larger counts as one
+MOST = 16  # windows that one becomes, at most, on average
+LEAST = 20_000  # windows that any portion may become
+CLOSER = 10  # halvings of the window of an event that is to be taken
+UNKNOWN = "an impact lies between two kept states, so that the motion between them is not known"
+NARROW = "the gap is as small as the error of the motion"
+FORCE = "the force of a closed contact is looked at by the run alone"
+TOO_MANY = "bounds are too wide, and windows would be too many"
+
+
+@dataclass
+class Tally:
+    """What has been found so far."""
+
+    certified: float = 0.0
+    windows: list[tuple[Windows, Array, str, bool]] = field(default_factory=list)
+    found: list[Found] = field(default_factory=list)
+
+
+def audit(run: Trajectory) -> Audit:
+    """What can be shown of a run that has kept every step."""
+    if run.scene.n_c == 0 or len(run.t) < 2:
+        return Audit(1.0, 0, 0, ())
+    pieces, tally = Pieces(run), Tally()
+    h = np.diff(pieces.t)
+    n_c = run.scene.n_c
+    scale = min(run.scene.period, pieces.t[-1] - pieces.t[0])
+    touched = touching(pieces)
+    rows = max(1, PORTION // n_c)
+    for first in range(0, len(h), rows):
+        at = np.arange(first, min(first + rows, len(h)))
+        at = at[h[at] > 0.0]
+        w = divided(pieces, at, touched)
+        far = pieces.far(w)
+        tally.certified += float(np.sum((w.b - w.a)[far]))
+        examine(pieces, w.chosen(~far), touched, scale, tally)
+    whole = n_c * (pieces.t[-1] - pieces.t[0])
+    flights, bad = counted(pieces, touched, tally)
+    windows = tuple(sorted(reported(tally), key=lambda x: (x.start, x.contact)))
+    missed = tuple(sorted(set(tally.found), key=lambda x: (x.time, x.contact, x.start)))
+    if missed:
+        missed = (closer(pieces, missed[0]), *missed[1:])
+    return Audit(min(1.0, tally.certified / whole), flights, flights - bad, windows, missed=missed)
+
+
+def closer(p: Pieces, x: Found) -> Found:
+    """The same event, with its window halved towards where the gap falls to zero."""
+    k = min(int(np.searchsorted(p.t, x.start, side="right")) - 1, len(p.t) - 2)
+    a, b, no = x.start, x.time, np.zeros(1, dtype=bool)
+    if not p.t[k] <= a < b <= p.t[k + 1] or p.closed[k, x.contact]:
+        return x
+    for _ in range(CLOSER):
+        middle = 0.5 * (a + b)
+        w = Windows(np.array([k]), np.array([x.contact]), np.array([a]), np.array([middle]), no, no, no)
+        if p.problem.seen(w, rough=False).at_b[0] > 0.0:
+            a = middle
+        else:
+            b = middle
+    return Found(b, x.contact, a)
+
+
+def touching(p: Pieces) -> NDArray[np.bool_]:
+    """At which times a contact is at zero by what the run says, (m + 1, n_c)."""
+    touched = np.zeros((len(p.t), p.scene.n_c), dtype=bool)
+    log = p.run.impacts
+    for side in ("left", "right"):
+        k = np.searchsorted(p.t, log.time, side=side) - (side == "right")
+        k = np.clip(k, 0, len(p.t) - 1)
+        same = p.t[k] == log.time
+        touched[k[same], log.contact[same]] = True
+    touched[1:] |= p.closed
+    touched[:-1] |= p.closed
+    return touched
+
+
+def divided(p: Pieces, rows: NDArray[np.intp], touched: NDArray[np.bool_]) -> Windows:
+    """Windows of all contacts in these pieces, which end at the cuts."""
+    a, b = p.t[rows], p.t[rows + 1]
+    low = np.searchsorted(p.cuts, a, side="right")
+    parts = np.maximum(np.searchsorted(p.cuts, b, side="left") - low, 0) + 1
+    k = np.repeat(rows, parts)
+    number = np.arange(len(k)) - np.repeat(np.cumsum(parts) - parts, parts)
+    cuts = np.append(p.cuts, np.inf)
+    place = np.repeat(low, parts) + number
+    is_first, is_last = number == 0, number == np.repeat(parts, parts) - 1
+    start = np.where(is_first, p.t[k], cuts[np.maximum(place - 1, 0)])
+    end = np.where(is_last, p.t[k + 1], cuts[np.minimum(place, len(cuts) - 1)])
+    n, n_c = len(k), p.scene.n_c
+    c = np.tile(np.arange(n_c), n)
+    k, start, end, is_first, is_last = (np.repeat(x, n_c) for x in (k, start, end, is_first, is_last))
+    return Windows(k, c, start, end, is_first & touched[k, c], is_last & touched[k + 1, c], p.closed[k, c])
+
+
+def examine(p: Pieces, w: Windows, touched: NDArray[np.bool_], scale: float, tally: Tally) -> None:
+    """All windows, those of closed contacts apart."""
+    unknown = p.unknown[w.k]
+    if np.any(unknown):
+        lost = w.chosen(unknown)
+        tally.windows.append((lost, np.full(len(lost.a), -np.inf), UNKNOWN, False))
+        w = w.chosen(~unknown)
+    closed = w.chosen(w.closed)
+    if len(closed.a):
+        if p.certain:
+            tally.certified += float(np.sum(closed.b - closed.a))
+        elif hasattr(p.problem, "pressed") and p.motion.absolute:
+            halve(p, closed, touched, scale, tally)
+        else:
+            tally.windows.append((closed, np.zeros(len(closed.a)), FORCE, False))
+    flying = w.chosen(~w.closed)
+    if len(flying.a):
+        halve(p, flying, touched, scale, tally)
+
+
+def halve(p: Pieces, w: Windows, touched: NDArray[np.bool_], scale: float, tally: Tally) -> None:
+    """Windows, which are halved until they are certified or too small or too many."""
+    most, rough = MOST * len(w.a) + LEAST, True
+    looked, largest = 0, 0.0
+    while len(w.a):
+        looked += len(w.a)
+        s = p.problem.seen(w, rough=rough)
+        if p.problem.why:
+            look_at_samples(p, w, tally)
+            return
+        largest = max(largest, float(np.max(np.abs(s.at_a))), float(np.max(np.abs(s.at_b))))
+        small = np.minimum(s.error, NEGLIGIBLE * largest)
+        if rough:  # a touch need not be an event
+            w = w._replace(
+                first=w.first | ((w.a == p.t[w.k]) & (np.abs(s.at_a) <= small)),
+                last=w.last | ((w.b == p.t[w.k + 1]) & (np.abs(s.at_b) <= small)),
+            )
+        rough = False
+        good, lower = (s.gap >= -s.error, s.gap) if np.all(w.closed) else judged(w, s)
+        wrong = ((s.at_b < -s.error) & ~w.last) | ((s.at_a < -s.error) & ~w.first)
+        h = w.b - w.a
+        good |= at_event(p, w, touched, scale, lower > -ERRORS * small)
+        tally.certified += float(np.sum(h[good]))
+        for i in np.flatnonzero(wrong):
+            inside = float(w.a[i] if s.at_a[i] < -s.error[i] and not w.first[i] else w.b[i])
+            tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
+        left = ~(good | wrong)
+        end = left & ((h < SMALLEST * scale) | (looked > most))
+        if np.any(end):
+            why = TOO_MANY if looked > most else NARROW
+            tally.windows.append((w.chosen(end), lower[end], why, False))
+        w = w.chosen(left & ~end).halved()
+
+
+def at_event(
+    p: Pieces, w: Windows, touched: NDArray[np.bool_], scale: float, shallow: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Which windows belong to an event of the run: at once by time, and a while where the gap is as good as zero."""
+    before = np.where(touched[w.k, w.c] | w.first, w.b - p.t[w.k], np.inf)
+    after = np.where(touched[w.k + 1, w.c] | w.last, p.t[w.k + 1] - w.a, np.inf)
+    apart = np.minimum(before, after)
+    return np.asarray((apart < AT_EVENT * scale) | (shallow & (apart < BESIDE * scale)))
+
+
+def look_at_samples(p: Pieces, w: Windows, tally: Tally) -> None:
+    """Windows of gaps that are known in samples alone."""
+    least, found = sampled(p.problem, w)
+    tally.windows.append((w, least, f"sampled: {p.problem.why}", True))
+    tally.found.extend(found)
+
+
+def counted(p: Pieces, touched: NDArray[np.bool_], tally: Tally) -> tuple[int, int]:
+    """How many flights there are, and how many of them hold a window that is not certified, or an event missed."""
+    moving = np.diff(p.t) > 0.0
+    starts = ~p.closed & moving[:, None]
+    fresh = starts.copy()
+    previous = np.zeros(p.scene.n_c, dtype=bool)
+    ids = np.zeros(p.closed.shape, dtype=np.intp)
+    count = 0
+    begins = touched[:-1] | np.vstack([~previous[None], p.closed[:-1]])
+    begins[0] = True
+    fresh &= begins
+    ids = np.cumsum(fresh, axis=0)
+    count = int(np.sum(fresh))
+    bad = set()
+    for w, _, _, _ in tally.windows:
+        flying = ~w.closed
+        bad |= set(zip(w.c[flying].tolist(), ids[w.k[flying], w.c[flying]].tolist(), strict=True))
+    for x in tally.found:
+        k = min(int(np.searchsorted(p.t, x.start, side="right")) - 1, len(ids) - 1)
+        bad.add((x.contact, int(ids[k, x.contact])))
+    return count, min(len(bad), count)
+
+
+def reported(tally: Tally) -> list[Window]:
+    """The windows that are not certified, neighbours as one."""
+    made: list[Window] = []
+    by_reason: dict[tuple[str, bool], list[tuple[Windows, Array]]] = {}
+    for w, lower, why, looked in tally.windows:
+        by_reason.setdefault((why, looked), []).append((w, lower))
+    for (why, looked), parts in by_reason.items():
+        w, lower = joined([x for x, _ in parts]), np.concatenate([x for _, x in parts])
+        order = np.lexsort((w.a, w.c))
+        c, a, b, g = w.c[order], w.a[order], w.b[order], lower[order]
+        new = np.append(True, (c[1:] != c[:-1]) | (a[1:] > b[:-1]))
+        first = np.flatnonzero(new)
+        last = np.append(first[1:], len(c)) - 1
+        least = np.minimum.reduceat(g, first)
+        made += [
+            Window(float(a[i]), float(b[j]), int(c[i]), float(x), why, looked)
+            for i, j, x in zip(first, last, least, strict=True)
+        ]
+    return made

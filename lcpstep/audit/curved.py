@@ -1,0 +1,111 @@
+"""Gaps of any form over windows: the scene's callbacks on intervals of time and state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.audit.flat import own
+from lcpstep.audit.motion import Bounds, Polynomials
+from lcpstep.audit.windows import Seen, Windows
+from lcpstep.intervals import Interval, NotEnclosed, enclose
+from lcpstep.kernels import states
+from lcpstep.kernels.model import Model
+
+Array = NDArray[np.float64]
+ROUNDING = 1e-14
+
+
+class Curved:
+    """Contacts with g(t, q) and a computed motion.
+
+    why   the gap cannot be evaluated on intervals, or ""
+
+    Parameters
+    ----------
+    scene : Scene;  m : Model;  motion : Polynomials
+    error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
+    """
+
+    def __init__(self, scene: Scene, m: Model, motion: Polynomials, error: tuple[Any, float]) -> None:
+        self.scene, self.m, self.motion, self.error, self.why = scene, m, motion, error, ""
+        contacts: Any = scene.contacts
+        bound, self.contacts = contacts.lipschitz, contacts
+        self.bound = None if bound is None else np.asarray(bound, dtype=float)
+        self.p, self.n_c, self.n_q = np.array(scene.p), scene.n_c, scene.n_q
+
+    def seen(self, w: Windows, *, rough: bool) -> Seen:
+        """Bounds over windows."""
+        boxes, q_a, q_b = self.motion.boxes(w.k, w.a, w.b)
+        at_a, at_b = self.values(w.a, q_a, w.c), self.values(w.b, q_b, w.c)
+        n, rows = len(w.a), np.arange(len(w.a))
+        nothing = np.full(n, -np.inf)
+        size = np.max(np.abs(np.concatenate([q_a, q_b], axis=1)), axis=1)
+        state = own(self.error[0], w.k) + self.error[1] * np.repeat(size[:, None], self.n_q, axis=1)
+        limit = None if self.bound is None else self.bound[w.c]
+        if limit is not None:  # no more is asked for
+            smooth = np.ones(n, dtype=bool)
+            return Seen(
+                nothing, nothing, -nothing, -limit, limit, at_a, at_b, state.max(axis=1), np.zeros(n), smooth
+            )
+        if self.why:
+            flags = np.zeros(n, dtype=bool)
+            return Seen(
+                nothing,
+                nothing,
+                -nothing,
+                nothing,
+                -nothing,
+                at_a,
+                at_b,
+                state.max(axis=1),
+                np.zeros(n),
+                flags,
+            )
+        slack = [Interval(x.place.lo - e, x.place.hi + e) for x, e in zip(boxes, state.T, strict=True)]
+        try:
+            gap, G, rate, curve, smooth = self.enclosed(w, slack, boxes)
+        except NotEnclosed as why:
+            self.why = str(why)
+            return self.seen(w, rough=rough)
+        speed, error = rate, ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
+        for i in range(self.n_q):
+            g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
+            speed = speed + g * boxes[i].speed
+            error = error + g.size * state[:, i]
+        return Seen(
+            gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
+        )
+
+    def enclosed(self, w: Windows, q: list[Interval], boxes: list[Bounds]) -> Any:
+        """Gap, Jacobian, rate and acceleration, and where the last is one, by the callbacks on intervals."""
+        c, t, v = self.contacts, Interval(w.a, w.b), [x.speed for x in boxes]
+        rows = np.arange(len(w.a))
+
+        def of(f: Any, *shape: int) -> Any:
+            return enclose(f, t, q, v, self.p, shape)
+
+        gap, G = of(c.gap, self.n_c), of(c.jacobian, self.n_c, self.n_q)
+        rate: Any = Interval(np.zeros(len(rows)), np.zeros(len(rows)))
+        smooth = ~(gap.branched | G.branched)
+        if c.gap_t is not None:
+            g_t = of(c.gap_t, self.n_c)
+            rate, smooth = Interval(g_t.lo[rows, w.c], g_t.hi[rows, w.c]), smooth & ~g_t.branched
+        unknown = np.full(len(rows), np.inf)
+        curve: Any = Interval(-unknown, unknown)
+        if c.bias is not None:
+            bias = of(c.bias, self.n_c)
+            curve, smooth = Interval(bias.lo[rows, w.c], bias.hi[rows, w.c]), smooth & ~bias.branched
+            for i in range(self.n_q):
+                curve = curve + Interval(G.lo[rows, w.c, i], G.hi[rows, w.c, i]) * boxes[i].curve
+        else:
+            smooth = np.zeros(len(rows), dtype=bool)
+        return Interval(gap.lo[rows, w.c], gap.hi[rows, w.c]), (G.lo, G.hi), rate, curve, smooth
+
+    def values(self, t: Array, q: Array, c: Any) -> Array:
+        """Gaps of contacts c at times and positions."""
+        every = states.gaps_at(self.m, np.ascontiguousarray(t), np.ascontiguousarray(q))
+        return np.asarray(every[np.arange(len(t)), c])

@@ -1,0 +1,99 @@
+"""Gaps of flat contacts over windows: g = offset + G y - sigma(t), of any linear coordinates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.audit.motion import Oscillation, Polynomials
+from lcpstep.audit.obstacle import Obstacle
+from lcpstep.audit.windows import Seen, Windows
+from lcpstep.intervals import Interval
+from lcpstep.kernels.model import Model
+
+Array = NDArray[np.float64]
+ROUNDING = 1e-14  # of the numbers that a gap is the difference of
+
+
+def own(error: Any, k: Any) -> Any:
+    """The absolute error of every coordinate in the pieces k, (n, n_q) or one for all."""
+    return error[k] if np.ndim(error) else error
+
+
+class Flat:
+    """Flat contacts and a computed motion.
+
+    Parameters
+    ----------
+    scene : Scene;  m : Model;  motion : Oscillation or Polynomials
+    error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
+    """
+
+    why = ""  # nothing is known from samples alone
+
+    def __init__(
+        self, scene: Scene, m: Model, motion: Oscillation | Polynomials, cuts: Array, error: tuple[Any, float]
+    ) -> None:
+        self.G, self.offset, self.motion, self.error = m.arrays["G"], m.arrays["offset"], motion, error
+        self.obstacle = Obstacle(scene, m, motion.absolute, cuts)
+        self.linear = m
+
+    def seen(self, w: Windows, *, rough: bool) -> Seen:
+        """Bounds over windows."""
+        if np.all(w.closed):
+            return self.pressed(w, rough=rough)
+        G = self.G[w.c]
+        along, y_a, y_b = self.motion.along(G, w.k, w.a, w.b)
+        offset = self.offset[w.c]
+        size = self.motion.size(G, w.k) + np.abs(offset)
+        at_a, at_b = y_a + offset, y_b + offset
+        gap, speed, curve = along.place + Interval(offset, offset), along.speed, along.curve
+        smooth = np.ones(len(w.a), dtype=bool)
+        if self.obstacle.moves:
+            s, branched = self.obstacle.bounds(w.c, w.a, w.b, rough=rough)
+            gap, speed, curve = gap - s.place, speed - s.speed, curve - s.curve
+            s_a, s_b = self.obstacle.values(w.c, w.a), self.obstacle.values(w.c, w.b)
+            size = size + np.maximum(np.abs(s_a), np.abs(s_b))
+            at_a, at_b, smooth = at_a - s_a, at_b - s_b, ~branched
+        absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
+        error = absolute + (self.error[1] + ROUNDING) * size
+        return Seen(
+            gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
+        )
+
+    def far(self, c: int, w: Windows, starts: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Which windows of contact c, in groups that begin at `starts`, are clear by their places alone."""
+        motion: Any = self.motion
+        y = np.matmul(motion.B[w.k], self.G[c])
+        error = np.sum(np.abs(self.G[c])) * np.max(self.error[0]) + self.error[1] * np.max(np.abs(y))
+        slack = error + ROUNDING * (np.max(motion.largest) * np.sum(np.abs(self.G[c])) + abs(self.offset[c]))
+        lowest = np.minimum.reduceat(y.min(axis=1), starts) + self.offset[c] - slack
+        if self.obstacle.moves:
+            ends = np.append(starts[1:], len(w.a)) - 1
+            whole = w.a[starts], w.b[ends]
+            s, _ = self.obstacle.bounds(np.full(len(starts), c), *whole, rough=True)
+            lowest = lowest - s.place.hi
+        return np.repeat(lowest > 0.0, np.diff(np.append(starts, len(w.a))))
+
+    def pressed(self, w: Windows, *, rough: bool) -> Seen:
+        """Of one closed contact: what presses it, as if that were the gap, -(G y'' - sigma'') on the obstacle."""
+        assert isinstance(self.motion, Oscillation)
+        o, n = self.motion.o, len(w.a)
+        G, offset, m = self.G[0, 0], self.offset[0], self.linear
+        force: Any = Interval(np.full(n, G * o.f0 + o.w2 * offset), np.full(n, G * o.f0 + o.w2 * offset))
+        if o.Omega != 0.0:
+            angle = o.Omega * Interval(w.a, w.b)
+            cosine, sine = (float(m.arrays[x][0] / m.arrays["M"][0, 0]) for x in ("cosine", "sine"))
+            force = force + (G * cosine) * angle.cos() + (G * sine) * angle.sin()
+        if self.obstacle.moves:
+            s, _ = self.obstacle.bounds(w.c, w.a, w.b, rough=rough)
+            force = force - s.speed * (2.0 * o.delta) - s.place * o.w2 - s.curve
+        p = -force
+        unknown = np.full(n, np.inf)
+        error = ROUNDING * p.size
+        return Seen(
+            p.lo, -unknown, unknown, -unknown, unknown, p.hi, p.hi, error, error, np.zeros(n, dtype=bool)
+        )

@@ -1,0 +1,241 @@
+"""Bounds of the computed motion over windows of time.
+
+Between two kept states a motion is a polynomial, whose coefficients in Bernstein's basis of a window enclose it
+there, or, for one linear degree of freedom in closed form, a decaying oscillation and a steady one,
+
+    y = rest + exp(-delta tau) R cos(w tau - phi) + S cos(Omega t - psi)
+
+whose derivatives have the same form. Source: R. Farouki, The Bernstein polynomial basis: a centennial retrospective,
+Computer Aided Geometric Design 29 (2012).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.intervals import Interval
+
+Array = NDArray[np.float64]
+ROUNDING = 1e-13  # of the numbers that a polynomial is made of
+
+
+class Bounds(NamedTuple):
+    """Of a quantity x over windows: x, x' and x''."""
+
+    place: Interval
+    speed: Interval
+    curve: Interval
+
+
+@functools.cache
+def _nodes(degree: int) -> tuple[Array, Array]:
+    """Places in [0, 1], and the matrix from values there to Bernstein's coefficients."""
+    x = np.arange(degree + 1) / degree
+    return x, np.asarray(np.linalg.inv(basis(x, degree)), dtype=float)
+
+
+def basis(x: Array, degree: int) -> Array:
+    """Bernstein's polynomials at x, (..., degree + 1)."""
+    k = np.arange(degree + 1)
+    binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
+    x = np.asarray(x)[..., None]
+    return np.asarray(binomial * x**k * (1.0 - x) ** (degree - k))
+
+
+class Polynomials:
+    """A motion that is a polynomial between kept states.
+
+    Parameters
+    ----------
+    t : (m + 1,)   times of the states
+    B : (m, degree + 1, n_q)   Bernstein's coefficients of the pieces between them
+    """
+
+    absolute = False  # q is what the scene means by it
+
+    def __init__(self, t: Array, B: Array) -> None:
+        self.t, self.B, self.degree = t, B, B.shape[1] - 1
+        self.largest = np.max(np.abs(B), axis=1)
+
+    def windows(self, k: Any, a: Array, b: Array) -> Array:
+        """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""
+        x, inverse = _nodes(self.degree)
+        start, length = self.t[k], self.t[k + 1] - self.t[k]
+        places = (a[:, None] + (b - a)[:, None] * x - start[:, None]) / length[:, None]
+        values = np.matmul(basis(places, self.degree), self.B[k])
+        return np.asarray(np.matmul(inverse, values))
+
+    def size(self, G: Array, k: Any) -> Array:
+        """How large the numbers are that make up G q in the pieces k."""
+        return np.asarray(np.sum(np.abs(G) * self.largest[k], axis=1))
+
+    def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
+        """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
+        x = np.matmul(self.windows(k, a, b), G[:, :, None])[:, :, 0]
+        return derivatives(x, b - a), x[:, 0], x[:, -1]
+
+    def boxes(self, k: Any, a: Array, b: Array) -> tuple[list[Bounds], Array, Array]:
+        """Bounds of every coordinate, and the states at a and b, (n, n_q)."""
+        x = self.windows(k, a, b)
+        return [derivatives(x[:, :, i], b - a) for i in range(x.shape[2])], x[:, 0], x[:, -1]
+
+
+def derivatives(x: Array, h: Array) -> Bounds:
+    """Bounds of a polynomial and two derivatives from its coefficients (n, degree + 1) over windows of length h."""
+    degree = x.shape[1] - 1
+    slack = ROUNDING * np.max(np.abs(x), axis=1)
+    found = []
+    for order in range(3):
+        found.append(Interval(x.min(axis=1) - slack, x.max(axis=1) + slack))
+        x = (degree - order) * np.diff(x, axis=1) / h[:, None] if x.shape[1] > 1 else 0.0 * x
+        slack = ROUNDING * np.max(np.abs(x), axis=1)
+    return Bounds(*found)
+
+
+def by_steps(t: Array, q: Array, F: Array, length: Array) -> Polynomials:
+    """The dense output of Runge-Kutta steps, see `rungekutta.RungeKutta.at`; F (m, 7, 2 n_q) after each state."""
+    n, degree = q.shape[1], F.shape[1]
+    x, inverse = _nodes(degree)
+    h = np.where(length > 0.0, length, 1.0)
+    share = x[None, :] * (np.diff(t) / h)[:, None]
+    moved = np.zeros((len(F), degree + 1, n))
+    for k in range(degree):
+        factor = share if k % 2 == 0 else 1.0 - share
+        moved = (moved + F[:, None, degree - 1 - k, :n]) * factor[:, :, None]
+    return Polynomials(t, np.matmul(inverse, q[:-1, None] + moved))
+
+
+def parabolas(t: Array, q: Array, v: Array, a: Array) -> Polynomials:
+    """Under constant accelerations (m, n_q), from the states at the start of each piece."""
+    h = np.diff(t)[:, None]
+    middle = q[:-1] + 0.5 * h * v[:-1]
+    end = q[:-1] + h * (v[:-1] + 0.5 * h * a)
+    return Polynomials(t, np.stack([q[:-1], middle, end], axis=1))
+
+
+def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
+    """Through the state at the start of each piece, positions at equal shares of it (m, k, n_q), and the next one."""
+    k = inner.shape[1]
+    degree = k + 2
+    shares = np.arange(1, k + 2) / (k + 1)
+    # the first two coefficients are q and q + h v / degree
+    first, second = q[:-1], q[:-1] + np.diff(t)[:, None] * v[:-1] / degree
+    M = basis(shares, degree)
+    known = M[:, 0, None] * first[:, None] + M[:, 1, None] * second[:, None]
+    values = np.concatenate([inner, q[1:, None]], axis=1) - known
+    rest = np.matmul(np.linalg.inv(M[:, 2:]), values)
+    return Polynomials(t, np.concatenate([first[:, None], second[:, None], rest], axis=1))
+
+
+class Oscillation:
+    """One linear degree of freedom in closed form, in the coordinate y in which its frame rests.
+
+    Parameters
+    ----------
+    o : Oscillator;  t : (m + 1,) times;  y, w : (m,) state at the start of each piece
+    """
+
+    absolute = True
+
+    def __init__(self, o: Any, t: Array, y: Array, w: Array) -> None:
+        self.o, self.t = o, t
+        steady, rate = self.steady(t[:-1])
+        self.z, self.dz = y - steady, w - rate
+
+    def size(self, G: Array, k: Any) -> Array:
+        """How large the numbers are that make up G y in the pieces k."""
+        steady = math.hypot(self.o.X, self.o.Y)
+        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.z[k]) + steady))
+
+    def steady(self, t: Array) -> tuple[Array, Array]:
+        """The steady oscillation and its velocity."""
+        o = self.o
+        if o.Omega == 0.0:
+            return np.zeros(len(t)), np.zeros(len(t))
+        c, s = np.cos(o.Omega * t), np.sin(o.Omega * t)
+        return o.X * c + o.Y * s, o.Omega * (o.Y * c - o.X * s)
+
+    def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
+        """Bounds of G y for a number G (n, 1) of every window, and its values at a and b."""
+        tau = Interval(a - self.t[k], b - self.t[k])
+        free, at_a, at_b = self.free(self.z[k], self.dz[k], tau)
+        if self.o.Omega != 0.0 and (self.o.X != 0.0 or self.o.Y != 0.0):
+            at_a, at_b = at_a + self.steady(a)[0], at_b + self.steady(b)[0]
+            free = Bounds(*[x + y for x, y in zip(free, self.forced(Interval(a, b)), strict=True)])
+        g = G[:, 0]
+        return Bounds(*[x * Interval(g, g) for x in free]), g * at_a, g * at_b
+
+    def forced(self, t: Interval) -> Bounds:
+        """Bounds of the steady oscillation."""
+        o = self.o
+        size, phase = math.hypot(o.X, o.Y), math.atan2(o.Y, o.X)
+        angle = o.Omega * t - phase
+        place = size * angle.cos()
+        return Bounds(place, (-size * o.Omega) * angle.sin(), (-o.Omega * o.Omega) * place)
+
+    def free(self, z: Array, dz: Array, tau: Interval) -> tuple[Bounds, Array, Array]:
+        """Bounds of the remainder, and its values at both ends."""
+        delta, w2, f0 = self.o.delta, self.o.w2, self.o.f0
+        if delta == 0.0 and w2 == 0.0:
+            line = Bounds(
+                Interval(z, z) + tau * (Interval(dz, dz) + tau * (0.5 * f0)),
+                Interval(dz, dz) + tau * f0,
+                Interval(np.full(len(z), f0), np.full(len(z), f0)),
+            )
+            return line, *[z + x * (dz + 0.5 * f0 * x) for x in (tau.lo, tau.hi)]
+        rest = f0 / w2 if w2 != 0.0 else 0.0
+        z = z - rest
+        if w2 > delta * delta:
+            return self.swinging(z, dz, rest, tau)
+        return self.creeping(z, dz, rest, tau)
+
+    def swinging(self, z: Array, dz: Array, rest: float, tau: Interval) -> tuple[Bounds, Array, Array]:
+        """Exp(-delta tau) (A cos w tau + B sin w tau)."""
+        delta = self.o.delta
+        w = math.sqrt(self.o.w2 - delta * delta)
+        A, B = z, (dz + delta * z) / w
+        angle, found = w * tau, []
+        decay = (-delta * tau).exp() if delta != 0.0 else Interval(1.0, 1.0)
+        ends = [rest + np.exp(-delta * x) * (A * np.cos(w * x) + B * np.sin(w * x)) for x in (tau.lo, tau.hi)]
+        for _ in range(3):
+            size, phase = np.hypot(A, B), np.arctan2(B, A)
+            wave = (angle - Interval(phase - 1e-15, phase + 1e-15)).cos()
+            found.append(Interval(size, size) * wave * decay if delta != 0.0 else Interval(size, size) * wave)
+            A, B = w * B - delta * A, -w * A - delta * B
+        return Bounds(found[0] + rest, found[1], found[2]), ends[0], ends[1]
+
+    def creeping(self, z: Array, dz: Array, rest: float, tau: Interval) -> tuple[Bounds, Array, Array]:
+        """Taylor's polynomial; the third derivative is below K N, N = max(|y2|, fast |y1|) of the other two.
+
+        N grows at most like exp(max(K, fast) tau).
+        """
+        delta, w2, f0 = self.o.delta, self.o.w2, self.o.f0
+        h = tau.hi - tau.lo
+        y, dy = self.at(z, dz, tau.lo)
+        y_b, _ = self.at(z, dz, tau.hi)
+        a = (f0 if w2 == 0.0 else 0.0) - 2.0 * delta * dy - w2 * y
+        fast = abs(delta) + math.sqrt(max(delta * delta - w2, 0.0))
+        K = 2.0 * abs(delta) + abs(w2) / fast
+        size = np.maximum(np.abs(a), fast * np.abs(dy)) * np.exp(np.minimum(max(K, fast) * h, 700.0))
+        curve = Interval(a - K * size * h, a + K * size * h)
+        step = Interval(np.zeros(len(h)), h)
+        speed = Interval(dy, dy) + step * curve
+        place = Interval(y, y) + step * speed
+        return Bounds(place + rest, speed, curve), y + rest, y_b + rest
+
+    def at(self, z: Array, dz: Array, x: Array) -> tuple[Array, Array]:
+        """Position less rest, and velocity, of a motion that does not swing."""
+        delta, w2, f0 = self.o.delta, self.o.w2, self.o.f0
+        decay, root = np.exp(-delta * x), math.sqrt(max(delta * delta - w2, 0.0))
+        if w2 == 0.0:
+            S = -np.expm1(-2.0 * delta * x) / (2.0 * delta)
+            dS, P = 1.0 - 2.0 * delta * S, (x - S) / (2.0 * delta)
+            return z + dz * S + f0 * P, dz * dS + f0 * S
+        S = decay * (np.sinh(root * x) / root if root > 0.0 else x)
+        dS = decay * np.cosh(root * x) - delta * S
+        return z * (dS + 2.0 * delta * S) + dz * S, -w2 * z * S + dz * dS

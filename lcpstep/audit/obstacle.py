@@ -1,0 +1,147 @@
+"""Bounds over windows of time of what flat contacts meet: sigma(t) = s(t), and G c(t) of a moving frame as well.
+
+    gap = offset + G y - sigma
+
+Functions of the user are evaluated on intervals. Where there are many windows, bounds are first taken from cells that
+divide the span, or a period of a ready scene, by the smallest and largest of those that a window meets.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.audit.motion import Bounds
+from lcpstep.intervals import Interval, enclose
+from lcpstep.intervals.callbacks import plain
+from lcpstep.kernels.model import Model
+from lcpstep.turns.source import OURS
+
+Array = NDArray[np.float64]
+MANY = 2048  # windows, beyond which cells are worth it
+CELLS, MOST_CELLS = 2048, 1 << 16
+PORTION = 1 << 15  # windows at a time
+WIDER = 1e-13  # of the times: by how much windows are wider than meant
+
+
+class Obstacle:
+    """What moves by itself, seen by every contact.
+
+    Parameters
+    ----------
+    scene : Scene;  m : Model;  with_frame : bool   whether the frame's motion is part of it
+    cuts : (k,)   times at which it may turn by a corner, in a period or in the span
+    """
+
+    def __init__(self, scene: Scene, m: Model, with_frame: bool, cuts: Array) -> None:
+        self.scene, self.m, self.n_c, self.G = scene, m, scene.n_c, m.arrays["G"]
+        system, contacts = scene.system, scene.contacts
+        frame = getattr(system, "frame", None) if with_frame else None
+        motion = getattr(contacts, "motion", None)
+        self.parts = [(f, name) for f, name in ((frame, "frame"), (motion, "motion")) if f is not None]
+        ours = all(f"{getattr(plain(f), '__module__', '')}.".startswith(OURS) for f, _ in self.parts)
+        self.period = scene.period if ours and math.isfinite(scene.period) else math.inf
+        self.cuts = cuts
+        self.table: Table | None = None
+        self.state = [np.array(x) for x in (scene.q0, scene.v0, scene.p)]
+
+    @property
+    def moves(self) -> bool:
+        """Whether there is anything to be bounded."""
+        return bool(self.parts)
+
+    def values(self, c: Any, t: Array) -> Array:
+        """Sigma of contacts c at times t, each (n,)."""
+        total = np.zeros(len(t))
+        for _, name in self.parts:
+            f = getattr(self.m, name)
+            out = np.zeros((len(t), self.n_c if name == "motion" else 1, 3))
+            f.sample(np.ascontiguousarray(t), self.state[0], self.state[1], out)
+            total += out[np.arange(len(t)), c, 0] if name == "motion" else self.G[c, 0] * out[:, 0, 0]
+        return total
+
+    def bounds(self, c: Any, a: Array, b: Array, *, rough: bool) -> tuple[Bounds, NDArray[np.bool_]]:
+        """Bounds of sigma of contacts c, and in which windows it need not be smooth; rough: from cells."""
+        if math.isfinite(self.period):
+            turn = np.floor((0.5 * (a + b)) / self.period) * self.period
+            a, b = a - turn, b - turn
+        wide = WIDER * np.maximum(np.abs(a), np.abs(b)) if not self.cuts.size else 0.0
+        if rough and len(a) > MANY:
+            if self.table is None:
+                self.table = self._table(len(a))
+            return self.table.bounds(c, a, b)
+        lo, hi, branched = self._direct(a - wide, b + wide)
+        rows = np.arange(len(a))
+        return _bounds(lo[rows, c], hi[rows, c]), branched
+
+    def _direct(self, a: Array, b: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Bounds for every contact, (n, n_c, 3)."""
+        lo, hi = np.zeros((2, len(a), self.n_c, 3))
+        branched = np.zeros(len(a), dtype=bool)
+        for first in range(0, len(a), PORTION):
+            at = slice(first, first + PORTION)
+            self._add(a[at], b[at], lo[at], hi[at], branched[at])
+        return lo, hi, branched
+
+    def _add(self, a: Array, b: Array, lo: Array, hi: Array, branched: Any) -> None:
+        q, v, p = self.state
+        boxes = [[Interval(np.full(len(a), x), np.full(len(a), x)) for x in y] for y in (q, v)]
+        for f, name in self.parts:
+            rows = self.n_c if name == "motion" else 1
+            found = enclose(f, Interval(a, b), boxes[0], boxes[1], p, (rows, 3))
+            branched |= found.branched
+            if name == "motion":
+                lo += found.lo
+                hi += found.hi
+            else:
+                g = self.G[:, :1]
+                scaled = [g * found.lo[:, :1], g * found.hi[:, :1]]
+                lo += np.minimum(*scaled)
+                hi += np.maximum(*scaled)
+
+    def _table(self, windows: int) -> Table:
+        start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
+        n = CELLS if math.isfinite(self.period) else min(MOST_CELLS, 4 * windows)
+        ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
+        ends = ends[(ends >= start) & (ends <= end)]
+        return Table(ends, *self._direct(ends[:-1], ends[1:]))
+
+
+class Table:
+    """Bounds in cells, with those of 2, 4, 8, ... neighbours.
+
+    Parameters
+    ----------
+    ends : (n + 1,)   of the cells;  lo, hi : (n, n_c, 3);  branched : (n,)
+    """
+
+    def __init__(self, ends: Array, lo: Array, hi: Array, branched: NDArray[np.bool_]) -> None:
+        self.ends = ends
+        self.levels = [(lo, hi, branched)]
+        while len(lo) > 2 ** len(self.levels):
+            step = 2 ** (len(self.levels) - 1)
+            lo, hi, branched = self.levels[-1]
+            later = np.minimum(np.arange(len(lo)) + step, len(lo) - 1)
+            self.levels.append(
+                (np.minimum(lo, lo[later]), np.maximum(hi, hi[later]), branched | branched[later])
+            )
+        self.lo, self.hi, self.branched = (np.stack(x) for x in zip(*self.levels, strict=True))
+
+    def bounds(self, c: Any, a: Array, b: Array) -> tuple[Bounds, NDArray[np.bool_]]:
+        """Bounds over windows, from the cells that they meet."""
+        last = len(self.ends) - 2
+        i = np.clip(np.searchsorted(self.ends, a, side="right") - 1, 0, last)
+        j = np.clip(np.searchsorted(self.ends, b, side="left") - 1, i, last)
+        level = np.frexp((j - i + 1).astype(float))[1] - 1
+        k = j - 2**level + 1
+        lo = np.minimum(self.lo[level, i, c], self.lo[level, k, c])
+        hi = np.maximum(self.hi[level, i, c], self.hi[level, k, c])
+        return _bounds(lo, hi), self.branched[level, i] | self.branched[level, k]
+
+
+def _bounds(lo: Array, hi: Array) -> Bounds:
+    return Bounds(*[Interval(lo[:, i], hi[:, i]) for i in range(3)])

@@ -1,0 +1,7 @@
+"""Interval arithmetic on arrays of bounds, and users' functions evaluated on it."""
+
+from lcpstep.intervals.callbacks import enclose
+from lcpstep.intervals.numbers import Interval
+from lcpstep.intervals.paths import NotEnclosed
+
+__all__ = ["Interval", "NotEnclosed", "enclose"]

@@ -1,0 +1,158 @@
+"""Users' functions evaluated on intervals: what `out` may be while time and state lie between bounds.
+
+The same Python function is run, on intervals, in a copy whose globals have the functions of `functions` in the places
+of those of `math` and numpy, and copies of the user's other functions that it calls. One that this cannot do, a
+look-up at a place that is no whole number, says so (`NotEnclosed`).
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import traceback
+from types import CellType, CodeType, FunctionType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.intervals.functions import BUILTINS, STANDS_FOR
+from lcpstep.intervals.numbers import Interval
+from lcpstep.intervals.paths import NotEnclosed, Paths
+
+Array = NDArray[np.float64]
+
+
+class Enclosed:
+    """What a function may give in n windows: bounds of `out`, and where it need not be smooth.
+
+    lo, hi : (n, *shape);  branched : (n,)
+    """
+
+    def __init__(self, lo: Array, hi: Array, branched: NDArray[np.bool_]) -> None:
+        self.lo, self.hi, self.branched = lo, hi, branched
+
+
+def enclose(
+    f: Any, t: Interval, q: list[Interval], v: list[Interval], p: Array, shape: tuple[int, ...]
+) -> Enclosed:
+    """Bounds of the callback f(t, q, v, p, out), `out` of that shape, over windows of time and state.
+
+    Parameters
+    ----------
+    f : callback;  t : Interval of (n,);  q, v : an Interval of (n,) for each coordinate;  p : (n_p,) numbers
+
+    Raises
+    ------
+    NotEnclosed   f cannot be evaluated on intervals; the message says where and why
+    """
+    n, count = len(t.lo), int(np.prod(shape))
+    lo, hi = np.full((n, count), np.inf), np.full((n, count), -np.inf)
+    copy, numbers = replaced(f), np.array([float(x) for x in p], dtype=object)
+
+    def call(at: Any) -> Any:
+        out = np.full(shape, np.nan, dtype=object)
+        here = [part(x, at) for x in (t, *q, *v)]
+        state = column(here[1 : 1 + len(q)]), column(here[1 + len(q) :])
+        copy(here[0], *state, numbers.copy(), out)
+        return out
+
+    def unite(out: Any, at: Any, active: Any) -> None:
+        rows = at[active]
+        for k, x in enumerate(out.ravel()):
+            for bound, given, better in ((lo, "lo", np.minimum), (hi, "hi", np.maximum)):
+                value = getattr(x, given) if isinstance(x, Interval) else float(x)
+                value = np.broadcast_to(value, at.shape)[active]
+                bound[rows, k] = better(bound[rows, k], value)
+
+    paths = Paths(n)
+    try:
+        with np.errstate(all="ignore"):
+            paths.follow(call, unite)
+        if np.any(paths.visits == 0):
+            raise NotEnclosed("it has no value there")
+    except Exception as error:  # whatever a user's function raises for a number that is none
+        raise NotEnclosed(f"{place(f, error)}: {said(error)}") from error
+    return Enclosed(lo.reshape(n, *shape), hi.reshape(n, *shape), paths.branched)
+
+
+def part(x: Interval, at: Any) -> Interval:
+    """An interval for some of the windows."""
+    return Interval(x.lo[at], x.hi[at])
+
+
+def column(x: list[Interval]) -> Any:
+    """An array that holds intervals."""
+    out = np.empty(len(x), dtype=object)
+    for i, y in enumerate(x):
+        out[i] = y
+    return out
+
+
+def said(error: Exception) -> str:
+    """What an exception says."""
+    words = str(error) or type(error).__name__
+    return words if isinstance(error, NotEnclosed) else f"{type(error).__name__}: {words}"
+
+
+def place(f: Any, error: Exception) -> str:
+    """The callback and its line that an exception comes from, in words."""
+    own = plain(f)
+    name = getattr(own, "__name__", repr(own))
+    code = getattr(own, "__code__", None)
+    lines = [x for x in traceback.extract_tb(error.__traceback__) if code and x.filename == code.co_filename]
+    if not lines:
+        return name
+    return f"{name} ({os.path.basename(lines[-1].filename)}, line {lines[-1].lineno})"
+
+
+def plain(f: Any) -> Any:
+    """The Python function itself, of one that numba has compiled or of a partial one."""
+    while True:
+        if isinstance(f, functools.partial):
+            f = f.func
+        elif hasattr(f, "py_func"):
+            f = f.py_func
+        else:
+            return f
+
+
+@functools.lru_cache(maxsize=256)
+def replaced(f: Any) -> Any:
+    """A copy of a function that takes intervals."""
+    return _copy(f, {})
+
+
+def _copy(f: Any, made: dict[int, Any]) -> Any:
+    """The copy; made: those of the functions that are being copied, by id."""
+    if id(f) in STANDS_FOR:
+        return STANDS_FOR[id(f)]
+    if id(f) in made:
+        return made[id(f)]
+    if isinstance(f, functools.partial):
+        return functools.partial(_copy(f.func, made), *f.args, **f.keywords)
+    if hasattr(f, "py_func"):
+        return _copy(f.py_func, made)
+    if not isinstance(f, FunctionType):
+        return f
+    own: dict[str, Any] = dict(BUILTINS)
+    closure = tuple(CellType() for _ in f.__closure__ or ())
+    copy = FunctionType(f.__code__, own, f.__name__, f.__defaults__, closure or None)
+    copy.__kwdefaults__ = f.__kwdefaults__
+    made[id(f)] = copy
+    for name in _names(f.__code__):
+        if name in f.__globals__:
+            own[name] = _copy(f.__globals__[name], made)
+    own["__builtins__"] = f.__globals__.get("__builtins__", __builtins__)
+    for cell, old in zip(closure, f.__closure__ or (), strict=True):
+        cell.cell_contents = _copy(old.cell_contents, made)
+    return copy
+
+
+def _names(code: CodeType) -> set[str]:
+    """The names that a function and those within it use."""
+    found = set(code.co_names)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            found |= _names(constant)
+    return found

@@ -1,0 +1,215 @@
+"""The functions of `math` and numpy that users' functions call, for intervals and for numbers alike."""
+
+from __future__ import annotations
+
+import builtins
+import math
+import operator
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from lcpstep.intervals.conditions import Condition, sides
+from lcpstep.intervals.numbers import Interval, bounds
+from lcpstep.intervals.paths import NotEnclosed, current
+
+
+def by_name(name: str, plain: Callable[..., Any]) -> Callable[[Any], Any]:
+    """A function of one number that intervals have as a method."""
+
+    def f(x: Any) -> Any:
+        if isinstance(x, Interval):
+            return getattr(x, name)()
+        return plain(x)
+
+    return f
+
+
+def interval(x: Any) -> Interval:
+    """An interval, of a number as well."""
+    return x if isinstance(x, Interval) else Interval(*bounds(x))
+
+
+def smaller(x: Any, y: Any) -> Any:
+    """The smaller of two."""
+    if not (isinstance(x, Interval) or isinstance(y, Interval)):
+        return min(x, y)
+    x, y = interval(x), interval(y)
+    meets(x, y)
+    return Interval(np.minimum(x.lo, y.lo), np.minimum(x.hi, y.hi))
+
+
+def larger(x: Any, y: Any) -> Any:
+    """The larger of two."""
+    if not (isinstance(x, Interval) or isinstance(y, Interval)):
+        return max(x, y)
+    x, y = interval(x), interval(y)
+    meets(x, y)
+    return Interval(np.maximum(x.lo, y.lo), np.maximum(x.hi, y.hi))
+
+
+def meets(x: Interval, y: Interval) -> None:
+    """Take note of windows in which either may be the larger one."""
+    both = (x.hi > y.lo) & (y.hi > x.lo)
+    if np.any(both):
+        current().mark(both)
+
+
+def least(*x: Any) -> Any:
+    """The builtin min."""
+    return _of_all(smaller, x)
+
+
+def most(*x: Any) -> Any:
+    """The builtin max."""
+    return _of_all(larger, x)
+
+
+def _of_all(f: Callable[[Any, Any], Any], x: Any) -> Any:
+    values = list(x[0]) if len(x) == 1 else list(x)
+    result = values[0]
+    for y in values[1:]:
+        result = f(result, y)
+    return result
+
+
+def whole(x: Any = 0, *more: Any) -> Any:
+    """The builtin int: towards zero."""
+    if not isinstance(x, Interval):
+        return int(x, *more)
+    return x.floor() if x >= 0.0 else x.ceil()
+
+
+def number(x: Any = 0.0) -> Any:
+    """The builtin float."""
+    return x if isinstance(x, Interval) else float(x)
+
+
+def remainder_of_c(x: Any, y: Any) -> Any:
+    """`math.fmod`: with the sign of x."""
+    if not (isinstance(x, Interval) or isinstance(y, Interval)):
+        return math.fmod(x, y)
+    return x - y * whole(x / y)
+
+
+def length(*x: Any) -> Any:
+    """`math.hypot`."""
+    if not any(isinstance(y, Interval) for y in x):
+        return math.hypot(*x)
+    total = interval(x[0]).power(2)
+    for y in x[1:]:
+        total = total + interval(y).power(2)
+    return Interval(np.maximum(total.lo, 0.0), total.hi).sqrt()
+
+
+def angle(y: Any, x: Any) -> Any:
+    """`math.atan2`."""
+    if not (isinstance(x, Interval) or isinstance(y, Interval)):
+        return math.atan2(y, x)
+    x, y = interval(x), interval(y)
+    if x > 0.0:
+        return (y / x).arctan()
+    if y > 0.0:
+        return 0.5 * math.pi - (x / y).arctan()
+    if y < 0.0:
+        return -0.5 * math.pi - (x / y).arctan()
+    raise NotEnclosed("an angle that may jump by a turn")
+
+
+def with_sign(x: Any, y: Any) -> Any:
+    """`math.copysign`."""
+    if not (isinstance(x, Interval) or isinstance(y, Interval)):
+        return math.copysign(x, y)
+    return abs(x) if y >= 0.0 else -abs(x)
+
+
+def sign(x: Any) -> Any:
+    """`numpy.sign`."""
+    if not isinstance(x, Interval):
+        return np.sign(x)
+    if x > 0.0:
+        return 1.0
+    return -1.0 if x < 0.0 else 0.0
+
+
+def where(condition: Any, x: Any, y: Any) -> Any:
+    """`numpy.where`."""
+    if not any(isinstance(z, (Condition, Interval)) for z in (condition, x, y)):
+        return np.where(condition, x, y)
+    yes, no = sides(condition)
+    x, y = interval(x), interval(y)
+    if np.any(~(yes | no)):
+        current().mark(~(yes | no))
+    lo = np.where(yes, x.lo, np.where(no, y.lo, np.minimum(x.lo, y.lo)))
+    return Interval(lo, np.where(yes, x.hi, np.where(no, y.hi, np.maximum(x.hi, y.hi))))
+
+
+def interpolated(x: Any, places: Any, values: Any) -> Any:
+    """`numpy.interp`: linear between points of a table, and constant beyond its ends."""
+    if not isinstance(x, Interval):
+        return np.interp(x, places, values)
+    places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
+    lo, hi = np.atleast_1d(x.lo), np.atleast_1d(x.hi)
+    a, b = np.interp(lo, places, values), np.interp(hi, places, values)
+    least_, most_ = np.minimum(a, b), np.maximum(a, b)
+    first, last = np.searchsorted(places, lo, side="right"), np.searchsorted(places, hi, side="left")
+    for k in np.flatnonzero(last > first):
+        inner = values[first[k] : last[k]]
+        least_[k], most_[k] = min(least_[k], inner.min()), max(most_[k], inner.max())
+    current().mark(last > first)
+    slack = 1e-15 * np.max(np.abs(values))
+    return Interval(least_ - slack, most_ + slack)
+
+
+def objects(make: Callable[..., Any]) -> Callable[..., Any]:
+    """An array that can hold intervals: `numpy.zeros` and the like."""
+
+    def f(shape: Any, *_: Any, **__: Any) -> Any:
+        return make(shape).astype(object)
+
+    return f
+
+
+METHODS = {
+    "sin": "sin", "cos": "cos", "tan": "tan", "exp": "exp", "log": "log", "sqrt": "sqrt", "sinh": "sinh",
+    "cosh": "cosh", "tanh": "tanh", "floor": "floor", "ceil": "ceil", "atan": "arctan", "asin": "arcsin",
+    "acos": "arccos",
+}  # fmt: skip
+MATH: dict[str, Callable[..., Any]] = {
+    name: by_name(method, getattr(math, name)) for name, method in METHODS.items()
+} | {
+    "fabs": abs, "fmod": remainder_of_c, "hypot": length, "atan2": angle, "copysign": with_sign, "pow": operator.pow,
+}  # fmt: skip
+NUMPY: dict[str, Callable[..., Any]] = {
+    method: by_name(method, getattr(np, method)) for method in METHODS.values()
+} | {
+    "abs": abs, "absolute": abs, "fabs": abs, "hypot": length, "arctan2": angle, "copysign": with_sign, "sign": sign,
+    "fmod": remainder_of_c, "minimum": smaller, "maximum": larger, "where": where, "interp": interpolated,
+    "mod": operator.mod, "remainder": operator.mod, "power": operator.pow, "float64": number,
+    "zeros": objects(np.zeros), "ones": objects(np.ones), "empty": objects(np.zeros),
+}  # fmt: skip
+BUILTINS: dict[str, Callable[..., Any]] = {"min": least, "max": most, "int": whole, "float": number}
+UFUNCS: dict[Any, Callable[..., Any]] = {
+    getattr(np, name): f for name, f in NUMPY.items() if isinstance(getattr(np, name), np.ufunc)
+} | {
+    np.add: operator.add, np.subtract: operator.sub, np.multiply: operator.mul, np.divide: operator.truediv,
+    np.negative: operator.neg, np.power: operator.pow, np.square: lambda x: x**2, np.less: operator.lt,
+    np.less_equal: operator.le, np.greater: operator.gt, np.greater_equal: operator.ge, np.equal: operator.eq,
+    np.not_equal: operator.ne, np.floor_divide: operator.floordiv,
+}  # fmt: skip
+
+
+class Module(SimpleNamespace):
+    """A module whose functions take intervals; the others are as they were."""
+
+    def __getattr__(self, name: str) -> Any:
+        """What is not replaced."""
+        return getattr(self.__dict__["_own"], name)
+
+
+STANDS_FOR: dict[int, Any] = {id(math): Module(_own=math, **MATH), id(np): Module(_own=np, **NUMPY)}
+STANDS_FOR |= {id(getattr(math, name)): f for name, f in MATH.items()}
+STANDS_FOR |= {id(getattr(np, name)): f for name, f in NUMPY.items()}
+STANDS_FOR |= {id(getattr(builtins, name)): f for name, f in BUILTINS.items()}

@@ -1,0 +1,114 @@
+"""A period divided into leaves, in each of which the curve of what moves by itself changes little.
+
+A window is halved until the bounds of its curve differ by no more than a share of what the curve is nearby (in the
+window 16 times as long around it), or the place cannot leave its straight way by more than NOTHING. So a burr is
+found however narrow it is, where bounds are enclosures. Neighbouring leaves that are alike are put together again.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.turns.source import Source
+
+Array = NDArray[np.float64]
+CHANGE = 0.25  # of the curve nearby
+GENERATIONS = 5  # of windows that are nearby: the own one, and four that contain it
+NOTHING = 1e-7  # of the range of places
+DEEPEST = 28  # halvings of the whole
+MOST = 4096  # windows of one size
+MUCH, FAST = 0.25, 1 / 32  # share of the time that turns fast, and how fast: then all of it does
+ROOTS = 4  # between two ends
+JUMP = 1e-6  # of the speed: what changes by more within a window of the last size jumps
+APART = 1e-13  # of the times: so far windows stay off their ends, where a corner belongs to none
+
+
+class Leaves(NamedTuple):
+    """Windows [a, b] in the order of time: bounds of their curve (n, rows), what it is nearby, whether it jumps."""
+
+    a: Array
+    b: Array
+    lo: Array
+    hi: Array
+    near: Array
+    jumps: NDArray[np.bool_]
+
+    def chosen(self, which: Any) -> Leaves:
+        """Some of them."""
+        parts: list[Any] = [x[which] for x in self]
+        return Leaves(*parts)
+
+
+def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
+    """The leaves between the first and the last of `ends`, which all end one.
+
+    None where more than a share MUCH of the time turns within less than FAST of the length `base`.
+    """
+    shares = np.arange(ROOTS) / ROOTS
+    a = (ends[:-1, None] + np.diff(ends)[:, None] * shares).ravel()
+    b = np.append(a[1:], ends[-1])
+    near, kept = np.zeros((len(a), 0)), []
+    least, most = np.full(source.rows, np.inf), np.full(source.rows, -np.inf)
+    whole = ends[-1] - ends[0]
+    while len(a):
+        shrink = APART * np.maximum(whole, np.abs(b)) * (b - a > 1e-11 * whole)
+        seen = source.bounds(a + shrink, b - shrink)
+        times = np.column_stack([a + shrink, 0.5 * (a + b), b - shrink])
+        looks = source.values(times.ravel()).reshape(len(a), 3, source.rows, 3)
+        least = np.minimum(least, looks[..., 0].min(axis=(0, 1)))
+        most = np.maximum(most, looks[..., 0].max(axis=(0, 1)))
+        range_ = np.maximum(most - least, _extent(seen.lo[..., 0], seen.hi[..., 0]))
+        near = np.column_stack([np.abs(looks[..., 2]).max(axis=(1, 2)), near])[:, :GENERATIONS]
+        lo, hi = seen.lo[..., 2], seen.hi[..., 2]
+        even = alike(lo, hi, near.max(axis=1), b - a, source.order, range_)
+        done = even & ~seen.branched
+        last = b - a <= whole * 2.0**-DEEPEST
+        jumps = last & (~even | _jumps(seen.lo[..., 1], seen.hi[..., 1]))
+        end = done | last
+        kept.append(Leaves(a, b, lo, hi, near.max(axis=1), jumps & ~done).chosen(end))
+        a, b, near = a[~end], b[~end], near[~end]
+        if len(a) > MOST or (np.sum(b - a) > MUCH * whole and np.max(b - a) < FAST * base):
+            return None
+        middle = 0.5 * (a + b)
+        a, b, near = np.concatenate([a, middle]), np.concatenate([middle, b]), np.vstack([near, near])
+    joined = Leaves(*[np.concatenate(x) for x in zip(*kept, strict=True)])
+    return together(joined.chosen(np.argsort(joined.a)), ends, source.order, range_)
+
+
+def _extent(lo: Array, hi: Array) -> Array:
+    """From the lowest to the highest of the bounds that are known, (rows,)."""
+    lo, hi = np.where(np.isfinite(lo), lo, np.inf), np.where(np.isfinite(hi), hi, -np.inf)
+    return np.maximum(hi.max(axis=0) - lo.min(axis=0), 0.0)
+
+
+def _jumps(lo: Array, hi: Array) -> NDArray[np.bool_]:
+    """Whether a speed jumps, in windows of the last size."""
+    return np.asarray((hi - lo > JUMP * np.maximum(np.abs(lo), np.abs(hi))).any(axis=1))
+
+
+def alike(lo: Array, hi: Array, near: Array, h: Array, order: int, range_: Array) -> NDArray[np.bool_]:
+    """Whether a curve between these bounds changes little in windows of the lengths h."""
+    width = hi - lo
+    straight = width * (h**order)[:, None] / 8.0 <= NOTHING * range_
+    return np.asarray(((width <= CHANGE * near[:, None]) | straight).all(axis=1))
+
+
+def together(found: Leaves, ends: Array, order: int, range_: Array) -> Leaves:
+    """Neighbours that are alike put together, but not across one of the ends."""
+    made: list[tuple[float, float, Array, Array, float, bool]] = []
+    borders = set(ends.tolist())
+    for row in zip(*found, strict=True):
+        a, b, lo, hi, near, jumps = row
+        if made and a not in borders and not jumps and not made[-1][5]:
+            before = made[-1]
+            least, most, more = np.minimum(before[2], lo), np.maximum(before[3], hi), max(before[4], near)
+            h = np.array([b - before[0]])
+            if alike(least[None], most[None], np.array([min(before[4], near)]), h, order, range_)[0]:
+                made[-1] = before[0], b, least, most, more, False
+                continue
+        made.append((a, b, lo, hi, near, bool(jumps)))
+    a, b, lo, hi, near, jumps = zip(*made, strict=True)
+    return Leaves(np.array(a), np.array(b), np.array(lo), np.array(hi), np.array(near), np.array(jumps))

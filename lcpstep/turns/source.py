@@ -1,0 +1,117 @@
+"""What moves by itself in a scene, and bounds of its place, speed and curve over windows of time.
+
+A frame and the obstacles of flat contacts give all three (s, s', s''); gaps of any form give a place (g) and a curve
+(dg/dt at rest), at the initial position.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
+from lcpstep.intervals import Interval, NotEnclosed, enclose
+from lcpstep.intervals.callbacks import Enclosed, plain
+
+Array = NDArray[np.float64]
+LOOKS = 64  # per window, of a function that cannot be evaluated on intervals
+GOLDEN = 0.6180339887498949
+OURS = "lagrangian."  # modules whose functions turn no faster than their period, and name their corners
+
+
+@dataclass(eq=False)
+class Source:
+    """One function of time.
+
+    name    of the argument of the scene that it is
+    f       the function;  also: that which gives the place, where f itself gives the curve alone
+    at      q, v, p, at which it is asked for
+    rows    numbers of contacts or coordinates
+    sampled why it cannot be evaluated on intervals, or ""
+    """
+
+    name: str
+    f: Any
+    also: Any
+    at: tuple[Array, Array, Array]
+    rows: int
+    sampled: str = ""
+
+    @property
+    def key(self) -> tuple[Any, ...]:
+        """What its answers depend on."""
+        return self.name, self.f, self.also, self.rows, *[x.tobytes() for x in self.at]
+
+    @property
+    def order(self) -> int:
+        """How often the curve is integrated for the place."""
+        return 2 if self.also is None else 1
+
+    def bounds(self, a: Array, b: Array) -> Enclosed:
+        """Place, speed and curve in the windows [a, b] of time: bounds of shape (n, rows, 3)."""
+        if not self.sampled:
+            try:
+                return self.enclosed(a, b)
+            except NotEnclosed as why:
+                self.sampled = str(why)
+        return self.looked_at(a, b)
+
+    def enclosed(self, a: Array, b: Array) -> Enclosed:
+        """The same by interval arithmetic."""
+        q, v, p = self.at
+        state = [[Interval(np.full(len(a), x), np.full(len(a), x)) for x in y] for y in (q, v)]
+        t = Interval(a, b)
+        if self.also is None:
+            return enclose(self.f, t, state[0], state[1], p, (self.rows, 3))
+        rate = enclose(self.f, t, state[0], state[1], p, (self.rows,))
+        place = enclose(self.also, t, state[0], state[1], p, (self.rows,))
+        lo, hi = (np.stack([x, y, y], axis=2) for x, y in ((place.lo, rate.lo), (place.hi, rate.hi)))
+        return Enclosed(lo, hi, rate.branched | place.branched)
+
+    def values(self, times: Array) -> Array:
+        """Place, speed and curve at many times, (n, rows, 3)."""
+        if not self.sampled:
+            exact = self.bounds(times, times)
+            if not self.sampled:
+                return np.nan_to_num(exact.lo, nan=0.0, posinf=0.0, neginf=0.0)
+        return np.array([self.value(float(t)) for t in times])
+
+    def looked_at(self, a: Array, b: Array) -> Enclosed:
+        """The same by samples, which need not show everything."""
+        k = np.arange(LOOKS)
+        shares = (k + k * GOLDEN % 1.0) / LOOKS
+        values = np.array([[self.value(x + s * (y - x)) for s in shares] for x, y in zip(a, b, strict=True)])
+        return Enclosed(values.min(axis=1), values.max(axis=1), np.zeros(len(a), dtype=bool))
+
+    def value(self, t: float) -> Array:
+        """Place, speed and curve at one time, (rows, 3); zero where the function has no value."""
+        q, v, p = (x.copy() for x in self.at)
+        shape = (self.rows, 3) if self.also is None else (self.rows,)
+        try:
+            out = np.zeros(shape)
+            self.f(t, q, v, p, out)
+            if self.also is not None:
+                place = np.zeros(shape)
+                self.also(t, q, v, p, place)
+                out = np.stack([place, out, out], axis=1)
+        except Exception:  # the motion may never come there
+            return np.zeros((self.rows, 3))
+        return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+def sources(scene: Scene) -> list[Source]:
+    """What moves by itself in a scene, but for the functions of the ready ones."""
+    found = []
+    state = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
+    system: Any = scene.system
+    contacts: Any = scene.contacts
+    if isinstance(system, LinearSystem) and system.frame is not None and scene.n_c > 0:
+        found.append(Source("system.frame", system.frame, None, state, scene.n_q))
+    if isinstance(contacts, LinearContacts) and contacts.motion is not None:
+        found.append(Source("contacts.motion", contacts.motion, None, state, scene.n_c))
+    if isinstance(contacts, Contacts) and contacts.gap_t is not None:
+        found.append(Source("contacts.gap_t", contacts.gap_t, contacts.gap, state, scene.n_c))
+    return [x for x in found if not f"{getattr(plain(x.f), '__module__', '')}.".startswith(OURS)]

@@ -1,0 +1,142 @@
+"""Times at which a run stops to look, because an obstacle or a frame turns fast there.
+
+A scan for events that is as fine as the motion flies through a burr on a cam. Where what moves by itself is known as
+a function of time, the places where it turns fast are found once, before the run (`refine`), and the scan is divided
+there: a run takes these times as it takes corners. Elsewhere it costs nothing.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.turns.refine import MUCH, Leaves, leaves
+from lcpstep.turns.source import Source, sources
+
+Array = NDArray[np.float64]
+PER_PERIOD, PER_SPAN = 16, 50  # intervals of the scan in a period, or in a span without one
+SHORT = 0.25  # of them: leaves that are shorter are looked at by themselves
+EVEN = 0.5  # of the largest curve: by how much it may change where no look is needed
+NEAR = 1e-12  # of the period: stops that are one
+KEPT = 256  # scenes whose stops are remembered
+
+
+class FastTurn(UserWarning):
+    """Something turns faster than the scan for events, and how fast is known from samples alone."""
+
+
+class Turns(NamedTuple):
+    """Where what moves by itself turns fast.
+
+    stops : (m,)     times to look at, in [0, period), or in the span where nothing repeats; with the scene's corners
+    fast : (k, 2)    stretches between them
+    sampled          what is known from samples alone, and turns fast, and why; ""
+    """
+
+    stops: Array
+    fast: Array
+    sampled: str
+
+    def elsewhere(self, times: Array, period: float) -> NDArray[np.bool_]:
+        """Which times lie in none of the stretches."""
+        t = times if math.isinf(period) else np.mod(times, period)
+        order = np.argsort(self.fast[:, 0])
+        k = np.searchsorted(self.fast[order, 0], t, side="right") - 1
+        ends = np.append(self.fast[order, 1], -np.inf)
+        return np.asarray(ends[k] < t)
+
+
+def turns(scene: Scene) -> Turns:
+    """Where what moves by itself in a scene turns fast; one warning per scene where samples alone tell."""
+    corners = np.asarray(scene.corners, dtype=float)
+    found = sources(scene) if scene.n_c else []
+    if not found:
+        return Turns(corners, np.zeros((0, 2)), "")
+    span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
+    result = _remembered(tuple(Key(x) for x in found), span, scene.period, tuple(corners.tolist()))
+    if result.sampled:
+        warnings.warn(f"{scene.name!r}: {result.sampled}", FastTurn, stacklevel=6)
+    return result
+
+
+class Key:
+    """A source that is the same as another one that gives the same answers."""
+
+    def __init__(self, source: Source) -> None:
+        self.source, self.key = source, source.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+    def __eq__(self, other: Any) -> bool:
+        return isinstance(other, Key) and self.key == other.key
+
+
+@functools.lru_cache(maxsize=KEPT)
+def _remembered(
+    keys: tuple[Key, ...], span: tuple[float, float], period: float, corners: tuple[float, ...]
+) -> Turns:
+    """The same, of all that moves."""
+    per = PER_PERIOD if math.isfinite(period) else PER_SPAN
+    base = (span[1] - span[0]) / per
+    own = np.array([x for x in corners if span[0] < x < span[1]])
+    ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
+    stops, stretches, words = [np.array(corners)], [np.zeros((0, 2))], []
+    for key in keys:
+        source = key.source
+        found = leaves(source, ends, base)
+        if found is None:  # all of it turns fast, as samples show as well
+            continue
+        short = fast(found, SHORT * usual(found, base), ends)
+        stops.append(np.concatenate([found.a[short], found.b[short]]))
+        stretches.append(np.column_stack([found.a[short], found.b[short]]))
+        if source.sampled and np.any(short):
+            shortest = np.min((found.b - found.a)[short])
+            words.append(
+                f"{source.name} turns within {shortest:.3g} s, as samples show, which need not show everything: it "
+                f"cannot be evaluated on intervals ({source.sampled}); give the times at which it turns as `corners`"
+            )
+    if math.isfinite(period):  # the ends of a period are one time
+        stops = [x[x < period] for x in stops]
+    return Turns(
+        _apart(np.unique(np.concatenate(stops)), span[1] - span[0], own),
+        np.concatenate(stretches),
+        "; ".join(words),
+    )
+
+
+def usual(found: Leaves, base: float) -> float:
+    """Length that all but a share of the time is divided into leaves of; at most `base`."""
+    length = found.b - found.a
+    order = np.argsort(length)
+    share = np.cumsum(length[order]) / np.sum(length)
+    k = min(int(np.searchsorted(share, MUCH)), len(order) - 1)
+    return float(min(base, length[order[k]]))
+
+
+def _apart(stops: Array, whole: float, corners: Array) -> Array:
+    """The stops without those that only rounding tells from the one before; the scene's corners stay."""
+    near = np.diff(stops, prepend=-np.inf) < NEAR * whole
+    return np.asarray(stops[~near | np.isin(stops, corners)])
+
+
+def fast(found: Leaves, least: float, borders: Array) -> NDArray[np.bool_]:
+    """Which leaves are shorter than `least`, and not because a corner ends them, or hold a jump.
+
+    Leaves side by side, between two borders, whose curve hardly changes over all of them need no look of their own.
+    """
+    short = (found.b - found.a < least) | found.jumps
+    starts = ~np.append(False, short[:-1]) | np.isin(found.a, borders)
+    group = np.cumsum(starts & short) * short
+    for k in range(1, int(group.max(initial=0)) + 1):
+        own = group == k
+        lo, hi = found.lo[own].min(axis=0), found.hi[own].max(axis=0)
+        if np.all(hi - lo <= EVEN * np.maximum(np.abs(lo), np.abs(hi))) and not np.any(found.jumps[own]):
+            short[own] = False
+    return short
