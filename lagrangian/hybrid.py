@@ -256,6 +256,10 @@ class HybridScene(Pickled):
         object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
 
+    def __repr__(self) -> str:
+        modes = f"modes {', '.join(self.system.names)}"
+        return checks.in_words(self, [f"{self.n_x} states", modes, f"starts in {self.mode}"])
+
     @property
     def n_x(self) -> int:
         """Number of states."""

@@ -86,6 +86,13 @@ class Scene(Pickled):
         if self.exact is not None and not self._starts_exact():
             object.__setattr__(self, "exact", None)
 
+    def __repr__(self) -> str:
+        parts = [f"{self.n_q} coordinate{'s' * (self.n_q > 1)}"]
+        parts += [
+            f"{n} {what}{'s' * (n > 1)}" for n, what in ((self.n_c, "contact"), (self.n_j, "joint")) if n
+        ]
+        return checks.in_words(self, parts)
+
     @property
     def n_q(self) -> int:
         """Number of coordinates."""

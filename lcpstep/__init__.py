@@ -9,6 +9,7 @@ from lcpstep.diagnostics import Energy, energy
 from lcpstep.errors import LcpStepError, MissingSolver, SimulationError, SimulationInterrupted, UnknownName
 from lcpstep.events import EventDriven
 from lcpstep.lcp import solve_lcp
+from lcpstep.saving import load
 from lcpstep.simulate import simulate
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
@@ -31,6 +32,7 @@ __all__ = [
     "UnknownName",
     "continued",
     "energy",
+    "load",
     "simulate",
     "solve_lcp",
     "study",

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene
+from lcpstep.answer import Answer
 
 Array = NDArray[np.float64]
 
@@ -64,7 +65,7 @@ class Counts:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Answer):
     """A motion with impacts.
 
     Attributes
