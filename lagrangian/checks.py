@@ -231,6 +231,20 @@ class ReadOnly(dict[str, Any]):
         return ReadOnly, (dict(self),)
 
 
+def labels(name: str, values: Any, n: int) -> tuple[str, ...]:
+    """Names with units, n of them or none."""
+    given = (values,) if isinstance(values, str) else tuple(values)
+    if not all(isinstance(x, str) for x in given) or len(given) not in (0, n):
+        raise ValueError(f"{name}: expected {n} names with units, as 'angle [rad]', got {values!r}")
+    return given
+
+
+def rate_label(label: str) -> str:
+    """What the rate of a named coordinate is called: "angle [rad]" becomes "rate of angle [rad/s]"."""
+    name, bracket, unit = label.partition(" [")
+    return f"rate of {name}{bracket}{unit[:-1]}/s]" if bracket else f"rate of {name}"
+
+
 def in_words(scene: Any, parts: list[str]) -> str:
     """A scene on one line: its kind, name, what it has, its span, and its parameters."""
     start, end = scene.t_span

@@ -219,6 +219,7 @@ class HybridScene(Pickled):
     name : a short name, for reports
     exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
     labels : name of each state with its unit, for axes: ("position [m]", ...); x1, x2, .. where not given
+    drawing : function (t, x) -> shapes of `lagrangian.drawing`, or None
 
     Raises
     ------
@@ -235,6 +236,7 @@ class HybridScene(Pickled):
     name: str = "hybrid scene"
     exact: Callable[[Array], Array] | None = None
     labels: Sequence[str] = ()
+    drawing: Callable[[float, Any], Any] | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):

@@ -20,6 +20,38 @@ class Answer:
 
         return overview(self)  # type: ignore[arg-type]
 
+    def animate(
+        self,
+        path: str | Path | None = None,
+        *,
+        drawing: Any = None,
+        seconds: float | None = None,
+        fps: int = 25,
+    ) -> Any:
+        """The motion as a film, in which impacts flash; from the scene's drawing, or one that is given here.
+
+        Parameters
+        ----------
+        path : where to write it: .gif, .mp4 (where ffmpeg is installed), or .html; None to write nothing
+        drawing : function (t, q) -> shapes of `lagrangian.drawing`; default: the scene's
+        seconds : how long the film plays; default: as long as the motion, but at least 3 s and at most 8 s
+        fps : pictures in a second
+
+        Returns
+        -------
+        a film, which a notebook shows and whose `save(path)` writes it; the path where one is given
+
+        Raises
+        ------
+        ValueError   path, drawing, seconds or fps is none
+        LcpStepError   there is no drawing, or it fails; ffmpeg is missing
+        NotWritten   the file cannot be written
+        """
+        from lcpstep.plot.film import film
+
+        made = film(self, drawing=drawing, seconds=seconds, fps=fps)
+        return made if path is None else made.save(path)
+
     def to_xarray(self) -> Any:
         """States, impulses and the log as an `xarray.Dataset`: variables with units, attributes with what was run."""
         from lcpstep.saving import to_xarray

@@ -182,9 +182,14 @@ def _check_scene(scene: Any, tree: Any, arrays: Mapping[str, np.ndarray]) -> Non
     mine, other = _leaves(describer.tree(scene, "scene"), describer.arrays), _leaves(tree, arrays)
     for place in sorted(set(mine) | set(other)):
         a, b = mine.get(place), other.get(place)
-        if a != b and not (place.endswith(".source") or ".exact" in place or ".drawing" in place):
+        if a != b and not _aside(place):
             name = place.strip(".").removesuffix(".sha256")
             raise ValueError(f"scene: it is not the one of the file, {name} is another")
+
+
+def _aside(place: str) -> bool:
+    """Whether a motion does not depend on what is there."""
+    return place.endswith(".source") or ".exact" in place or ".drawing" in place
 
 
 def _leaves(tree: Any, arrays: Mapping[str, np.ndarray], place: str = "") -> dict[str, Any]:
@@ -225,9 +230,7 @@ def _regain_exact(scene: Any) -> None:
     describer, own = Describer(), Describer()
     mine = _leaves(describer.tree(made, "scene"), describer.arrays)
     its = _leaves(own.tree(scene, "scene"), own.arrays)
-    if {k: x for k, x in mine.items() if ".exact" not in k} == {
-        k: x for k, x in its.items() if ".exact" not in k
-    }:
+    if not any(mine.get(k) != its.get(k) for k in {*mine, *its} if not _aside(k)):
         object.__setattr__(scene, "exact", made.exact)
 
 

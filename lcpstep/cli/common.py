@@ -110,6 +110,20 @@ def save_figure(figure: Any, file: Path) -> None:
     interrupt.wrote(file)
 
 
+def save_film(run: Any, file: Path) -> None:
+    """Write the film of a run, with a bar over its pictures on a terminal."""
+    from tqdm import tqdm
+
+    with tqdm(desc="film", unit="picture", disable=None, leave=False) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total, bar.n = total, done
+            bar.refresh()
+
+        run.animate().save(file, progress)
+    interrupt.wrote(file)
+
+
 def save_text(text: str, file: Path) -> None:
     """Write a text, its folder included, or leave the file that is there as it is."""
     with replacing(file) as draft:

@@ -22,6 +22,7 @@ from lcpstep.cli.common import (
     moreau,
     progress_bar,
     save_figure,
+    save_film,
     scene_arguments,
     scene_of,
     stepping_arguments,
@@ -63,6 +64,9 @@ def add(commands: Any) -> None:
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
     p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
+    p.add_argument(
+        "--film", type=Path, metavar="FILE", help="film the motion (.gif, .html, .mp4 with ffmpeg)"
+    )
     p.add_argument("--energy", action="store_true", help="balance the energy along the kept states")
     p.add_argument("--json", action="store_true", help="print JSON")
     p.set_defaults(run=run_simulate)
@@ -92,9 +96,14 @@ def run_simulate(options: argparse.Namespace) -> int:
         from lcpstep.plot.motion import overview
 
         save_figure(overview(run), options.picture)
+    if options.film:
+        save_film(run, options.film)
     balance = {"energy": _balance(run)} if options.energy else {}
     sentence = _modes_sentence(run) if modes else _sentence(run, balance)
     print(json.dumps(_summary(run) | balance, indent=2) if options.json else sentence)
+    for file in () if options.json else (options.out, options.picture, options.film):
+        if file is not None:
+            print(f"wrote {file}")
     return DONE if run.status == Status.DONE and (modes or not run.doubt) else FAILED
 
 
