@@ -33,19 +33,47 @@ def test_compare_measures_and_draws(capsys, tmp_path):
     answer = json.loads(out)
     assert [c["case"] for c in answer["comparisons"]] == ["358 rpm", "700 rpm"]
     for c in answer["comparisons"]:
-        assert c["steps"][0] == 3000
-        assert c["impacts"][0] == c["impacts"][1] > 0
-        assert 0 < c["sup_q"] < 0.1
-        assert np.max(np.abs(c["first_impacts"])) < 3e-3
-    pictures = sorted(p.name for p in tmp_path.iterdir())
-    assert pictures == ["maps-660-rpm.png", "state-space.png", "time-series.png"]
+        moreau, second, fourth, exact = c["methods"]
+        assert c["reference"] == "the motion in closed form"
+        assert moreau["steps"] == second["steps"] == 3000
+        assert moreau["impacts"] == second["impacts"] == fourth["impacts"] == exact["impacts"] > 0
+        assert (
+            0.1 > moreau["error"] > 100 * second["error"] > 1e4 * fourth["error"] > 0 < exact["error"] < 1e-10
+        )
+        assert 0.0 < second["first_impacts_off"] < moreau["first_impacts_off"] < 3e-3
+        assert all(x["levels"][0]["error"] > 3 * x["levels"][-1]["error"] for x in (moreau, second, fourth))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["comparison.png", "maps-660-rpm.png"]
 
 
-def test_compare_prints_a_table_for_any_scene(capsys):
+def test_compare_prints_a_table_and_how_to_read_it_for_any_scene(capsys):
     status, out, _ = run(capsys, "compare", "impact-oscillator", "--t-end", 10, "--h", 1e-3, "--no-pictures")
     assert status == DONE
     assert "impact-oscillator" in out
-    assert "sup|dq|" in out
+    table, sentences, further = out.split("\n\n")
+    assert [line.split()[0] for line in table.splitlines()[3:]] == [
+        "Moreau",
+        "Located,",
+        "Located,",
+        "EventDriven",
+    ]
+    assert len(sentences.splitlines()) == 3
+    assert "Try next: lcpstep simulate impact-oscillator" in further
+
+
+@pytest.mark.parametrize(
+    ("scene", "reference"), [("coulomb-oscillator", "closed form"), ("kane-pendulum", "Moreau at h")]
+)
+def test_compare_offers_what_treats_friction(capsys, scene, reference):
+    status, out, _ = run(capsys, "compare", scene, "--h", 1e-3, "--no-pictures")
+    assert status == DONE
+    assert reference in out
+    assert out.count("left out: ") == 3
+
+
+def test_angles_are_not_metres(capsys):
+    _, out, _ = run(capsys, "compare", "pendulum-stop", "--t-end", 1, "--h", 1e-3, "--no-pictures")
+    assert "[rad]" in out
+    assert "[m]" not in out
 
 
 def test_simulate_saves_the_motion(capsys, tmp_path):
