@@ -140,7 +140,8 @@ class Trajectory(Answer):
         return np.maximum(-lowest, highest)
 
     def __repr__(self) -> str:
+        span = f"t = {self.t[0]:g} .. {self.t[-1]:g} s, " if len(self.t) else ""
         return (
-            f"Trajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"Trajectory({self.scene.name}, {self.method}, {span}"
             f"{len(self.t)} states, {len(self.impacts)} events, {self.status.name})"
         )

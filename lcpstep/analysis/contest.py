@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene
+from lagrangian import Scene, checks
 from lcpstep.analysis import dials
 from lcpstep.analysis.dials import changeable, dial, with_value
 from lcpstep.errors import LcpStepError, SimulationError
@@ -110,8 +110,7 @@ class Contest:
     @property
     def unit(self) -> str:
         """Unit of the coordinates, where they have one in common."""
-        units = {label.partition("[")[2].rstrip("]") for label in self.scene.labels[: self.scene.n_q]}
-        return units.pop() if len(units) == 1 else "own units"
+        return checks.common_unit(self.scene.labels[: self.scene.n_q])
 
     @property
     def runs(self) -> list[Entrant]:
