@@ -233,7 +233,7 @@ class ReadOnly(dict[str, Any]):
 
 def labels(name: str, values: Any, n: int) -> tuple[str, ...]:
     """Names with units, n of them or none."""
-    given = (values,) if isinstance(values, str) else tuple(values)
+    given = (values,) if isinstance(values, str) or not np.iterable(values) else tuple(values)
     if not all(isinstance(x, str) for x in given) or len(given) not in (0, n):
         raise ValueError(f"{name}: expected {n} names with units, as 'angle [rad]', got {values!r}")
     return given
@@ -246,9 +246,9 @@ def rate_label(label: str) -> str:
 
 
 def common_unit(labels: tuple[str, ...]) -> str:
-    """The unit of named coordinates, "m" of "position [m]", where they have one in common."""
+    """The unit of named coordinates, "m" of "position [m]", where they have one in common; "" where not."""
     units = {label.partition("[")[2].rstrip("]") for label in labels}
-    return units.pop() if len(units) == 1 else "own units"
+    return units.pop() if len(units) == 1 else ""
 
 
 def in_words(scene: Any, parts: list[str]) -> str:

@@ -138,6 +138,10 @@ class HybridSystem:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
         if self.mode_of is not None and not callable(self.mode_of):
             raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
+        if not isinstance(self.modes, Mapping):
+            raise TypeError(f"modes: expected modes by name, got {self.modes!r}")
+        for name, mode in self.modes.items():
+            checks.instance(f"modes: {name}", mode, Mode)
         object.__setattr__(self, "modes", dict(self.modes))
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
         if not self.modes:

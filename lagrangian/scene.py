@@ -147,6 +147,7 @@ class Scene(Pickled):
         if not isinstance(self.parameters, Mapping):
             raise TypeError(f"parameters: expected names and values, got {self.parameters!r}")
         checks.instance("system", self.system, LinearSystem, System)
+        checks.instance("name", self.name, str)
         if self.contacts is not None:
             checks.instance("contacts", self.contacts, LinearContacts, Contacts)
         if self.joints is not None:

@@ -172,7 +172,8 @@ class ParameterStudy:
         shape, names = tuple(map(len, self.sweep.values())), tuple(self.sweep)
         variables: dict[str, Any] = {"status": (names, np.array(ended).reshape(shape))}
         n, units = scene.n_q, {}
-        own = {"q_end": checks.common_unit(scene.labels[:n]), "v_end": checks.common_unit(scene.labels[n:])}
+        labels = {"q_end": scene.labels[:n], "v_end": scene.labels[n:]}
+        own = {name: checks.common_unit(of) or "1" for name, of in labels.items()}
         for name in self.outputs["measures"]:
             values = np.array([row[name] for row in rows])
             inner = ("coordinate",) if values.ndim > 1 else ()

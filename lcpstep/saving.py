@@ -19,10 +19,12 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lagrangian.scenes import SCENES
 from lcpstep import dataset, functions
 from lcpstep.described import COLUMNS, Builder, Describer
 from lcpstep.errors import DamagedFile, LcpStepError
+from lcpstep.files import file_path
 
 FORMAT = 1
 SIGNATURES = (b"\x89HDF\r\n\x1a\n",)  # how a NetCDF file of today begins
@@ -50,7 +52,7 @@ def to_xarray(run: Any) -> Any:
         lines = getattr(run, log, None)
         if lines is not None:
             variables |= {f"{start}_{name}": _column(start, lines[name]) for name in lines.dtype.names}
-    data = dataset.labelled(variables, {"t": run.t}, {}, UNITS)
+    data = dataset.labelled(variables, {"t": run.t}, {}, _units(run.scene))
     return data.assign_attrs(_attributes(run))
 
 
@@ -76,7 +78,7 @@ def to_dataframe(run: Any, of: str = "states") -> Any:
 
 def save(run: Any, path: str | Path, *, overwrite: bool = False) -> Path:
     """Write a run to a file; see `Trajectory.save`."""
-    path = Path(path)
+    path = file_path(path)
     if path.suffix != ENDING:
         raise ValueError(f"path: expected a name that ends in {ENDING}, got {str(path)!r}")
     dataset.check_new(path, overwrite)
@@ -94,7 +96,9 @@ def save(run: Any, path: str | Path, *, overwrite: bool = False) -> Path:
     attributes = _attributes(run) | {CHECKSUM: digest(arrays)}
     lengths = {"t": len(run.t)}
     variables = {name: (_dimensions(name, x, lengths), x) for name, x in arrays.items() if name != "t"}
-    data = dataset.labelled(variables, {"t": ("t", arrays["t"])} if "t" in arrays else {}, attributes, UNITS)
+    data = dataset.labelled(
+        variables, {"t": ("t", arrays["t"])} if "t" in arrays else {}, attributes, _units(run.scene)
+    )
     for x in data.variables.values():
         x.encoding["_FillValue"] = None  # numbers are written as they are
     return dataset.save(data, path, overwrite=overwrite)
@@ -120,7 +124,7 @@ def load(path: str | Path, scene: Any = None) -> Any:
     DamagedFile   the file is damaged, no run, or written by a version whose files this one does not know
     ValueError   scene is another than the one that was run; the message names the first difference
     """
-    record, arrays = _read(Path(path))
+    record, arrays = _read(file_path(path))
     if record.get("format") != FORMAT:
         raise DamagedFile(
             f"{path}: written by lcpstep {record.get('lcpstep')}, whose files this version cannot read"
@@ -242,6 +246,15 @@ def _attributes(run: Any) -> dict[str, Any]:
         "status": run.status.name, "message": run.message, "doubt": getattr(run, "doubt", ""),
         "counts": json.dumps(counts),
     }  # fmt: skip
+
+
+def _units(scene: Any) -> dict[str, str]:
+    """Units of the variables; those of coordinates are the scene's own."""
+    n = getattr(scene, "n_q", None)
+    if n is None:
+        return UNITS
+    own = {"q": scene.labels[:n], "v": scene.labels[n:]}
+    return UNITS | {name: checks.common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
 
 
 def _dimensions(name: str, x: np.ndarray, lengths: dict[str, int]) -> tuple[str, ...]:

@@ -86,10 +86,17 @@ def study(
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
+    if isinstance(measures, str) or not isinstance(measures, Iterable):
+        raise TypeError(f"measures: expected names in a list, got {measures!r}")
     for measure in measures:
         if measure not in MEASURES:
             raise UnknownName("error measure", measure, MEASURES)
-    if isinstance(repeats, bool) or repeats < 1:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: expected a function of a line of text, got {progress!r}")
+    for name, values in (("h", h), ("tolerances", tolerances), ("spread", spread)):
+        if values is not None and (isinstance(values, str) or not np.iterable(values)):
+            raise TypeError(f"{name}: expected numbers in a list, got {values!r}")
+    if isinstance(repeats, bool) or not isinstance(repeats, int) or repeats < 1:
         raise ValueError(f"repeats: expected at least 1, got {repeats!r}")
     if not (len(spread) and all(math.isfinite(s) and s > 0.0 for s in spread)):
         raise ValueError(f"spread: expected positive factors, got {spread!r}")

@@ -114,7 +114,10 @@ class Trajectory(Answer):
         ------
         ValueError   a time lies outside the run, or between states that were not kept
         """
-        times = np.atleast_1d(np.asarray(t, dtype=float))
+        try:
+            times = np.atleast_1d(np.asarray(t, dtype=float))
+        except (TypeError, ValueError):
+            raise ValueError(f"t: expected real numbers, got {t!r}") from None
         outside = ~((times >= self.t[0]) & (times <= self.t[-1]))
         if np.any(outside):
             raise ValueError(

@@ -242,6 +242,7 @@ def test_tables_and_datasets(tmp_path):
     assert np.array_equal(events["impulse"], run.impacts.impulse)
     with pytest.raises(ValueError, match='expected "states" or "events"'):
         run.to_dataframe("impacts")
+    assert simulate(scenes.pendulum_stop(t_end=0.1), Moreau(0.01)).to_xarray().v.attrs["units"] == "rad/s"
     modes = simulate(scenes.stick_slip_oscillator(t_end=9.0), EventDriven(1e-8, 1e-8))
     assert list(modes.to_dataframe()["mode"]) == modes.mode.tolist()
     assert len(modes.to_xarray().switch_time) == len(modes.switches)

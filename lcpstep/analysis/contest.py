@@ -110,7 +110,7 @@ class Contest:
     @property
     def unit(self) -> str:
         """Unit of the coordinates, where they have one in common."""
-        return checks.common_unit(self.scene.labels[: self.scene.n_q])
+        return checks.common_unit(self.scene.labels[: self.scene.n_q]) or "own units"
 
     @property
     def runs(self) -> list[Entrant]:

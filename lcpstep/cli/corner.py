@@ -65,6 +65,10 @@ def add(commands: Any) -> None:
 def run_corner(options: argparse.Namespace) -> int:
     """`lcpstep corner`."""
     _check_out(options)
+    if len(np.asarray(scene_with_contacts(options).corners)) == 0:
+        raise ValueError(
+            f"scene: expected one whose obstacle has corners, as cam-follower; {options.scene!r} has none"
+        )
     if options.chattering is not None:
         return _run_chattering(options)
 

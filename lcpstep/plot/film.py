@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from lagrangian import checks
 from lagrangian.drawing import Circle, Drawing, Point, Polygon, Shape, drawn, extent, places
 from lcpstep.errors import LcpStepError, NotWritten
-from lcpstep.files import replacing
+from lcpstep.files import file_path, replacing
 from lcpstep.plot.player import page
 from lcpstep.trajectory import Kind
 
@@ -72,7 +72,7 @@ class Film:
         LcpStepError   the drawing fails, or there is no ffmpeg
         NotWritten   no such folder, no permission, no space
         """
-        path = Path(path)
+        path = file_path(path)
         writer = _writer(path)
         if not path.parent.is_dir():
             raise NotWritten(
