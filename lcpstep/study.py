@@ -20,7 +20,7 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.analysis.dials import changeable, dial, label, with_value
 from lcpstep.analysis.environment import machine, versions
-from lcpstep.analysis.errors import MEASURES, Difference
+from lcpstep.analysis.errors import MEASURES, Difference, units
 from lcpstep.analysis.horizon import LOST, Growth, growth
 from lcpstep.analysis.reference import TIGHTEST, Reference, find_reference
 from lcpstep.analysis.work_precision import Level, Study
@@ -109,7 +109,8 @@ def study(
     from lcpstep import __version__
 
     known = {"lcpstep": __version__} | versions()
-    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=known, machine=machine())
+    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=known, machine=machine(),
+                   units=units(scene))  # fmt: skip
     try:
         _fill(result, scene, curves, reference, measures, horizon, repeats, spread, done, save, progress)
     except KeyboardInterrupt:

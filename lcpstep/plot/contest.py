@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.analysis.contest import Contest
+from lcpstep.plot.work_precision import whole_decades
 
 # Lines and marks tell them apart without colours
 LOOKS = (
@@ -76,4 +77,5 @@ def _cost(ax: Any, one: Contest) -> None:
             [x.seconds for x in levels], [x.error for x in levels], marker=mark, ms=4, color=colour, ls=style
         )
     ax.set(xscale="log", yscale="log", xlabel="CPU time [s]", ylabel=f"largest error [{one.unit}]")
+    whole_decades(ax)
     ax.grid(alpha=0.3)
