@@ -82,3 +82,35 @@ def test_a_scene_may_import_its_neighbour_and_bear_the_name_of_a_module(folder, 
     status, out, _ = run(capsys, "simulate", "json.py", "--json")
     assert status == DONE
     assert '"impact": 1' in out
+
+
+DRIVEN = """
+import math
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+
+
+def scene(omega=2.0, stop=0.0):
+    return Scene(
+        LinearSystem(1.0, C=0.1, K=1.0, force=Harmonic(cosine=1.0, omega=omega)), -0.5, 0.0, (0.0, 10.0),
+        LinearContacts(-1.0, offset=stop, restitution=0.8), period=2.0 * math.pi / omega,
+        parameters={"wall": stop}, name="driven",
+    )
+"""
+
+
+def test_other_commands_take_files_too(folder, capsys):
+    (folder / "driven.py").write_text(DRIVEN)
+    ready, mine = "impact-oscillator", "driven.py"
+    found = {}
+    for scene in (ready, mine):
+        status, out, err = run(capsys, "orbit", scene, "--parameter", "omega", "--range", 1.95, 2.05, "--points", 5,
+                               "--out", folder / f"out {scene}")  # fmt: skip
+        assert (status, err) == (DONE, "")
+        found[scene] = [line for line in out.splitlines() if "wrote" not in line]
+        status, _, err = run(capsys, "bifurcation", scene, "--parameter", "omega", "--range", 1.95, 2.05, "--points",
+                             3, "--out", folder / f"out {scene}")  # fmt: skip
+        assert (status, err) == (DONE, "")
+    assert found[ready] == found[mine]
+    status, out, err = run(capsys, "compare", mine, "--h", 1e-3, "--no-pictures")
+    assert (status, err) == (DONE, "")
+    assert "event-driven at a tolerance of 1e-13" in out

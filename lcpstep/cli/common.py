@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,28 @@ def parameters_of(scene: str) -> dict[str, Any]:
     if scene not in SCENES:
         raise UnknownName("scene", scene, SCENES)
     return SCENES[scene].parameters
+
+
+def arguments_of(options: argparse.Namespace, scene: Any) -> dict[str, Any]:
+    """What the scene that the options name was made with: all parameters that have a value."""
+    known = parameters_of(options.scene)
+    if own.is_file(options.scene):
+        settings = dict(setting.split("=", 1) for setting in options.set)
+        given = {name: read(name, value, known[name]) for name, value in settings.items()}
+        return {name: x for name, x in known.items() if isinstance(x, (int, float, str))} | given
+    return {name: x for name, x in scene.parameters.items() if name in known}
+
+
+def making(options: argparse.Namespace, scene: Any, varied: str) -> Callable[..., Any]:
+    """A function of the varied parameter, by name, that makes the scene of the options."""
+    fixed = {name: x for name, x in arguments_of(options, scene).items() if name != varied}
+    if own.is_file(options.scene):
+        return partial(_own_scene, options.scene, **fixed)
+    return partial(SCENES[options.scene].make, **fixed)
+
+
+def _own_scene(file: str, **values: Any) -> Any:
+    return own.made(file, values)
 
 
 def made_scene(scene: str, values: Mapping[str, Any], t_end: float | None) -> Any:

@@ -17,6 +17,7 @@ from lcpstep.errors import LcpStepError, UnknownName
 
 FUNCTION = "scene"
 ENDING = ".py"
+READ: dict[tuple[Path, int], ModuleType] = {}
 
 
 def is_file(name: str) -> bool:
@@ -76,7 +77,17 @@ def made(file: str | Path, values: Mapping[str, Any], t_end: float | None = None
 
 
 def _module(path: Path) -> ModuleType:
-    """The file as a module, which finds its neighbours, and whose functions other processes find by its name."""
+    """The file as a module, which finds its neighbours, and whose functions other processes find by its name.
+
+    It is read once, and again where it has changed.
+    """
+    key = path.resolve(), path.stat().st_mtime_ns
+    if key not in READ:
+        READ[key] = _executed(path)
+    return READ[key]
+
+
+def _executed(path: Path) -> ModuleType:
     folder, name = str(path.resolve().parent), path.stem
     if name in sys.modules and getattr(sys.modules[name], "__file__", None) != str(path.resolve()):
         name = f"{name}_scene"
