@@ -1,6 +1,6 @@
 """Set the project up in a virtual environment of its own and run it; needs Python 3.11 and nothing else.
 
-python3 start.py          the cam-follower by time-stepping and event by event: a table, and pictures in out/
+python3 start.py          the cam-follower by every method: a table, how to read it, and pictures in out/
 python3 start.py test     the checks: lint, types, import rules, tests
 """
 
@@ -109,7 +109,11 @@ def install(*arguments: str) -> None:
             wheel = fetch_pip(Path(folder))
             subprocess.check_call([python, f"{wheel}/pip", "install", "--quiet", str(wheel)])
         way = ways[0]
-    subprocess.check_call([*way, "install", *arguments], cwd=ROOT)
+    done = subprocess.run(
+        [*way, "install", *arguments], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    if done.returncode != 0:  # else its warnings are of no use to anybody
+        sys.exit(f"{done.stdout}{done.stderr}setting up failed: pip install {' '.join(arguments)}")
 
 
 def works(pip: list) -> bool:

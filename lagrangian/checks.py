@@ -238,6 +238,36 @@ class ReadOnly(dict[str, Any]):
         return ReadOnly, (dict(self),)
 
 
+def labels(name: str, values: Any, n: int) -> tuple[str, ...]:
+    """Names with units, n of them or none."""
+    given = (values,) if isinstance(values, str) or not np.iterable(values) else tuple(values)
+    if not all(isinstance(x, str) for x in given) or len(given) not in (0, n):
+        raise ValueError(f"{name}: expected {n} names with units, as 'angle [rad]', got {values!r}")
+    return given
+
+
+def rate_label(label: str) -> str:
+    """What the rate of a named coordinate is called: "angle [rad]" becomes "rate of angle [rad/s]"."""
+    name, bracket, unit = label.partition(" [")
+    return f"rate of {name}{bracket}{unit[:-1]}/s]" if bracket else f"rate of {name}"
+
+
+def common_unit(labels: tuple[str, ...]) -> str:
+    """The unit of named coordinates, "m" of "position [m]", where they have one in common; "" where not."""
+    units = {label.partition("[")[2].rstrip("]") for label in labels}
+    return units.pop() if len(units) == 1 else ""
+
+
+def in_words(scene: Any, parts: list[str]) -> str:
+    """A scene on one line: its kind, name, what it has, its span, and its parameters."""
+    start, end = scene.t_span
+    values = [
+        f"{name}={x:g}" if isinstance(x, float) else f"{name}={x!r}" for name, x in scene.parameters.items()
+    ]
+    words = [repr(scene.name), *parts, f"t = {start:g} .. {end:g} s", *values]
+    return f"{type(scene).__name__}({', '.join(words)})"
+
+
 def shown(x: NDArray[Any]) -> str:
     """The numbers of an array for a message: all of them, or the first few and how many."""
     if x.size <= MANY:

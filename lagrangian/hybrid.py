@@ -138,6 +138,10 @@ class HybridSystem:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
         if self.mode_of is not None and not callable(self.mode_of):
             raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
+        if not isinstance(self.modes, Mapping):
+            raise TypeError(f"modes: expected modes by name, got {self.modes!r}")
+        for name, mode in self.modes.items():
+            checks.instance(f"modes: {name}", mode, Mode)
         object.__setattr__(self, "modes", dict(self.modes))
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
         if not self.modes:
@@ -219,6 +223,7 @@ class HybridScene(Pickled):
     name : a short name, for reports
     exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
     labels : name of each state with its unit, for axes: ("position [m]", ...); x1, x2, .. where not given
+    drawing : function (t, x) -> shapes of `lagrangian.drawing`, or None
 
     Raises
     ------
@@ -235,6 +240,7 @@ class HybridScene(Pickled):
     name: str = "hybrid scene"
     exact: Callable[[Array], Array] | None = None
     labels: Sequence[str] = ()
+    drawing: Callable[[float, Any], Any] | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
@@ -255,6 +261,10 @@ class HybridScene(Pickled):
             raise ValueError(f"labels: expected {self.n_x} names of states, got {self.labels!r}")
         object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
+
+    def __repr__(self) -> str:
+        modes = f"modes {', '.join(self.system.names)}"
+        return checks.in_words(self, [f"{self.n_x} states", modes, f"starts in {self.mode}"])
 
     @property
     def n_x(self) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.drawing import Drawing
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
 from lagrangian.pickling import Pickled
@@ -43,6 +44,8 @@ class Scene(Pickled):
         The motion from q0, v0 where it is known in closed form; v is the right limit at an impact. One that does
         not start from q0, v0 is dropped, as when `dataclasses.replace` gives the scene another initial state; it
         cannot be noticed that the system has changed under it.
+    coordinates : (n_q,) names with their units, for axes: ("angle [rad]", ...); lengths where not given
+    drawing : function (t, q) -> shapes of `lagrangian.drawing`, what the mechanism looks like; or None
 
     Raises
     ------
@@ -64,6 +67,8 @@ class Scene(Pickled):
     period: float = math.inf
     name: str = "scene"
     exact: Callable[[Array], tuple[Array, Array]] | None = None
+    coordinates: Sequence[str] = ()
+    drawing: Drawing | None = None
 
     def __post_init__(self) -> None:
         self._check_parts()
@@ -76,6 +81,9 @@ class Scene(Pickled):
         object.__setattr__(self, "p", checks.vector("p", p))
         object.__setattr__(self, "corners", checks.array("corners", corners, corners.shape))
         self._check_times()
+        object.__setattr__(self, "coordinates", checks.labels("coordinates", self.coordinates, n_q))
+        if self.drawing is not None and not callable(self.drawing):
+            raise ValueError(f"drawing: expected a function f(t, q) that gives shapes, got {self.drawing!r}")
         at = (self.t_span[0], np.array(self.q0), np.array(self.v0), np.array(self.p))
         self.system.trial(*at)
         if self.contacts is not None:
@@ -85,6 +93,13 @@ class Scene(Pickled):
         check_derivatives(self, [at[:3]])
         if self.exact is not None and not self._starts_exact():
             object.__setattr__(self, "exact", None)
+
+    def __repr__(self) -> str:
+        parts = [f"{self.n_q} coordinate{'s' * (self.n_q > 1)}"]
+        parts += [
+            f"{n} {what}{'s' * (n > 1)}" for n, what in ((self.n_c, "contact"), (self.n_j, "joint")) if n
+        ]
+        return checks.in_words(self, parts)
 
     @property
     def n_q(self) -> int:
@@ -104,6 +119,8 @@ class Scene(Pickled):
     @property
     def labels(self) -> tuple[str, ...]:
         """Name of each state with its unit, for axes."""
+        if self.coordinates:
+            return (*self.coordinates, *map(checks.rate_label, self.coordinates))
         if self.n_q == 1:
             return ("position [m]", "velocity [m/s]")
         numbers = range(1, self.n_q + 1)
@@ -130,6 +147,7 @@ class Scene(Pickled):
         if not isinstance(self.parameters, Mapping):
             raise TypeError(f"parameters: expected names and values, got {self.parameters!r}")
         checks.instance("system", self.system, LinearSystem, System)
+        checks.instance("name", self.name, str)
         if self.contacts is not None:
             checks.instance("contacts", self.contacts, LinearContacts, Contacts)
         if self.joints is not None:

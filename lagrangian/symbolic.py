@@ -93,7 +93,7 @@ class Mechanism(Pickled):
     equations: Equations
     source: str
     name: str
-    _energy: Callback
+    _energy: Callback | None
 
     def scene(
         self,
@@ -129,6 +129,8 @@ class Mechanism(Pickled):
         It is the energy T + V of a mechanism in whose Lagrangian nothing moves by prescription, and constant
         under no dissipation and no forces Q as long as the Lagrangian does not name the time.
         """
+        if self._energy is None:
+            raise ValueError(f"energy: not known of {self.name!r}, whose equations came without a Lagrangian")
         times, n_q = np.atleast_1d(np.asarray(t, dtype=float)), self.system.n_q
         states = [checks.array(name, x, (len(times), n_q)) for name, x in {"q": q, "v": v}.items()]
         p, out = np.array(list(self._values(parameters).values())), np.empty((len(times), 1))
@@ -204,7 +206,47 @@ def derive(
     D = variables.read("dissipation", dissipation)
     Q = _generalised_forces(forces, variables)
     g = [variables.read(f"gaps[{i}]", gap, variables.v) for i, gap in enumerate(_sequence(gaps))]
-    equations = _equations(L, D, Q, g, variables)
+    return made(_equations(L, D, Q, g, variables), g, variables, values, restitution, name)
+
+
+def from_sympy(
+    method: Any,
+    *,
+    parameters: Mapping[Any, float] | None = None,
+    gaps: Expr | Sequence[Expr] = (),
+    restitution: ArrayLike = 0.0,
+    name: str = "mechanism",
+) -> Mechanism:
+    """A mechanism from SymPy's own mechanics: its equations, with gaps.
+
+    Parameters
+    ----------
+    method : sympy.physics.mechanics.System, KanesMethod or LagrangesMethod whose equations are formed, in independent
+        coordinates and speeds; speeds may be any that the kinematic equations give
+    parameters, gaps, restitution, name : as of `derive`; gaps in the method's coordinates
+
+    Returns
+    -------
+    Mechanism, whose velocities are the derivatives of the coordinates; its energy is not known
+
+    Raises
+    ------
+    ValueError   method is none of these, or has dependent coordinates or speeds; a symbol has no value
+    """
+    from lagrangian import from_sympy as reader
+
+    return reader.from_sympy(method, parameters=parameters, gaps=gaps, restitution=restitution, name=name)
+
+
+def made(
+    equations: Equations,
+    g: list[Expr],
+    variables: _Variables,
+    values: dict[str, float],
+    restitution: ArrayLike,
+    name: str,
+) -> Mechanism:
+    """The mechanism of these equations, in q, v, t, p: their source, loaded and tried."""
     source = _source(equations)
     module = load(source)
     _check_mass(equations.M, module.mass, variables, values)
@@ -215,7 +257,7 @@ def derive(
         equations=equations.each(variables.written),
         source=source,
         name=name,
-        _energy=module.energy,
+        _energy=getattr(module, "energy", None),
     )
 
 

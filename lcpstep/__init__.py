@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     )
     from lcpstep.events import EventDriven
     from lcpstep.lcp import solve_lcp
+    from lcpstep.saving import load
     from lcpstep.simulation import simulate
     from lcpstep.stepping.located import Located
     from lcpstep.stepping.moreau import Moreau
@@ -35,6 +36,7 @@ else:
             "lcpstep.errors": "LcpStepError MissingSolver SimulationError SimulationInterrupted UnknownName",
             "lcpstep.events": "EventDriven",
             "lcpstep.lcp": "solve_lcp",
+            "lcpstep.saving": "load",
             "lcpstep.simulation": "simulate",
             "lcpstep.stepping.located": "Located",
             "lcpstep.stepping.moreau": "Moreau",
@@ -59,6 +61,7 @@ __all__ = [
     "UnknownName",
     "continued",
     "energy",
+    "load",
     "simulate",
     "solve_lcp",
     "study",

@@ -20,7 +20,7 @@ from weakref import WeakSet
 
 import numpy as np
 
-from lcpstep import built, fingerprint
+from lcpstep import built, fingerprint, functions
 from lcpstep.faults import Callback, name_of
 
 SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
@@ -101,6 +101,7 @@ def _made(f: Callback, takes: int, ndim: int) -> Any:
 
 def _function(f: Any, takes: int) -> FunctionType:
     """A plain function that does what f does, and takes so many arguments and no others."""
+    functions.require(f)
     given: tuple[Any, ...] = ()
     keywords: dict[str, Any] = {}
     if isinstance(f, functools.partial):

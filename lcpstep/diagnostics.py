@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian import LinearContacts, LinearSystem, Scene, checks
 from lcpstep.kernels import states
 from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse_equations import Equations
@@ -98,6 +98,7 @@ def energy(trajectory: Trajectory) -> Energy:
     >>> len(balance.created), bool(abs(balance.residual[-1]) < 1e-12)
     (0, True)
     """
+    checks.instance("trajectory", trajectory, Trajectory)
     scene, m = trajectory.scene, trajectory
     kinetic, potential = _states(scene, m.t, m.q, m.v)
     work, damping = _powers(m)

@@ -15,6 +15,13 @@ LONGEST = 64  # characters of a file's name in that of its draft
 DRAFTS: set[Path] = set()  # under way
 
 
+def file_path(path: object) -> Path:
+    """A path that a user gives; TypeError for what is none."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"path: expected the name of a file, got {path!r}")
+    return Path(path)
+
+
 @contextmanager
 def replacing(file: Path | str) -> Iterator[Path]:
     """A path beside `file` to write to, with the same ending; it takes the place of `file` at the end.

@@ -20,7 +20,7 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.analysis.dials import changeable, dial, label, with_value
 from lcpstep.analysis.environment import machine, versions
-from lcpstep.analysis.errors import MEASURES, Difference
+from lcpstep.analysis.errors import MEASURES, Difference, units
 from lcpstep.analysis.horizon import LOST, Growth, growth
 from lcpstep.analysis.reference import TIGHTEST, Reference, find_reference
 from lcpstep.analysis.work_precision import Level, Study
@@ -87,10 +87,17 @@ def study(
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
+    if isinstance(measures, str) or not isinstance(measures, Iterable):
+        raise TypeError(f"measures: expected names in a list, got {measures!r}")
     for measure in measures:
         if measure not in MEASURES:
             raise UnknownName("error measure", measure, MEASURES)
-    if isinstance(repeats, bool) or repeats < 1:
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: expected a function of a line of text, got {progress!r}")
+    for name, values in (("h", h), ("tolerances", tolerances), ("spread", spread)):
+        if values is not None and (isinstance(values, str) or not np.iterable(values)):
+            raise TypeError(f"{name}: expected numbers in a list, got {values!r}")
+    if isinstance(repeats, bool) or not isinstance(repeats, int) or repeats < 1:
         raise ValueError(f"repeats: expected at least 1, got {repeats!r}")
     if not (len(spread) and all(math.isfinite(s) and s > 0.0 for s in spread)):
         raise ValueError(f"spread: expected positive factors, got {spread!r}")
@@ -103,7 +110,8 @@ def study(
     from lcpstep import __version__
 
     known = {"lcpstep": __version__} | versions()
-    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=known, machine=machine())
+    result = Study(question, "", {}, scene.t_span[1], "", notes=notes, versions=known, machine=machine(),
+                   units=units(scene))  # fmt: skip
     try:
         _fill(result, scene, curves, reference, measures, horizon, repeats, spread, done, save, progress)
     except KeyboardInterrupt:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene
+from lcpstep.answer import Answer
 
 Array = NDArray[np.float64]
 
@@ -71,7 +72,7 @@ class Counts:
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory:
+class Trajectory(Answer):
     """A motion with impacts.
 
     Attributes
@@ -124,7 +125,10 @@ class Trajectory:
         ------
         ValueError   a time lies outside the run, or between states that were not kept
         """
-        times = np.atleast_1d(np.asarray(t, dtype=float))
+        try:
+            times = np.atleast_1d(np.asarray(t, dtype=float))
+        except (TypeError, ValueError):
+            raise ValueError(f"t: expected real numbers, got {t!r}") from None
         outside = ~((times >= self.t[0]) & (times <= self.t[-1]))
         if np.any(outside):
             raise ValueError(
@@ -150,7 +154,8 @@ class Trajectory:
         return np.maximum(-lowest, highest)
 
     def __repr__(self) -> str:
+        span = f"t = {self.t[0]:g} .. {self.t[-1]:g} s, " if len(self.t) else ""
         return (
-            f"Trajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g} s, "
+            f"Trajectory({self.scene.name}, {self.method}, {span}"
             f"{len(self.t)} states, {len(self.impacts)} events, {self.status.name})"
         )

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from lagrangian import scenes
 from lagrangian.scenes import SCENES
-from lcpstep import EventDriven, cli
+from lcpstep import EventDriven, Located, Moreau, cli, load, simulate
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
 
@@ -33,19 +34,47 @@ def test_compare_measures_and_draws(capsys, tmp_path):
     answer = json.loads(out)
     assert [c["case"] for c in answer["comparisons"]] == ["358 rpm", "700 rpm"]
     for c in answer["comparisons"]:
-        assert c["steps"][0] == 3000
-        assert c["impacts"][0] == c["impacts"][1] > 0
-        assert 0 < c["sup_q"] < 0.1
-        assert np.max(np.abs(c["first_impacts"])) < 3e-3
-    pictures = sorted(p.name for p in tmp_path.iterdir())
-    assert pictures == ["maps-660-rpm.png", "state-space.png", "time-series.png"]
+        moreau, second, fourth, exact = c["methods"]
+        assert c["reference"] == "the motion in closed form"
+        assert moreau["steps"] == second["steps"] == 3000
+        assert moreau["impacts"] == second["impacts"] == fourth["impacts"] == exact["impacts"] > 0
+        assert (
+            0.1 > moreau["error"] > 100 * second["error"] > 1e4 * fourth["error"] > 0 < exact["error"] < 1e-10
+        )
+        assert 0.0 < second["first_impacts_off"] < moreau["first_impacts_off"] < 3e-3
+        assert all(x["levels"][0]["error"] > 3 * x["levels"][-1]["error"] for x in (moreau, second, fourth))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["comparison.png", "maps-660-rpm.png"]
 
 
-def test_compare_prints_a_table_for_any_scene(capsys):
+def test_compare_prints_a_table_and_how_to_read_it_for_any_scene(capsys):
     status, out, _ = run(capsys, "compare", "impact-oscillator", "--t-end", 10, "--h", 1e-3, "--no-pictures")
     assert status == DONE
     assert "impact-oscillator" in out
-    assert "sup|dq|" in out
+    table, sentences, further = out.split("\n\n")
+    assert [line.split()[0] for line in table.splitlines()[3:]] == [
+        "Moreau",
+        "Located,",
+        "Located,",
+        "EventDriven",
+    ]
+    assert len(sentences.splitlines()) == 3
+    assert "Try next: lcpstep simulate impact-oscillator" in further
+
+
+@pytest.mark.parametrize(
+    ("scene", "reference"), [("coulomb-oscillator", "closed form"), ("kane-pendulum", "Moreau at h")]
+)
+def test_compare_offers_what_treats_friction(capsys, scene, reference):
+    status, out, _ = run(capsys, "compare", scene, "--h", 1e-3, "--no-pictures")
+    assert status == DONE
+    assert reference in out
+    assert out.count("left out: ") == 3
+
+
+def test_angles_are_not_metres(capsys):
+    _, out, _ = run(capsys, "compare", "pendulum-stop", "--t-end", 1, "--h", 1e-3, "--no-pictures")
+    assert "[rad]" in out
+    assert "[m]" not in out
 
 
 def test_simulate_saves_the_motion(capsys, tmp_path):
@@ -128,3 +157,47 @@ def test_an_interrupt_saves_what_was_computed(capsys, tmp_path, monkeypatch):
     saved = np.load(file)
     assert 2.0 < saved["t"][-1] < 5.0
     assert json.loads(str(saved["summary"]))["status"] == "INTERRUPTED"
+
+
+@pytest.mark.parametrize(
+    ("method", "option", "said"),
+    [
+        ("moreau", ["--order", "4"], "--order: moreau has none, it belongs to located"),
+        ("event-driven", ["--theta", "1"], "--theta: event-driven has none, it belongs to moreau"),
+        ("located", ["--lcp", "lemke"], "--lcp: located has none, it belongs to moreau"),
+        ("event-driven", ["--h", "1e-3"], "--h: event-driven has none, it belongs to moreau and located"),
+    ],
+)
+def test_options_of_other_methods_are_refused(capsys, method, option, said):
+    status, _, err = run(capsys, "simulate", "bouncing-ball", "--method", method, *option)
+    assert status == USAGE
+    assert said in err
+
+
+def test_motions_are_saved_as_what_their_names_say(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("ball.csv", "ball.nc", "ball"):
+        status, out, _ = run(
+            capsys, "simulate", "bouncing-ball", "--t-end", "0.1", "--h", "0.01", "--out", name
+        )
+        assert status == DONE
+        assert f"wrote {name}" in out
+    lines = (tmp_path / "ball.csv").read_text().splitlines()
+    assert lines[0] == "t,q0,v0,impulse0"
+    assert len(lines) == 12
+    assert load("ball.nc").q[-1] == pytest.approx(1.0 - 0.5 * 9.81 * 0.01, abs=1e-12)
+    status, _, err = run(capsys, "simulate", "bouncing-ball", "--out", "ball.xlsx")
+    assert status == USAGE
+    assert "--out: expected a name that ends in .npz, .nc, .csv" in err
+
+
+def test_an_overview_names_its_curves_and_their_units():
+    figure = simulate(scenes.double_pendulum(t_end=1.0), Located(1e-2)).plot()
+    position, _, impulse = figure.axes
+    assert [ax.get_ylabel() for ax in figure.axes] == ["position [rad]", "velocity [rad/s]", "impulse [N s]"]
+    assert [x.get_text() for x in position.get_legend().get_texts()] == ["angle 1", "angle 2"]
+    assert impulse.get_legend() is None
+    mixed, *_ = simulate(scenes.slipping_wheel(), Moreau(1e-2)).plot().axes
+    assert [x.get_text() for x in mixed.get_legend().get_texts()] == ["x [m]", "height [m]", "angle [rad]"]
+    *_, many = simulate(scenes.elastic_gas(n=12), EventDriven()).plot().axes
+    assert many.get_legend().get_texts()[-1].get_text() == "contact 7, and 5 more"

@@ -36,7 +36,14 @@ def test_a_derived_mechanism_keeps_its_energy():
 
 
 @pytest.mark.parametrize(
-    "page", ["README.md", "docs/tutorial.md", "docs/symbolic.md", "docs/hybrid-systems.md"]
+    "page",
+    [
+        "README.md",
+        "docs/tutorial.md",
+        "docs/symbolic.md",
+        "docs/hybrid-systems.md",
+        "docs/seeing-and-keeping.md",
+    ],
 )
 def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
     pytest.importorskip("sympy")

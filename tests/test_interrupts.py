@@ -31,9 +31,11 @@ LONG = {
     "abs": "--grid 400 --out out",
     "thesis": "",
     "lyapunov": "cam-follower --rpm 660 --periods 100000000",
+    "run": "study.toml",
     "map": "logistic --parameter r --range 2.8 4 --points 4000000 --out out",
 }
-ENDS_AT_ONCE = {"scenes"}
+ENDS_AT_ONCE = {"scenes", "new"}
+STUDY = 'scene = "cam-follower"\nt_end = 100.0\n[method]\nh = 1e-7\n[outputs]\nruns = "runs"'
 SLOW_LOOPS = {
     "adaptive": "simulate impact-oscillator --t-end 1e4 --h 1e-3 --tolerance 1e-2",
     "located": "simulate cam-follower --method located --t-end 100 --h 1e-6",
@@ -90,6 +92,7 @@ def said(err, what):
 @pytest.mark.parametrize("command", LONG)
 def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
     words = [command, *LONG[command].split()]
+    (tmp_path / "study.toml").write_text(STUDY)
     _, err, seconds = interrupted(words, tmp_path, 2.0)
     assert seconds < LIMIT
     nothing = said(err, "kept") == "nothing"

@@ -30,7 +30,8 @@ def test_the_order_of_exact_powers_is_their_exponent():
     assert fit.slope == pytest.approx(1.5)
     assert (fit.low, fit.high) == (pytest.approx(1.5), pytest.approx(1.5))
     assert fitted_order([1e-1, 1e-2], [1.0, math.nan]) is None
-    assert fitted_order([1e-1, 1e-2], [1e-1, 1e-2]).high == math.inf
+    assert fitted_order([1e-1, 1e-2], [1e-1, 1e-2]) is None
+    assert fitted_order([1e-1, 1e-2, 1e-3], [0.1, 0.1, 0.1]) is None
 
 
 def test_the_interval_holds_the_true_order_nineteen_times_in_twenty():
@@ -231,7 +232,7 @@ def test_a_run_that_ends_early_has_no_errors_but_a_reason():
 
 
 def test_the_command_writes_tables_and_a_picture(capsys, tmp_path):
-    arguments = "study impact-oscillator --methods moreau --t-end 10 --h 1e-2 1e-3 --repeats 1"
+    arguments = "study impact-oscillator --methods moreau --t-end 10 --h 1e-2 4e-3 1e-3 --repeats 1"
     assert main([*arguments.split(), "--measures", "sup_position", "--out", str(tmp_path)]) == DONE
     out = capsys.readouterr().out
     assert "order of Moreau in sup_position" in out
@@ -240,6 +241,6 @@ def test_the_command_writes_tables_and_a_picture(capsys, tmp_path):
     assert {"numpy", "numba", "python", "lcpstep"} <= set(stored["versions"])
     rows = [r for r in (tmp_path / "study.csv").read_text().splitlines() if not r.startswith("#")]
     assert rows[0].startswith("method,dial,value")
-    assert len(rows) == 3
+    assert len(rows) == 4
     assert main(["study", "impact-oscillator", "--h", "0"]) == USAGE
     assert "h: expected positive" in capsys.readouterr().err

@@ -126,7 +126,7 @@ def _first(b: Base, apart: Any, name: str, scene: Any = None) -> Iterator[Findin
     if len(bad):
         k = int(bad[0])
         text = f"{apart[k]:.3g} off at t = {b.looks[k]:.9g} in a motion of size {b.size:.3g}"
-        yield Finding(b.run.method, f"other: {name}", text + (f"; {scene!r}" if scene else ""))
+        yield Finding(b.run.method, f"other: {name}", text + (f"; {vars(scene)}" if scene else ""))
 
 
 def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:

@@ -79,5 +79,6 @@ def bowl(x0: float = 0.6, y0: float = 0.0, radius: float = 1.0, g: float = 9.81,
         p=[radius],
         parameters={"x0": x0, "y0": y0, "radius": radius, "g": g},
         name="bowl",
+        coordinates=["x [m]", "y [m]"],
         exact=exact if k < 1.0 else None,
     )

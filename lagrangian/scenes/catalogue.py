@@ -15,6 +15,7 @@ from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.hybrid import HybridScene
 from lagrangian.scene import Scene
+from lagrangian.scenes.drawings import drawing_of
 
 P = ParamSpec("P")
 S = TypeVar("S", Scene, HybridScene)
@@ -42,6 +43,8 @@ def checked(make: Callable[P, S]) -> Callable[P, S]:
             elif isinstance(default, int) and (isinstance(value, bool) or not hasattr(value, "__index__")):
                 raise ValueError(f"{name}: expected a whole number, got {value!r}")
         scene = make(*arguments, **named)
+        if scene.drawing is None:
+            object.__setattr__(scene, "drawing", drawing_of(scene))
         if isinstance(scene.exact, FunctionType):  # made in `make`, so that pickle does not find it
             exact = Exact(result, arguments, named, scene.exact)
             object.__setattr__(scene, "exact", exact)  # new a moment ago, and checked with the same motion

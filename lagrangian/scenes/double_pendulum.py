@@ -123,6 +123,7 @@ def double_pendulum(
             joints=Joints(2, rods, rods_jacobian, bias=rods_bias),
             q0=as_points(np.array([[a, b, 0.0, 0.0]]))[0, :4],
             v0=np.zeros(4),
+            coordinates=["x1 [m]", "y1 [m]", "x2 [m]", "y2 [m]"],
             **common,
         )
     if form != "angles":
@@ -138,5 +139,6 @@ def double_pendulum(
         ),
         q0=[a, b],
         v0=[0.0, 0.0],
+        coordinates=["angle 1 [rad]", "angle 2 [rad]"],
         **common,
     )

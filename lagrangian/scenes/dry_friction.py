@@ -198,4 +198,5 @@ def _on_floor(
         parameters=parameters,
         name=name,
         exact=exact,
+        coordinates=["x [m]", "height [m]", "angle [rad]"][: len(q0)],
     )

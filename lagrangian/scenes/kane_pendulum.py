@@ -82,6 +82,7 @@ def kane_pendulum(
         p=[g, math.cos(a) + math.cos(b)],
         parameters={"restitution": restitution, "mu": mu, "law": law, "g": g},
         name="kane-pendulum",
+        coordinates=["angle 1 [rad]", "angle 2 [rad]"],
     )
 
 

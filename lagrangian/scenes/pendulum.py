@@ -83,6 +83,7 @@ def pendulum_stop(
             q0=theta0,
             v0=0.0,
             exact=motion,
+            coordinates=["angle [rad]"],
             **common,
         )
     if form != "rod":
@@ -100,6 +101,7 @@ def pendulum_stop(
         q0=[length * math.sin(theta0), -length * math.cos(theta0)],
         v0=[0.0, 0.0],
         exact=exact,
+        coordinates=["x [m]", "y [m]"],
         **common,
     )
 

@@ -16,6 +16,8 @@ from lagrangian.scenes.beads import line
 from lagrangian.scenes.catalogue import checked
 from lagrangian.system import Harmonic, LinearSystem
 
+HEIGHT_AND_ANGLE = (("height", "m"), ("angle", "rad"))
+
 
 @checked
 def block_on_feet(
@@ -41,6 +43,7 @@ def block_on_feet(
         t_span=(0.0, t_end),
         parameters={"n": n, "load": load, "width": width, "g": g},
         name="block-on-feet",
+        coordinates=["height [m]", "angle [rad]"],
         exact=lambda t: (np.zeros((len(t), 2)), np.zeros((len(t), 2))),
     )
 
@@ -69,6 +72,7 @@ def stack(n: int = 10, g: float = 9.81, t_end: float = 1.0) -> Scene:
         t_span=(0.0, t_end),
         parameters={"n": n, "g": g},
         name="stack",
+        coordinates=[f"{what} {k + 1} [{unit}]" for k in range(n) for what, unit in HEIGHT_AND_ANGLE],
         exact=lambda t: (np.zeros((len(t), 2 * n)), np.zeros((len(t), 2 * n))),
     )
 

@@ -104,6 +104,7 @@ def rocking_block(
             v0=0.0,
             p=[p2, alpha],
             exact=magnitude,
+            coordinates=["size of the angle [rad]"],
             **common,
         )
     if form != "corners":
@@ -132,6 +133,7 @@ def rocking_block(
         v0=v0,
         p=[b, h],
         exact=exact,
+        coordinates=["x [m]", "y [m]", "angle [rad]"],
         **common,
     )
 

@@ -111,6 +111,7 @@ def slider_crank(
         p=p,
         parameters={"clearance": clearance, "restitution": restitution, "mu": mu, "rate": rate},
         name="slider-crank",
+        coordinates=["angle of the crank [rad]", "of the rod [rad]", "of the slider [rad]"],
     )
 
 

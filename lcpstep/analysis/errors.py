@@ -20,7 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene
+from lagrangian import Scene, checks
 from lcpstep.analysis.graphs import Graph, hausdorff
 from lcpstep.analysis.matching import Matching, match_impacts
 from lcpstep.kernels import states
@@ -230,6 +230,16 @@ MEASURES = (
     "energy",
     "penetration",
 )
+
+
+def units(scene: Scene) -> dict[str, str]:
+    """Unit of each measure on a scene, where its coordinates have one in common; "1" for numbers."""
+    n = scene.n_q
+    q, v = (checks.common_unit(labels) or "own units" for labels in (scene.labels[:n], scene.labels[n:]))
+    return {
+        "sup_position": q, "l1_velocity": q, "graph_distance": v, "impact_time": "s", "impact_impulse": "N s",
+        "unmatched": "1", "energy": "J", "penetration": "m",
+    }  # fmt: skip
 
 
 def energies(scene: Scene, t: Array, q: Array, v: Array) -> Array:

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 CONFIDENCE = 0.95
+LEAST = 3  # points of a fit
 
 
 @dataclass(frozen=True)
 class Order:
-    """A fitted slope, the bounds of its 95 % interval (infinite for two points), and how many points it rests on."""
+    """A fitted slope, the bounds of its 95 % interval and how many points it rests on."""
 
     slope: float
     low: float
@@ -29,7 +30,8 @@ class Order:
 
 
 def fitted_order(h: ArrayLike, error: ArrayLike) -> Order | None:
-    """Order of the errors (n,) over the steps or tolerances h (n,); None where fewer than two can be used.
+    """Order of the errors (n,) over the steps or tolerances h (n,); None where all are equal, or fewer than three:
+    through two points there is a line whatever they are.
 
     Points whose error is zero or not finite are left out.
     """
@@ -37,15 +39,13 @@ def fitted_order(h: ArrayLike, error: ArrayLike) -> Order | None:
     usable = np.isfinite(y) & (y > 0.0) & (x > 0.0)
     x, y = np.log(x[usable]), np.log(y[usable])
     n = len(x)
-    if n < 2 or np.ptp(x) == 0.0:
+    if n < LEAST or np.ptp(x) == 0.0 or np.ptp(y) == 0.0:
         return None
     from scipy.special import stdtrit
     from scipy.stats import linregress
 
     line = linregress(x, y)
-    slope, half = float(line.slope), math.inf
-    if n > 2:
-        half = float(stdtrit(n - 2, 0.5 + 0.5 * CONFIDENCE) * line.stderr)
+    slope, half = float(line.slope), float(stdtrit(n - 2, 0.5 + 0.5 * CONFIDENCE) * line.stderr)
     return Order(slope, slope - half, slope + half, n)
 
 

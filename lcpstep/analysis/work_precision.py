@@ -81,6 +81,7 @@ class Study:
     growth : how fast a disturbance of the start grows, in words
     levels : list of Level, coarse to fine within each method
     notes : everything that was left out, and why
+    units : of each measure
     finished : False for a study that was interrupted
     versions, machine : with what it was measured
     """
@@ -92,6 +93,7 @@ class Study:
     growth: str
     levels: list[Level] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    units: dict[str, str] = field(default_factory=dict)
     finished: bool = False
     versions: dict[str, str] = field(default_factory=dict)
     machine: dict[str, str] = field(default_factory=dict)
@@ -105,6 +107,11 @@ class Study:
     def measures(self) -> list[str]:
         """Names of the error measures."""
         return list(self.question["measures"])
+
+    def titled(self, measure: str) -> str:
+        """A measure with its unit, for tables and axes."""
+        unit = self.units.get(measure, "1")
+        return measure if unit == "1" else f"{measure} [{unit}]"
 
     def curve(self, method: str, measure: str, trusted: bool = True) -> list[Level]:
         """Levels of a method that have this error; `trusted`: neither limited by the reference nor separated."""
@@ -202,7 +209,7 @@ class Study:
 
     def __str__(self) -> str:
         shown = [m for m in self.measures if any(m in x.errors for x in self.levels)]
-        head = ["method", "at", "CPU [s]", "steps", "LCPs", "forces", *shown]
+        head = ["method", "at", "CPU [s]", "steps", "LCPs", "forces", *map(self.titled, shown)]
         rows = [head] + [_row(x, shown) for x in self.levels]
         widths = [max(len(r[k]) for r in rows) for k in range(len(head))]
         lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lagrangian import Scene
-from lagrangian.scenes import SCENES
 from lcpstep import Moreau, dataset
 from lcpstep.analysis.agreement import Summary, agreement, summary, tolerance_of_stepping
 from lcpstep.analysis.bifurcation import IMPACTS_RECORDED, STARTS, WINDOWS, bifurcation
 from lcpstep.cli.attractor import box
-from lcpstep.cli.common import DONE
+from lcpstep.cli.common import DONE, making, parameters_of
 from lcpstep.cli.studies import (
     PARTS,
     files,
@@ -82,15 +80,14 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     if options.rpm is not None and options.parameter == "rpm":
         raise ValueError("--rpm: it is the parameter that varies; give --range or --window")
     scene = study_scene(options)
-    known = SCENES[options.scene].parameters
+    known = parameters_of(options.scene)
     if options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     steps = [Moreau(h=h, theta=options.theta, lcp=options.lcp) for h in options.compare or ()]
     names = files(options, "bifurcation")
     if steps:
         dataset.check_new(options.out / AGREEMENT, options.overwrite)
-    fixed = {k: v for k, v in scene.parameters.items() if k in known and k != options.parameter}
-    make = partial(SCENES[options.scene].make, **fixed)
+    make = making(options, scene, options.parameter)
     values = np.linspace(low, high, options.points)
     keeps_parts(options)
     data = _diagram(options, make, values, method_of(options), options.out / PARTS)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from lagrangian import HybridScene, Scene
 from lagrangian.scenes import SCENES
 from lcpstep import EventDriven, Located, Moreau
-from lcpstep.cli import interrupt
+from lcpstep.cli import interrupt, own
 from lcpstep.cli.interrupt import INTERRUPTED as INTERRUPTED
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.files import replacing
@@ -22,7 +23,11 @@ DPI = 150  # of pictures
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
     """Which scene, how long, and its parameters."""
-    p.add_argument("scene", metavar="SCENE", help=f"one of: {', '.join(SCENES)} (see: lcpstep scenes)")
+    p.add_argument(
+        "scene",
+        metavar="SCENE",
+        help="a ready scene (see: lcpstep scenes), or a file with a function scene(), my_scene.py (see: lcpstep new)",
+    )
     p.add_argument("--t-end", type=float, help="length of the simulation [s]; default: the scene's own")
     p.add_argument(
         "--set",
@@ -53,10 +58,7 @@ def scene_with_contacts(options: argparse.Namespace, **more: Any) -> Scene:
 
 def scene_of(options: argparse.Namespace, **more: Any) -> Any:
     """The scene that the options name, a `Scene` or a `HybridScene`; `more` sets further parameters of it."""
-    if options.scene not in SCENES:
-        raise UnknownName("scene", options.scene, SCENES)
-    entry = SCENES[options.scene]
-    known = entry.parameters
+    known = parameters_of(options.scene)
     for name in more:
         if name not in known:
             raise UnknownName(f"parameter of {options.scene}", name, known)
@@ -67,10 +69,56 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Any:
             raise ValueError(f"--set: expected NAME=VALUE, got {setting!r}")
         if name not in known:
             raise UnknownName(f"parameter of {options.scene}", name, known)
-        values[name] = value if isinstance(known[name], str) else number(name, value, type(known[name]))
-    if options.t_end is not None:
-        values["t_end"] = options.t_end
-    return entry.make(**values)
+        values[name] = read(name, value, known[name])
+    return made_scene(options.scene, values, options.t_end)
+
+
+def parameters_of(scene: str) -> dict[str, Any]:
+    """Parameters of a scene, ready or in a file, with their defaults; UnknownName where there is no such scene."""
+    if own.is_file(scene):
+        return own.known_parameters(own.maker(scene))
+    if scene not in SCENES:
+        raise UnknownName("scene", scene, SCENES)
+    return SCENES[scene].parameters
+
+
+def arguments_of(options: argparse.Namespace, scene: Any) -> dict[str, Any]:
+    """What the scene that the options name was made with: all parameters that have a value."""
+    known = parameters_of(options.scene)
+    if own.is_file(options.scene):
+        settings = dict(setting.split("=", 1) for setting in options.set)
+        given = {name: read(name, value, known[name]) for name, value in settings.items()}
+        return {name: x for name, x in known.items() if isinstance(x, (int, float, str))} | given
+    return {name: x for name, x in scene.parameters.items() if name in known}
+
+
+def making(options: argparse.Namespace, scene: Any, varied: str) -> Callable[..., Any]:
+    """A function of the varied parameter, by name, that makes the scene of the options."""
+    fixed = {name: x for name, x in arguments_of(options, scene).items() if name != varied}
+    if own.is_file(options.scene):
+        return partial(_own_scene, options.scene, **fixed)
+    return partial(SCENES[options.scene].make, **fixed)
+
+
+def _own_scene(file: str, **values: Any) -> Any:
+    return own.made(file, values)
+
+
+def made_scene(scene: str, values: Mapping[str, Any], t_end: float | None) -> Any:
+    """A scene, ready or in a file, with these parameters and up to this time."""
+    if own.is_file(scene):
+        return own.made(scene, values, t_end)
+    if scene not in SCENES:
+        raise UnknownName("scene", scene, SCENES)
+    return SCENES[scene].make(**values, **({} if t_end is None else {"t_end": t_end}))
+
+
+def read(name: str, value: str, default: Any) -> Any:
+    """A parameter given as a text, as what its default is; of a file's function without one, a number."""
+    if isinstance(default, str):
+        return value
+    kind = type(default) if isinstance(default, (bool, int)) else float
+    return number(name, value, kind)
 
 
 def number(name: str, value: str, kind: type[float] = float) -> float:
@@ -107,6 +155,20 @@ def save_figure(figure: Any, file: Path) -> None:
     """Write a picture, or leave the one that is there as it is."""
     with replacing(file) as draft:
         figure.savefig(draft, dpi=DPI)
+    interrupt.wrote(file)
+
+
+def save_film(run: Any, file: Path) -> None:
+    """Write the film of a run, with a bar over its pictures on a terminal."""
+    from tqdm import tqdm
+
+    with tqdm(desc="film", unit="picture", disable=None, leave=False) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total, bar.n = total, done
+            bar.refresh()
+
+        run.animate().save(file, progress)
     interrupt.wrote(file)
 
 

@@ -71,6 +71,10 @@ def run_corner(options: argparse.Namespace) -> int:
     proofs.check(options)
     if options.chattering is not None and options.prove:
         raise ValueError("--prove: impacts of chattering sequences cannot be proved; leave --chattering out")
+    if len(np.asarray(scene_with_contacts(options).corners)) == 0:
+        raise ValueError(
+            f"scene: expected one whose obstacle has corners, as cam-follower; {options.scene!r} has none"
+        )
     if options.chattering is not None:
         return _run_chattering(options)
 

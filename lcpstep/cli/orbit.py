@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import HybridScene
-from lagrangian.scenes import SCENES
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
@@ -24,7 +22,7 @@ from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt, proofs
-from lcpstep.cli.common import DONE, INTERRUPTED, save_figure
+from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, parameters_of, save_figure
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
 from lcpstep.maps import SwitchMap, iterate
@@ -65,7 +63,7 @@ def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     proofs.check(options)
     scene, method = study_scene(options), method_of(options)
-    known = SCENES[options.scene].parameters
+    known = parameters_of(options.scene)
     if options.range is not None and options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None and not options.range[0] < options.range[1]:
@@ -117,14 +115,13 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
     import xarray  # noqa: F401  (saves it; an interrupt should not wait for that to be loaded)
 
     scene, parameter = orbit.scene, options.parameter
-    known = SCENES[options.scene].parameters
-    fixed = {k: v for k, v in scene.parameters.items() if k in known and k != parameter}
-    make = partial(SCENES[options.scene].make, **fixed)
+    values = arguments_of(options, scene)
+    make = making(options, scene, parameter)
     ways: list[OrbitBranch] = []
     with _points_bar(options, parameter) as progress:
         for forward in (False, True):
             way = continue_orbit(
-                lambda p: make(**{parameter: p}), orbit, float(scene.parameters[parameter]), tuple(options.range),
+                lambda p: make(**{parameter: p}), orbit, float(values[parameter]), tuple(options.range),
                 steps=Steps(points=options.points), forward=forward, progress=progress,
             )  # fmt: skip
             ways.append(way)

@@ -22,6 +22,8 @@ from lcpstep.cli.common import (
     moreau,
     progress_bar,
     save_figure,
+    save_film,
+    save_text,
     scene_arguments,
     scene_of,
     stepping_arguments,
@@ -38,13 +40,18 @@ METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
     "event-driven": event_driven,
 }
 
+DEFAULTS: dict[str, Any] = {"h": 1e-4, "theta": 0.5, "lcp": "lemke", "order": "2"}
+TAKES = {"moreau": ("h", "theta", "lcp"), "located": ("h", "order"), "event-driven": ()}
+SAVED = (".npz", ".nc", ".csv")
+
 
 def add(commands: Any) -> None:
     """Arguments of the command."""
     p = commands.add_parser(
         "simulate",
         help="run one scene and save its motion",
-        description="Runs a scene and prints how it went; --out FILE.npz saves t, q, v, impulse and impacts.",
+        description="Runs a scene and prints how it went; --out saves t, q, v, impulse and impacts as FILE.npz, all "
+        "of the run as FILE.nc, which lcpstep.load opens, or its states as a table, FILE.csv.",
         epilog="Example: lcpstep simulate bouncing-ball --method event-driven --set restitution=0.5 --out ball.npz",
     )
     scene_arguments(p)
@@ -54,15 +61,21 @@ def add(commands: Any) -> None:
         help="(moreau; event-driven for a scene with modes, the one it has)",
     )
     stepping_arguments(p)
-    p.add_argument("--order", default="2", help="2, 4 or exact, located only (2)")
+    p.add_argument("--order", help="2, 4 or exact, located only (2)")
+    p.set_defaults(**dict.fromkeys(DEFAULTS))  # so that it is seen which are given
     p.add_argument(
         "--tolerance",
         type=float,
         help="rtol and atol of event-driven (1e-12); with moreau and located it chooses the steps, h the longest",
     )
     p.add_argument("--every", type=int, default=1, metavar="K", help="keep every K-th step (1)")
-    p.add_argument("--out", type=Path, metavar="FILE", help="save the motion (.npz)")
+    p.add_argument(
+        "--out", type=Path, metavar="FILE", help="save the motion (.npz; .nc for lcpstep.load; .csv)"
+    )
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
+    p.add_argument(
+        "--film", type=Path, metavar="FILE", help="film the motion (.gif, .html, .mp4 with ffmpeg)"
+    )
     p.add_argument("--energy", action="store_true", help="balance the energy along the kept states")
     p.add_argument("--error", action="store_true", help="say how far the motion is right, by a second run")
     p.add_argument("--json", action="store_true", help="print JSON")
@@ -76,11 +89,9 @@ def run_simulate(options: argparse.Namespace) -> int:
     options.method = options.method or ("event-driven" if modes else "moreau")
     if modes and options.energy:
         raise ValueError(f"--energy: {scene.name!r} has modes, and no masses and forces to balance")
+    _refuse_what_does_not_apply(options)
     method = METHODS[options.method](options)
-    if options.out and options.out.suffix != ".npz":
-        options.out = options.out.with_name(options.out.name + ".npz")
-    if options.out and options.out.exists():
-        raise FileExistsError(f"--out: {options.out} exists already")
+    options.out = _checked_name(options.out)
     try:
         with progress_bar(scene, options.method) as progress:
             run = simulate(scene, method, keep=options.every, progress=progress, error=options.error)
@@ -93,10 +104,37 @@ def run_simulate(options: argparse.Namespace) -> int:
         from lcpstep.plot.motion import overview
 
         save_figure(overview(run), options.picture)
+    if options.film:
+        save_film(run, options.film)
     balance = {"energy": _balance(run)} if options.energy else {}
     sentence = _modes_sentence(run) if modes else _sentence(run, balance)
     print(json.dumps(_summary(run) | balance, indent=2) if options.json else sentence)
+    for file in () if options.json else (options.out, options.picture, options.film):
+        if file is not None:
+            print(f"wrote {file}")
     return DONE if run.status == Status.DONE and (modes or not run.doubt) else FAILED
+
+
+def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:
+    """ValueError for an option that the method does not take; what is not given is set to its default."""
+    for name, default in DEFAULTS.items():
+        value = getattr(options, name)
+        if value is not None and name not in TAKES[options.method]:
+            takers = " and ".join(method for method, taken in TAKES.items() if name in taken)
+            raise ValueError(f"--{name}: {options.method} has none, it belongs to {takers}")
+        setattr(options, name, default if value is None else value)
+
+
+def _checked_name(file: Path | None) -> Path | None:
+    """Where the motion is saved; a name without an ending gets that of numpy's files."""
+    if file is None:
+        return None
+    file = file if file.suffix else file.with_name(f"{file.name}.npz")
+    if file.suffix not in SAVED:
+        raise ValueError(f"--out: expected a name that ends in {', '.join(SAVED)}, got {str(file)!r}")
+    if file.exists():
+        raise FileExistsError(f"--out: {file} exists already")
+    return file
 
 
 def _ended(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
@@ -189,7 +227,11 @@ def _words(e: dict[str, Any]) -> str:
 
 
 def _save(file: Path | None, run: Trajectory | HybridTrajectory) -> None:
-    if file is not None:
+    if file is not None and file.suffix == ".nc":
+        interrupt.wrote(run.save(file))
+    elif file is not None and file.suffix == ".csv":
+        save_text(run.to_dataframe().to_csv().rstrip("\n"), file)
+    elif file is not None:
         arrays: dict[str, Any] = {"t": run.t}
         if isinstance(run, HybridTrajectory):
             arrays |= {"x": run.x, "mode": run.mode, "switches": np.asarray(run.switches)}

@@ -13,6 +13,7 @@ import numpy as np
 
 from lagrangian.checks import python, read_only, said
 from lcpstep.faults import Callback, Fault, name_of, note
+from lcpstep.functions import require
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
 
@@ -21,6 +22,7 @@ class CalledBack:
     """A C function that calls f(t, q, v, p, out), or f(t, x, p, out) of first order; `address` is its own."""
 
     def __init__(self, f: Callback, first_order: bool = False) -> None:
+        require(f)
         self.f, self.name, self.first_order = python(f), name_of(f), first_order
         self.function = C_FUNCTION(self.call)
         self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)

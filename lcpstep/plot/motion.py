@@ -10,14 +10,17 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.plot.words import method_words
 from lcpstep.trajectory import Kind, Trajectory
 
 SAMPLES = 4000  # of a curve
 DECADES = 1e-5  # how far below its maximum the distance of two motions is drawn
 JUMPS = "0.75"  # colour of the velocity jumps
 BAND = 0.3  # how much the band of an error bar covers
+NAMED = 8  # curves that a legend names
 
 
 def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
@@ -31,8 +34,8 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
     for k, (c, title) in enumerate(zip(comparisons, titles, strict=True)):
         fast, exact, distance = c.fast.trajectory, c.reference.trajectory, axes[2 * k + 1]
         t = np.linspace(exact.t[0], exact.t[-1], SAMPLES)
-        axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=_name(exact))
-        axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=_name(fast))
+        axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=method_words(exact.method))
+        axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=method_words(fast.method))
         axes[2 * k].set(title=title, ylabel="position q [m]")
         axes[2 * k].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8, frameon=False)
         axes[2 * k].title.set(x=0.0, ha="left")
@@ -54,7 +57,7 @@ def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
     for row, c, title in zip(grid, comparisons, titles, strict=True):
         for ax, run in zip(row, (c.fast.trajectory, c.reference.trajectory), strict=True):
             portrait(ax, run)
-            ax.set(title=f"{title}: {_name(run)}", xlabel="position q [m]")
+            ax.set(title=f"{title}: {method_words(run.method)}", xlabel="position q [m]")
         row[0].set_ylabel("velocity v [m/s]")
     return figure
 
@@ -86,20 +89,24 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     figure = Figure(figsize=(10, 7), layout="constrained")
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
     t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
-    q, v = run.at(t)
-    position.plot(t, q, lw=1.0)
-    velocity.plot(t, v, lw=1.0)
+    n, labels = run.scene.n_q, run.scene.labels
+    for ax, x, own, what in zip(
+        (position, velocity), run.at(t), (labels[:n], labels[n:]), ("position", "velocity"), strict=True
+    ):
+        ax.plot(t, x, lw=1.0)
+        unit = checks.common_unit(own)
+        ax.set_ylabel(own[0] if n == 1 else f"{what} [{unit}]" if unit else what)
     if run.error is not None:
         for ax, which, bar in ((position, 0, run.error.position), (velocity, 1, run.error.velocity)):
             band(ax, run, which, bar)
-    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
-    if len(jumps):
-        impulse.stem(jumps.time, jumps.impulse, basefmt="k-", markerfmt=".")
-    for ax, label in zip((position, velocity, impulse), ("q [m]", "v [m/s]", "impulse [N s]"), strict=True):
-        ax.set_ylabel(label)
+    if n > 1:
+        same = bool(checks.common_unit(labels[:n]))
+        _legend(position, position.get_lines(), [x.partition(" [")[0] if same else x for x in labels[:n]])
+    _impulses(impulse, run)
+    for ax in (position, velocity, impulse):
         ax.grid(alpha=0.3)
     impulse.set_xlabel("time t [s]")
-    position.set_title(f"{run.scene.name}: {_name(run)}")
+    position.set_title(f"{run.scene.name}: {method_words(run.method)}")
     return figure
 
 
@@ -113,6 +120,36 @@ def band(ax: Any, run: Trajectory, which: int, bar: Any) -> None:
         ax.fill_between(t, values - e, values + e, color=f"C{k % 10}", alpha=BAND, lw=0.0)
     if run.error.reason:
         ax.axvline(run.error.until, color="0.5", lw=0.8, ls=":")
+
+
+def _impulses(ax: Any, run: Trajectory) -> None:
+    """The impulse of every impact, one colour a contact."""
+    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
+    stems = []
+    for contact in np.unique(jumps.contact):
+        own = jumps[jumps.contact == contact]
+        colour = f"C{contact % 10}"
+        stem = ax.stem(own.time, own.impulse, linefmt=f"{colour}-", markerfmt=f"{colour}.", basefmt="k-")
+        stems.append(stem.markerline)
+    if run.scene.n_c > 1:
+        _legend(ax, stems, [f"contact {c}" for c in np.unique(jumps.contact)])
+    ax.set_ylabel("impulse [N s]")
+
+
+def _legend(ax: Any, handles: Any, names: Sequence[str]) -> None:
+    """Names beside the curves; of many, the first."""
+    shown = list(names[:NAMED])
+    if len(names) > NAMED:
+        shown[-1] += f", and {len(names) - NAMED} more"
+    if shown:
+        ax.legend(
+            list(handles)[:NAMED],
+            shown,
+            loc="upper left",
+            bbox_to_anchor=(1.01, 1.0),
+            fontsize=8,
+            frameon=False,
+        )
 
 
 def _states_and_mode(run: HybridTrajectory) -> Any:
@@ -133,14 +170,5 @@ def _states_and_mode(run: HybridTrajectory) -> Any:
     axes[-1].set(yticks=range(len(seen)), yticklabels=seen, ylabel="mode", xlabel="time t [s]")
     for ax in axes:
         ax.grid(alpha=0.3)
-    axes[0].set_title(f"{run.scene.name}: {_name(run)}")
+    axes[0].set_title(f"{run.scene.name}: {method_words(run.method)}")
     return figure
-
-
-def _name(run: Trajectory | HybridTrajectory) -> str:
-    method = run.method
-    if getattr(method, "tolerance", None) is not None:
-        return f"{type(method).__name__}, tolerance {method.tolerance:g}"
-    if hasattr(method, "h"):
-        return f"{type(method).__name__}, h = {method.h:g} s, theta = {method.theta:g}"
-    return f"event-driven, tolerance {method.rtol:g}"

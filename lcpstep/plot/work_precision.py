@@ -13,6 +13,7 @@ import numpy as np
 from lcpstep.analysis.work_precision import UNFIT, Level, Study
 
 MARKERS = "osD^vPX*<>"
+FLOOR = "known of the reference"  # below it errors are the reference's own
 
 
 def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
@@ -27,7 +28,7 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
     wanted = measures or [
         m for m in study.measures if m not in UNFIT and any(x.errors.get(m) for x in study.levels)
     ]
-    figure = Figure(figsize=(11, 3.6 * max(len(wanted), 1)), layout="constrained")
+    figure = Figure(figsize=(13.5, 3.6 * max(len(wanted), 1)), layout="constrained")
     figure.suptitle(f"{study.question['scene']}, compared up to {study.compared_until:.4g} s")
     grid = figure.subplots(max(len(wanted), 1), 2, sharey="row", squeeze=False)
     for row, measure in zip(grid, wanted, strict=False):
@@ -42,12 +43,23 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
         for ax, label in zip(row, ("CPU time [s]", "step h [s], or tolerance"), strict=True):
             ax.set(xscale="log", yscale="log", xlabel=label)
             if study.uncertainty.get(measure, 0.0) > 0.0:
-                ax.axhline(study.uncertainty[measure], color="0.6", lw=0.8)
+                ax.axhline(study.uncertainty[measure], color="0.6", lw=0.8, label=FLOOR)
+            whole_decades(ax)
             ax.grid(alpha=0.3, which="both")
             if ax.get_legend_handles_labels()[0]:
-                ax.legend(fontsize=8)
-        row[0].set_ylabel(measure.replace("_", " "))
+                ax.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+        row[0].set_ylabel(study.titled(measure).replace("_", " "))
     return figure
+
+
+def whole_decades(ax: Any) -> None:
+    """Limits of a logarithmic axis at powers of ten, whose labels then stay apart."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    low, high = np.log10(ax.get_xlim())
+    ax.set_xlim(10.0 ** np.floor(low), 10.0 ** np.ceil(high))
+    ax.xaxis.set_major_locator(LogLocator(numticks=7))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _curve(

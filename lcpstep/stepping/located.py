@@ -41,6 +41,8 @@ class Located:
     Raises
     ------
     ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
+    LcpStepError   when it runs: the scene has friction (with any order), joints (with order 4, "exact", or a
+        tolerance), or, with order "exact", not the linear motion under constant and harmonic forces that it takes
 
     Notes
     -----
@@ -49,8 +51,8 @@ class Located:
     others are struck one after another. Linear systems take the trapezoidal rule and are stable for every h, others
     velocity Verlet, which needs h below 2 / (highest frequency). Scenes with joints (order 2, fixed steps) take
     velocity Verlet too; every step ends on the joints. Sources: J. J. Moreau (1988), V. Acary and
-    B. Brogliato (2008)
-    for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts and the joints.
+    B. Brogliato (2008) for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts
+    and the joints.
     """
 
     h: float = 1e-3

@@ -195,7 +195,7 @@ def test_commands_take_scenes_with_modes(capsys, tmp_path, arguments, said, writ
         (("compare", *DRIVEN), "has modes and no contacts"),
         (("study", *DRIVEN), "has modes and no contacts"),
         (("corner", *DRIVEN, "--parameter", "omega"), "has modes and no contacts"),
-        (("corner", "bouncing-ball"), "unknown parameter of bouncing-ball 'rpm'"),
+        (("corner", "bouncing-ball"), "expected one whose obstacle has corners"),
         (("simulate", *DRIVEN, "--energy"), "no masses and forces to balance"),
         (("simulate", *DRIVEN, "--method", "moreau"), "a system with modes is run by lcpstep.EventDriven"),
         (("simulate", "driven-bilinear"), "did you mean 'driven-bilinear-oscillator'"),

@@ -488,3 +488,11 @@ def test_a_part_of_another_class_is_refused_by_name(part):
         scene(**{part: 3.0})
     with pytest.raises(TypeError, match=r"^friction: expected a Coulomb"):
         LinearContacts(1.0, friction=0.3)
+
+
+def test_a_scene_says_on_one_line_what_it_is():
+    assert repr(scenes.bouncing_ball()) == (
+        "Scene('bouncing-ball', 1 coordinate, 1 contact, t = 0 .. 5 s, h0=1, v0=0, g=9.81, restitution=0.8)"
+    )
+    assert "3 coordinates" in repr(scenes.newtons_cradle())
+    assert "starts in stick" in repr(scenes.stick_slip_oscillator().started([0.0, 0.1], "stick"))

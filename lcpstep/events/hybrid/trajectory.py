@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
+from lcpstep.answer import Answer
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.trajectory import Counts, Status
 
@@ -27,7 +28,7 @@ class Pieces:
 
 
 @dataclass(frozen=True, eq=False)
-class HybridTrajectory:
+class HybridTrajectory(Answer):
     """A motion of a system with modes.
 
     Attributes

@@ -1,0 +1,123 @@
+"""Parameter studies as text: read, run, carried by their results; what is not understood is named."""
+
+import numpy as np
+import pytest
+import xarray
+
+from lcpstep import UnknownName, load
+from lcpstep.cli import main
+from lcpstep.cli.common import DONE, FAILED, USAGE
+from lcpstep.parameters import ParameterStudy
+
+TEXT = """
+scene = "bouncing-ball"
+t_end = 0.6
+
+[method]
+name = "event-driven"
+
+[parameters]
+g = 8.0
+
+[sweep]
+restitution = [0.25, 0.5]
+h0 = { from = 0.25, to = 1.0, points = 4 }
+
+[outputs]
+measures = ["impacts", "strongest", "q_end"]
+"""
+FILES = 'file = "out.nc"\ntable = "out.csv"\npicture = "out.png"\nruns = "runs"\n'
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(capsys, *arguments):
+    status = main([str(x) for x in arguments])
+    return status, *capsys.readouterr()
+
+
+def test_a_study_is_run_over_all_combinations_and_its_result_carries_it(folder, capsys):
+    (folder / "study.toml").write_text(TEXT + FILES)
+    status, _, err = run(capsys, "run", "study.toml")
+    assert (status, err) == (DONE, "")
+    with xarray.open_dataset("out.nc") as data:
+        assert data.attrs["study"] == TEXT + FILES
+        assert data.strongest.dims == ("restitution", "h0")
+        assert data.strongest.attrs["units"] == "N s"
+        for r in (0.25, 0.5):
+            for h0 in (0.25, 0.5, 0.75, 1.0):
+                speed = np.sqrt(2.0 * 8.0 * h0)
+                impulse = (1.0 + r) * speed if speed / 8.0 < 0.6 else 0.0
+                assert float(data.strongest.sel(restitution=r, h0=h0)) == pytest.approx(impulse, rel=1e-12)
+        again = ParameterStudy.read(data.attrs["study"])
+    assert again == ParameterStudy.read(TEXT + FILES)
+    assert (folder / "out.png").stat().st_size > 1000
+    assert (folder / "out.csv").read_text().startswith("# \n# scene = ")
+    runs = sorted((folder / "runs").iterdir())
+    assert len(runs) == 8
+    assert load(runs[5]).scene.parameters["h0"] == 0.5
+    status, _, err = run(capsys, "run", "study.toml")
+    assert status == USAGE
+    assert "out.nc exists already; --overwrite replaces it" in err
+    assert run(capsys, "run", "study.toml", "--overwrite")[0] == DONE
+
+
+def test_own_scenes_and_runs_that_fail(folder, capsys):
+    run(capsys, "new", "swing")
+    method = '[method]\nname = "event-driven"\nmax_events = 1\n'
+    (folder / "study.toml").write_text(
+        f'scene = "swing.py"\nt_end = 1.0\n{method}[sweep]\nangle = [0.5, 2.0]\n'
+    )
+    status, out, _ = run(capsys, "run", "study.toml")
+    assert status == FAILED
+    assert out.count("TOO_MANY_EVENTS") + out.count("DONE") == 2
+
+
+def test_a_study_without_a_sweep_is_one_run():
+    study = ParameterStudy.read('scene = "bouncing-ball"')
+    assert study.points == [{}]
+    assert ParameterStudy.read('scene = "x"\n[sweep]\na = {from=1, to=100, points=3, scale="log"}').sweep == {
+        "a": [1.0, 10.0, 100.0]
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("t_end", "t_ends"), "unknown key of study: 't_ends'; did you mean 't_end'"),
+        (("[sweep]", "[sweeps]"), "did you mean 'sweep'"),
+        (("measures", "measure"), "did you mean 'measures'"),
+        (('"impacts"', '"impact"'), "unknown measure of study: .outputs.: 'impact'; did you mean 'impacts'"),
+        (("event-driven", "event"), "did you mean 'event-driven'"),
+        (
+            ('"event-driven"', '"located"\nhh = 1'),
+            "unknown key of study: .method. located: 'hh'; did you mean 'h'",
+        ),
+        (("points", "point"), "did you mean 'points'"),
+        (("points = 4", "points = 4, scale = 'logs'"), "did you mean 'log'"),
+        (("[0.25, 0.5]", "0.5"), r"\[sweep\]: restitution: expected a list of values"),
+        (("points = 4", "points = 0"), "points: expected a positive integer"),
+        (("from = 0.25, ", ""), "from: missing"),
+        (("t_end = 0.6", "t_end = -1"), "t_end: expected a positive number"),
+        (("g = 8.0", "h0 = 8.0"), r"h0: given in \[parameters\] and in \[sweep\]"),
+        (('"bouncing-ball"', "3"), "scene: expected a name"),
+        (("[method]", "[method"), "no TOML"),
+    ],
+)
+def test_what_is_not_understood_is_named(change, said):
+    with pytest.raises((UnknownName, ValueError), match=said):
+        ParameterStudy.read(TEXT.replace(*change))
+
+
+def test_parameters_that_the_scene_does_not_have(folder, capsys):
+    (folder / "study.toml").write_text(TEXT.replace("restitution", "restitutions"))
+    status, _, err = run(capsys, "run", "study.toml")
+    assert status == USAGE
+    assert "unknown parameter of bouncing-ball 'restitutions'; did you mean 'restitution'" in err
+    assert "No such file" in run(capsys, "run", "nothing.toml")[2]
+    (folder / "study.toml").write_text('scene = "hybrid-abs"')
+    assert "has modes; parameter studies take scenes with contacts" in run(capsys, "run", "study.toml")[2]

@@ -1,0 +1,61 @@
+"""What is of the wrong kind altogether is refused by its name, like any other wrong argument."""
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, HybridSystem, LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, Moreau, energy, load, simulate, study
+from lcpstep.cli import main
+
+BALL = scenes.bouncing_ball(t_end=0.1)
+FREE = LinearSystem(1.0)
+RUN = simulate(BALL, Moreau(1e-2))
+
+
+def scene(**more):
+    return Scene(FREE, 1.0, 0.0, (0.0, 1.0), **more)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (lambda: Scene({}, 1.0, 0.0, (0.0, 1.0)), "system: expected a LinearSystem or System"),
+        (lambda: LinearContacts(1.0, friction=0.3), "friction: expected a Coulomb"),
+        (lambda: Contacts(1, None, None, friction=0.3), "friction: expected a Coulomb"),
+        (lambda: scene(contacts=[1]), "contacts: expected a LinearContacts or Contacts"),
+        (lambda: scene(joints=[1]), "joints: expected"),
+        (lambda: scene(parameters=[1]), "parameters: expected names and values"),
+        (lambda: scene(coordinates=3), "coordinates: expected 1 names with units"),
+        (lambda: scene(name=3), "name: expected a str"),
+        (lambda: HybridSystem(1, 3), "modes: expected modes by name"),
+        (lambda: HybridSystem(1, {"a": 3}), "modes: a: expected a Mode"),
+        (lambda: simulate(BALL, Moreau(), progress=5), "progress: expected a function"),
+        (lambda: study(BALL, [Moreau()], progress=5), "progress: expected a function"),
+        (lambda: study(BALL, [Moreau()], measures=3), "measures: expected names in a list"),
+        (lambda: study(BALL, [Moreau()], measures="energy"), "measures: expected names in a list"),
+        (lambda: study(BALL, [Moreau()], h=1e-3), "h: expected numbers in a list"),
+        (lambda: study(BALL, [Moreau()], spread=1), "spread: expected numbers in a list"),
+        (lambda: study(BALL, [Moreau()], repeats="a"), "repeats: expected at least 1"),
+        (lambda: study(BALL, [Moreau()], repeats=1.5), "repeats: expected at least 1"),
+        (lambda: energy(3), "trajectory: expected a Trajectory"),
+        (lambda: load(3), "path: expected the name of a file"),
+        (lambda: RUN.save(3), "path: expected the name of a file"),
+        (lambda: RUN.animate(3), "path: expected the name of a file"),
+        (lambda: RUN.at("now"), "t: expected real numbers"),
+    ],
+)
+def test_wrong_kinds_are_named(wrong, said):
+    with pytest.raises((TypeError, ValueError), match=f"^{said}"):
+        wrong()
+
+
+def test_numbers_of_numpy_are_numbers():
+    assert scene(name=np.str_("free")).name == "free"
+    assert simulate(BALL, EventDriven(), keep=np.int64(1)).at(np.float32(0.05))[0].shape == (1,)
+
+
+def test_scenes_without_corners_have_no_corner_impact(capsys):
+    assert main(["corner", "bouncing-ball"]) == 2
+    assert (
+        "expected one whose obstacle has corners, as cam-follower; 'bouncing-ball'" in capsys.readouterr().err
+    )
