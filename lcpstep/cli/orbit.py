@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import HybridScene
+from lagrangian import HybridScene, checks
 from lagrangian.scenes import SCENES
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
@@ -62,6 +62,7 @@ def add(commands: Any) -> None:
 
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
+    checks.count("--periods", options.periods)
     scene, method = study_scene(options), method_of(options)
     known = SCENES[options.scene].parameters
     if options.range is not None and options.parameter not in known:
