@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import checks
 from lcpstep.analysis.lyapunov import Lyapunov, Progress, lyapunov
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt
@@ -51,6 +52,7 @@ def whole(text: str) -> int:
 
 def run_lyapunov(options: argparse.Namespace) -> int:
     """`lcpstep lyapunov`; what there is of it is printed where it is interrupted."""
+    checks.count("--periods", options.periods)
     scene = study_scene(options)
     P = PeriodMap(scene, method_of(options), options.phase)
     x = scene.x0 if options.start is None else options.start

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import HybridScene
+from lagrangian import HybridScene, checks
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
@@ -62,6 +62,7 @@ def add(commands: Any) -> None:
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     proofs.check(options)
+    checks.count("--periods", options.periods)
     scene, method = study_scene(options), method_of(options)
     known = parameters_of(options.scene)
     if options.range is not None and options.parameter not in known:

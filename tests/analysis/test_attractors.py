@@ -101,6 +101,17 @@ def test_a_motion_on_its_way_has_no_name(transient):
     assert all("longer transient" in a.unsettled for a in found if not a.periods)
 
 
+def test_a_motion_that_magnifies_rounding_before_it_sticks_has_no_period():
+    # At 450 rpm rounding closes a cycle of 26 periods that sticks once; 1e-14 grows to the motion's size in between
+    scene = cam_follower(rpm=450.0)
+    run = periods(scene, EventDriven(), [0.3, 5.0], 2052, drop=2000)
+    free = run.states[0, int(np.flatnonzero(run.ends[0])[0]) + 1]
+    size = np.max(np.abs(run.states[0]), axis=0)
+    near = periods(scene, EventDriven(), [free, free + 1e-14 * size], 24).states
+    assert np.max(np.abs(near[1] - near[0]) / size) > 1e-2
+    assert set(names(450.0, 6)) == {"aperiodic"}
+
+
 def test_a_cycle_that_rounding_has_closed_does_not_survive_kicks():
     scene, n = cam_follower(rpm=358.5), np.array([56, 3, 1, 0])
     starts = outside(scene, random_starts(BOX, 100, 0), 0.0)
