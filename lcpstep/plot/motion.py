@@ -84,10 +84,10 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
         return _states_and_mode(run)
     figure = Figure(figsize=(10, 7), layout="constrained")
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+    t, states = _curves(run)
     n, labels = run.scene.n_q, run.scene.labels
     for ax, x, own, what in zip(
-        (position, velocity), run.at(t), (labels[:n], labels[n:]), ("position", "velocity"), strict=True
+        (position, velocity), states, (labels[:n], labels[n:]), ("position", "velocity"), strict=True
     ):
         ax.plot(t, x, lw=1.0)
         unit = checks.common_unit(own)
@@ -101,6 +101,15 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     impulse.set_xlabel("time t [s]")
     position.set_title(f"{run.scene.name}: {method_words(run.method)}")
     return figure
+
+
+def _curves(run: Trajectory) -> tuple[Any, tuple[Any, Any]]:
+    """Times, and states at them: close to each other, or the kept ones alone where no others are known."""
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+    try:
+        return t, run.at(t)
+    except ValueError:  # what `at` raises between states of which some were not kept
+        return run.t, (run.q, run.v)
 
 
 def _impulses(ax: Any, run: Trajectory) -> None:
