@@ -4,7 +4,7 @@ import pytest
 
 from tests.processes import python
 
-HEAVY = ("numba", "llvmlite", "scipy", "qpsolvers", "osqp", "matplotlib", "tqdm")
+HEAVY = ("numba", "llvmlite", "scipy", "qpsolvers", "osqp", "matplotlib", "tqdm", "xarray", "pandas", "PIL")
 
 
 @pytest.mark.parametrize("package", ["lcpstep", "lagrangian"])
