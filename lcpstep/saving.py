@@ -229,7 +229,7 @@ def _regain_exact(scene: Any) -> None:
     try:
         made = entry.make(**values, t_end=scene.t_span[1])
         made = replace(made, t_span=scene.t_span)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, ArithmeticError):
         return
     describer, own = Describer(), Describer()
     mine = _leaves(describer.tree(made, "scene"), describer.arrays)

@@ -201,3 +201,11 @@ def test_an_overview_names_its_curves_and_their_units():
     assert [x.get_text() for x in mixed.get_legend().get_texts()] == ["x [m]", "height [m]", "angle [rad]"]
     *_, many = simulate(scenes.elastic_gas(n=12), EventDriven()).plot().axes
     assert many.get_legend().get_texts()[-1].get_text() == "contact 7, and 5 more"
+
+
+def test_an_overview_of_some_kept_states_draws_these():
+    for keep in (7, [0.0, 0.2, 0.5], "impacts"):
+        for method in (Moreau(1e-2), Located(1e-2), EventDriven()):
+            motion = simulate(scenes.bouncing_ball(t_end=1.0), method, keep=keep)
+            position, *_ = motion.plot().axes
+            assert len(position.get_lines()[0].get_xdata()) >= len(motion.t)

@@ -8,7 +8,7 @@ import lagrangian
 import lcpstep
 from tests.processes import python
 
-HEAVY = ("numba", "llvmlite", "scipy", "qpsolvers", "osqp", "matplotlib", "tqdm")
+HEAVY = ("numba", "llvmlite", "scipy", "qpsolvers", "osqp", "matplotlib", "tqdm", "xarray", "pandas", "PIL")
 
 
 @pytest.mark.parametrize("package", ["lcpstep", "lagrangian"])

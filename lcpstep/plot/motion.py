@@ -88,10 +88,10 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
         return _states_and_mode(run)
     figure = Figure(figsize=(10, 7), layout="constrained")
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+    t, states = _curves(run)
     n, labels = run.scene.n_q, run.scene.labels
     for ax, x, own, what in zip(
-        (position, velocity), run.at(t), (labels[:n], labels[n:]), ("position", "velocity"), strict=True
+        (position, velocity), states, (labels[:n], labels[n:]), ("position", "velocity"), strict=True
     ):
         ax.plot(t, x, lw=1.0)
         unit = checks.common_unit(own)
@@ -120,6 +120,15 @@ def band(ax: Any, run: Trajectory, which: int, bar: Any) -> None:
         ax.fill_between(t, values - e, values + e, color=f"C{k % 10}", alpha=BAND, lw=0.0)
     if run.error.reason:
         ax.axvline(run.error.until, color="0.5", lw=0.8, ls=":")
+
+
+def _curves(run: Trajectory) -> tuple[Any, tuple[Any, Any]]:
+    """Times, and states at them: close to each other, or the kept ones alone where no others are known."""
+    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+    try:
+        return t, run.at(t)
+    except ValueError:  # what `at` raises between states of which some were not kept
+        return run.t, (run.q, run.v)
 
 
 def _impulses(ax: Any, run: Trajectory) -> None:

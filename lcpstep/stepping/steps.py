@@ -20,7 +20,7 @@ RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 
 def largest(*numbers: Any) -> float:
     """The largest of all numbers by its size; 0 of none."""
-    return float(np.abs(np.concatenate(numbers)).max(initial=0.0))
+    return float(np.abs(np.concatenate([np.ravel(x) for x in numbers])).max(initial=0.0))
 
 
 def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
