@@ -71,10 +71,9 @@ class Portions(ABC):
                 cause()  # an interrupt that a callback heard goes on its way
                 self.empty()
                 progress(self.now)
-            raised = cause()
+            raised, result = cause(), self.trajectory(code)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
-        result = self.trajectory(code)
         if result.status == Status.NOT_FINITE:
             raise SimulationError(result.message, result) from raised
         return result

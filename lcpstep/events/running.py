@@ -27,7 +27,7 @@ class EventRun(Run):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
         super().__init__(method, scene, kept, recorder, PORTION)
-        self.tally = Tally(method.max_events)
+        self.tally, self.closed = Tally(method.max_events), False  # closed: the last state has been kept
 
     @property
     @abstractmethod
@@ -74,8 +74,9 @@ class EventRun(Run):
         """All states kept, and the last one where states are kept by steps or events."""
         record = self.recorder.record
         nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
-        if len(self.kept.times) == 0 and nothing:
+        if len(self.kept.times) == 0 and nothing and not self.closed:
             self.keep_now()
+        self.closed = True
         self.recorder.take()
         return self.recorder.states()
 

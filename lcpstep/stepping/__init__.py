@@ -1,7 +1,7 @@
 """Time-stepping: impacts happen somewhere within a step, and complementarity problems decide how.
 
-moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `theta_method`; `sparse`, `sparse_equations`
-                         for large ones
+moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `theta_method`; `sparse`,
+                         `sparse_equations` for large ones
 constraints              what contacts, tangents and joints have in common as rows of a step
 located, pieces          impacts at their own times: method, and a run with its steps
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance`; `hidden_forces`,
