@@ -16,8 +16,15 @@ def address(f: Any) -> int:
     """Address of the C function that was built from f, of `lcpstep.kernels.function`'s signature; 0 for none."""
     if not isinstance(f, FunctionType) or (f.__module__, f.__name__) not in FUNCTIONS:
         return 0
-    code, constants, names, numbers, found = FUNCTIONS[f.__module__, f.__name__]
+    *told, called, found = FUNCTIONS[f.__module__, f.__name__]
+    same = _same(f, *told) and all(_same(f.__globals__.get(name), *of_it) for name, of_it in called.items())
+    return int(found) if same else 0
+
+
+def _same(f: Any, code: bytes, constants: Any, names: Any, numbers: dict[str, float]) -> bool:
+    """Whether a function is the one that was built."""
+    if not isinstance(f, FunctionType):
+        return False
     own = f.__code__
     same = (own.co_code, own.co_consts, own.co_names) == (code, constants, names)
-    same = same and all(f.__globals__.get(name) == x for name, x in numbers.items())
-    return int(found) if same else 0
+    return same and all(f.__globals__.get(name) == x for name, x in numbers.items())

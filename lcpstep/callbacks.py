@@ -50,6 +50,10 @@ class NotCompiled(Exception):
         return f"{self.reason} ({os.path.basename(self.file)}, line {self.line})"
 
 
+class NoCompiler(NotCompiled):
+    """Numba cannot be imported."""
+
+
 FAILED: dict[Any, NotCompiled] = {}  # what cannot be made
 
 
@@ -63,7 +67,7 @@ def address(f: Callback, ndim: int) -> int:
 
 def first_order_address(f: Callback) -> int:
     """The same of a function f(t, x, p, out) of a first-order system."""
-    return int(_made(f, FIRST_ORDER, 1).address)
+    return built.address(f) or int(_made(f, FIRST_ORDER, 1).address)
 
 
 def disabled() -> bool:
@@ -73,11 +77,16 @@ def disabled() -> bool:
 
 def warn(what: str, f: Callback, why: NotCompiled) -> None:
     """Say, once for each function, that it cannot be compiled, where in it, and why."""
-    if isinstance(f, Hashable):
-        if f in TOLD:
+    told = NoCompiler if isinstance(why, NoCompiler) else f  # which concerns all functions alike
+    if isinstance(told, Hashable):
+        if told in TOLD:
             return
-        TOLD.add(f)
+        TOLD.add(told)
     message = f"{what} cannot be compiled and runs in plain Python: {why}"
+    if isinstance(why, NoCompiler):
+        message = (
+            f"{why.reason}: functions that were not built with the library run in plain Python, {what} first"
+        )
     warnings.warn_explicit(message, UncompiledCallback, why.file, why.line, registry=REGISTRY)
 
 
@@ -150,8 +159,12 @@ def _unfit(f: Any, reason: str) -> NotCompiled:
 
 def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
     """C function of f."""
-    from lcpstep.guarded import signature
-
+    try:
+        from lcpstep.guarded import signature
+    except ImportError as error:
+        code = f.__code__
+        reason = f"numba cannot be imported ({error})"
+        raise NoCompiler(reason, code.co_filename, code.co_firstlineno) from error
     for g in fingerprint.reached(f):
         if unchecked := UNCHECKED & _names(g):
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")

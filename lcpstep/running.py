@@ -71,8 +71,7 @@ class Portions(ABC):
                 cause()  # an interrupt that a callback heard goes on its way
                 self.empty()
                 progress(self.now)
-            raised = cause()
-            result = self.trajectory(code)
+            raised, result = cause(), self.trajectory(code)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
         if result.status == Status.NOT_FINITE:

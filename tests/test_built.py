@@ -46,6 +46,45 @@ def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(nam
             np.testing.assert_array_equal(*out)
 
 
+def functions_with_modes(scene):
+    """Fields, guards, resets and surfaces of a system with modes, and how many numbers each fills in."""
+    for mode in scene.system.modes.values():
+        yield mode.field, scene.system.n_x
+        for guard in mode.guards:
+            yield guard.value, 1
+            if guard.reset is not None:
+                yield guard.reset, scene.system.n_x
+    yield from ((surface.value, 1) for surface in scene.system.surfaces)
+
+
+@pytest.mark.skipif(disabled(), reason="nothing is compiled")
+@pytest.mark.parametrize("model", ["slip", "constant", "full", None])
+def test_what_is_built_of_systems_with_modes_gives_the_numbers_of_python(model):
+    made = [e.make() for n, e in scenes.WITH_MODES.items() if n != "hybrid-abs"]
+    rng = np.random.default_rng(1)
+    for scene in made if model is None else [scenes.hybrid_abs(model=model)]:
+        p, n = np.array(scene.p), scene.system.n_x
+        for f, size in functions_with_modes(scene):
+            assert built.address(f), f
+            x, out, mine = rng.uniform(0.1, 2.0, n), np.zeros((1, size)), np.zeros(size)
+            Function(built.address(f), p, n, 0, (size,)).sample(np.array([0.3]), x, np.zeros(0), out)
+            f(0.3, x, p, mine)
+            np.testing.assert_allclose(out[0], mine, rtol=1e-15, atol=0)
+
+
+@pytest.mark.parametrize("name", list(scenes.CATALOGUE))
+def test_every_function_of_the_ready_scenes_is_built(name):
+    for f, _ in functions(scenes.CATALOGUE[name].make()):
+        assert built.address(f), f
+
+
+def test_a_function_whose_helper_has_changed_is_not_taken_for_the_one_that_was_built(monkeypatch):
+    field = scenes.hybrid_abs().system.modes["0"].field
+    assert built.address(field)
+    monkeypatch.setitem(field.__globals__, "friction", lambda slip, p: 0.0)  # of a helper of a helper
+    assert not built.address(field)
+
+
 def test_functions_of_the_ready_scenes_are_built():
     assert built.address(profiles.rotating_cam)
     assert built.address(pendulum.pendulum_force)

@@ -148,6 +148,55 @@ print("numba" in sys.modules)
 """
 
 
+NO_NUMBA = """
+import sys, warnings
+
+class Missing:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        if name.partition(".")[0] in ("numba", "llvmlite"):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Missing)
+warnings.simplefilter("always")
+from lcpstep.model import UncompiledCallback
+
+def push(t, x, p, out):
+    out[0], out[1] = x[1], -x[0]
+
+def falling_side(t, x, p, out):
+    out[0] = x[0]
+
+def own_gap(t, q, v, p, out):
+    out[0] = q[0] + 2.0
+
+def own_slope(t, q, v, p, out):
+    out[0, 0] = 1.0
+"""
+EVERY_METHOD = """
+from lagrangian import Contacts, Guard, HybridScene, HybridSystem, Mode
+from lcpstep import LcpStepError
+both = Scene(System(1, 1.0, swing), 1.0, 0.0, (0.0, 0.1), Contacts(1, own_gap, own_slope))
+system = HybridSystem(2, {"right": Mode(push, [Guard(falling_side, "left")]), "left": Mode(push)})
+with warnings.catch_warnings(record=True) as said:
+    for scene in (both, own, HybridScene(system, [-0.05, 1.0], "right", (0.0, 0.1))):
+        for method in (
+            Moreau(1e-2), Moreau(1e-2, tolerance=1e-2), Moreau(1e-2, lcp="newton"), Located(1e-2), Located(1e-2, 4),
+            Located(1e-2, tolerance=1e-2), EventDriven(),
+        ):
+            if scene in (both, own) or isinstance(method, EventDriven):
+                print(simulate(scene, method).status.name)
+print(*(w.message for w in said if w.category is UncompiledCallback), sep=chr(10))
+"""
+
+
+def test_everything_runs_without_numba_and_one_line_says_that_it_is_missing():
+    program = NO_NUMBA + RUN.partition("for scene in")[0] + EVERY_METHOD
+    *states, said = python(program).split("\n")
+    assert states == ["DONE"] * 15
+    assert said.startswith("numba cannot be imported (No module named")
+
+
 def test_the_environment_can_ask_for_plain_python():
     plain, fast = (python(RUN, NUMBA_DISABLE_JIT=x) for x in "10")
     *plain, without = plain.split("\n")

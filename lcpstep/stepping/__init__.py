@@ -1,8 +1,10 @@
 """Time-stepping: impacts happen somewhere within a step, and complementarity problems decide how.
 
-moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `theta_method`; `sparse` for large ones
+moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `theta_method`; `sparse`,
+                         `sparse_equations` for large ones
 constraints              what contacts, tangents and joints have in common as rows of a step
 located, pieces          impacts at their own times: method, and a run with its steps
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance`; `hidden_forces`,
-                         `hidden_switches`: what forces hide; `adaptive`, `adapted_run`: their runs
+                         `hidden_switches`: what forces hide; `adaptive`: their sizes
+step_run                 what runs by steps share; what all runs do: `lcpstep.running`
 """

@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport COLUMNS, Record
-from lcpstep.kernels.vectors cimport clear, copy, copy_indices, distance, largest
+from lcpstep.kernels.vectors cimport clear, copy, distance, largest
 from lcpstep.pointers cimport abs, after, inf, max, min, nan, whole
 from lcpstep.stepping.hidden_forces cimport hidden, late
 from lcpstep.stepping.pieces.codes cimport BUFFER_FULL, CLOSED, FINISHED, RELEASE, STOPPED, WHOLE

@@ -3,7 +3,7 @@ from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, copy_indices, distance, largest
-from lcpstep.pointers cimport abs, after, indices_after, inf, max, min
+from lcpstep.pointers cimport abs, after, inf, max, min
 from lcpstep.stepping.hidden_switches cimport Switches
 from lcpstep.stepping.step_control cimport LEAST_SHARE, Control, stamp
 from lcpstep.stepping.theta_method.moving cimport Rows, State

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System
-from lcpstep import EventDriven, simulate
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate
+from lcpstep.recording import Recorder
 from lcpstep.trajectory import Kind, Status
 from tests.models import ball_on_table, no_damping
 
@@ -206,3 +207,23 @@ def test_a_follower_on_a_slow_table_never_leaves_it():
     m = simulate(ball_on_table(0.01, 31.0, 0.3, 0.0, 0.0, 1.0), EventDriven())  # A w^2 = 9.61 < g
     assert "RELEASE" not in kinds(m)
     assert m.status is Status.DONE
+
+
+@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2), EventDriven()])
+def test_ctrl_c_while_the_trajectory_is_put_together_leaves_it_whole(method, monkeypatch):
+    scene = scenes.bouncing_ball(t_end=1.0)
+    whole, events, calls = simulate(scene, method, keep="impacts"), Recorder.events, []
+
+    def interrupted(recorder, end):
+        calls.append(end)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return events(recorder, end)
+
+    monkeypatch.setattr(Recorder, "events", interrupted)
+    with pytest.raises(SimulationInterrupted) as stopped:
+        simulate(scene, method, keep="impacts")
+    m = stopped.value.trajectory
+    assert m.status == Status.INTERRUPTED
+    np.testing.assert_array_equal(m.q, whole.q)
+    np.testing.assert_array_equal(m.impacts.time, whole.impacts.time)

@@ -12,7 +12,7 @@ cdef double DIFFERENCE, INNER, OUTER, TINY
 @cython.final
 cdef class Machine:
     cdef object numbers, out_array, signs, kept
-    cdef readonly Py_ssize_t n, n_modes, n_guards
+    cdef readonly Py_ssize_t n, n_guards
     cdef readonly double dt
     cdef Functions fields, surfaces, values, resets
     cdef Py_ssize_t* has_reset

@@ -13,7 +13,8 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
+from lcpstep.events.hybrid.kinds import ARRIVE as ARRIVE
+from lcpstep.events.hybrid.kinds import EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
@@ -67,7 +68,7 @@ class Machine:
             np.zeros(1),
             np.array(sign, dtype=float),
         )
-        self.n, self.n_modes, self.n_guards, self.dt = n, len(own["below"]), len(own["kind"]), dt
+        self.n, self.n_guards, self.dt = n, len(own["kind"]), dt
         self.kept = p, own, kept
         self.fields = Functions(functions["fields"], p, n, 0, (n,))
         self.surfaces = Functions(functions["surfaces"], p, n, 0, (1,))
@@ -107,14 +108,6 @@ class Machine:
         x = np.array(x, dtype=float)
         g_t = guard_gradient(self, mode, k, t, doubles(x))
         return self.numbers[4].copy(), g_t
-
-    def slides(self, mode: int) -> bool:
-        """Whether this is a mode of sliding."""
-        return self.below[mode] != NOT_SLIDING
-
-    def arrives(self, k: int) -> bool:
-        """Whether guard k is a surface that is reached."""
-        return self.kind[k] == ARRIVE
 
     def target_of(self, k: int) -> int:
         """The mode that guard k leads to."""

@@ -15,7 +15,7 @@ cdef void turn_onto_joints(Work w, double* v) noexcept nogil
 cdef Py_ssize_t joints_failed(Work w) noexcept nogil
 cdef void load_joints(Work w) noexcept nogil
 cdef void reach_joints(Work w, double t, double tau, double slack) noexcept nogil
-cdef void meet_joints(Work w, double t, double tau) noexcept nogil
+cdef void meet_joints(Work w, double tau) noexcept nogil
 cdef void hold_joints(Work w, double span) noexcept nogil
 cdef void answer_impulse(Work w, Py_ssize_t c, double p) noexcept nogil
 cdef void answer_force(Work w, Py_ssize_t c, double p) noexcept nogil

@@ -96,7 +96,7 @@ def reach_joints(w: Work, t: float, tau: float, slack: float) -> None:
         w.v[i] += (w.q[i] - w.joints.before[i]) / tau
 
 
-def meet_joints(w: Work, t: float, tau: float) -> None:
+def meet_joints(w: Work, tau: float) -> None:
     """The velocity at the end of a piece back onto the joints; their impulses but for those of closed contacts."""
     turn_onto_joints(w, w.v)
     piece, load, free, answer = w.joints.piece, w.joints.load, w.joints.free, w.joints.answer

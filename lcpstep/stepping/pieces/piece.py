@@ -48,7 +48,7 @@ POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
     """Accelerations and gap quadratics of the piece that begins at t."""
     n_c = w.n_c
-    place = accelerate(m, plan, w, t)
+    place = accelerate(m, plan, w)
     w.made_with = place
     if n_c == 0:
         copy(w.a, w.free, w.n_q)

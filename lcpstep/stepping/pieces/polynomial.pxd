@@ -35,7 +35,7 @@ cdef class Polynomial:
     cdef double* rate_now
 
 
-cdef bint on_surface(Model m, Plan plan, Work w) noexcept nogil
+cdef bint on_surface(Plan plan, Work w) noexcept nogil
 cdef bint acceleration(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil
 cdef void biases(Model m, Plan plan, Work w, double t, double* q, double* v) noexcept nogil
 cdef bint constrained(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil

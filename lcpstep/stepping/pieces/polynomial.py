@@ -65,7 +65,7 @@ class Polynomial:
         self.rate_to, self.rate_now = after(x, 3 * n_c), after(x, 4 * n_c)
 
 
-def on_surface(m: Model, plan: Plan, w: Work) -> bool:
+def on_surface(plan: Plan, w: Work) -> bool:
     """Whether the one coordinate of an exact motion lies on its obstacle, which then says where it is."""
     return plan.exact and w.closed_now > 0 and w.n_q == 1
 
@@ -166,7 +166,7 @@ def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
         for i in range(n):
             z.T[i] += m.frame_now[3 * i]
             z.T[n + i] += m.frame_now[3 * i + 1]
-    if on_surface(m, plan, w):
+    if on_surface(plan, w):
         return True
     if w.closed_now > 0:
         factor_closed(w)
@@ -232,7 +232,7 @@ def hermite(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, L: float) ->
 def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> None:
     """State at tau after the base t of the piece, into z.q and z.v."""
     n = w.n_q
-    if on_surface(m, plan, w):
+    if on_surface(plan, w):
         surface_state(m, plan, w, z, t + tau)
         return
     degree = DEGREE if plan.exact else QUINTIC

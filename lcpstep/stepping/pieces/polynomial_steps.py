@@ -165,7 +165,7 @@ def follow(
     for c in range(w.n_c):
         w.grounded[c] = 0
     measure(m, plan, w, now + tau)
-    if not on_surface(m, plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
+    if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
         if not plan.constant:
             if not refactor(m, w, now + tau):
                 return NOT_FINITE

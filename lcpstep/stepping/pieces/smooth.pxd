@@ -18,7 +18,7 @@ cdef double ON_THE_SURFACE
 
 cdef void invert(Model m, Plan plan, Work w, double rest, Py_ssize_t place) noexcept nogil
 @cython.locals(place=Py_ssize_t)
-cdef Py_ssize_t accelerate(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef Py_ssize_t accelerate(Model m, Plan plan, Work w) noexcept nogil
 cdef bint free_acceleration(Model m, Work w, double t, double* q, double* v, double* out) noexcept nogil
 cdef bint renew_forces(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef void mobility(Model m, Work w, Py_ssize_t c) noexcept nogil

@@ -73,7 +73,7 @@ def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
                 WA[d * n_c + c] = product(m.G, after(AG, c * n), d, n)
 
 
-def accelerate(m: Model, plan: Plan, w: Work, t: float) -> int:
+def accelerate(m: Model, plan: Plan, w: Work) -> int:
     """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
     rest = w.end - w.sigma
     place = WHOLE if rest == plan.made_for or not plan.stiff else REST
@@ -289,6 +289,6 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
             w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
             w.free[i] = w.a_try[i]
         if w.joined:
-            meet_joints(w, t_next, tau)
+            meet_joints(w, tau)
     measure(m, plan, w, t_next)
     return True

@@ -1,8 +1,9 @@
 cimport cython
 from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.record cimport COLUMNS, Record
 from lcpstep.kernels.vectors cimport clear, copy, finite, product
+from lcpstep.pointers cimport after, whole
 from lcpstep.stepping.theta_method.implicit cimport linearise
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
@@ -26,4 +27,5 @@ cdef void position(Plan plan, State s) noexcept nogil
 cdef void predicted_rates(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil
 cdef void tangent_rates(State s, Rows c, double t, double t_next) noexcept nogil
 cdef void free_velocity(Model m, Plan plan, State s, double t_next) noexcept nogil
+@cython.locals(released=bint)
 cdef void log_events(Model m, State s, Rows c, Record record, double t_next) noexcept nogil

@@ -36,8 +36,9 @@ from lcpstep.stepping.theta_method.codes import (
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.record import COLUMNS, Record
     from lcpstep.kernels.vectors import clear, copy, finite, product
+    from lcpstep.pointers import after, whole
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -195,6 +196,7 @@ def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
 
 def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> None:
     """Note impacts, the beginning of lasting contact, and its end."""
+    first, released = record.event, False
     for i in range(c.n_c):
         kind = -1
         if c.p[i] > 0.0:
@@ -207,8 +209,16 @@ def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> No
             if s.closed[i] == 2:
                 kind = RELEASE
             s.closed[i] = 0
+        released = released or kind == RELEASE
         if kind >= 0:
-            if kind == RELEASE:
-                gap_rates(m, t_next, s.next_q, s.next_v, c.H, c.H_t)
-            u = product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
+            u = 0.0 if kind == RELEASE else product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
             record.note(t_next, i, s.u[i], u, c.p[i], kind)
+    if not released:
+        return
+    gap_rates(
+        m, t_next, s.next_q, s.next_v, c.H, c.H_t
+    )  # those of the law are of contacts that took part in it
+    for k in range(first, record.event):
+        line = after(record.events, k * COLUMNS)
+        if line[5] == RELEASE:
+            line[3] = product(c.H, s.next_v, whole(line[1]), s.n_q) + c.H_t[whole(line[1])]
