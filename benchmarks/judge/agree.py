@@ -154,6 +154,9 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
     promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
     told = (ref.noise < TOLD * ref.size) & (ref.looks < until)
+    for x in (r, finer):
+        if x.status == "TOO_MANY_EVENTS":  # more than the judge allows
+            told &= ref.looks <= x.motion.t[-1]
     converged = told & (own < CONVERGED * ref.size)
     settled = converged & (own > 1e-5 * ref.size) & (ref.noise < 1e3 * SMALL * ref.size)
     tests = {

@@ -165,9 +165,9 @@ def energy(d: Description, r: Run) -> Iterator[Finding]:
         return
     finer = run(d, r.method, 0.25)
     if gained > 1e-3 * sizes.energy and finer.usable and gain(d, finer) > 0.7 * gained:
-        finest = run(d, r.method, 0.0625)
-        if finest.usable and gain(d, finest) > 0.7 * gained:
-            more = f"{gain(d, finer):.3g} and {gain(d, finest):.3g} with a quarter and a 16th of the step"
+        finest, most = run(d, r.method, 0.0625), gain(d, finer)
+        if finest.usable and (most > sizes.energy or gain(d, finest) > 0.7 * most):
+            more = f"{most:.3g} and {gain(d, finest):.3g} with a quarter and a 16th of the step"
             yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J, {more}")
 
 

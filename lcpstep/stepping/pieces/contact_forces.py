@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after
+    from lcpstep.pointers import Doubles, abs, after, max
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
     from lcpstep.stepping.pieces.jointed import answer_force
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -118,12 +118,39 @@ def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
 
 
 def pulls(m: Model, w: Work, c: int) -> bool:
-    """Whether the negative force in w.p of closed contact c is more than rounding of what it balances."""
+    """Whether the negative force in w.p of closed contact c is more than rounding of what it balances.
+
+    It may balance but the rounding of the next force, as in a row of bodies of which the last alone is pressed.
+    """
+    if -w.p[c] <= ROUNDING * largest_connected(w, c):
+        return False
     size = 0.0
     for d in range(w.n_c):
         if w.status[d] == CLOSED:
             size += abs(w.W[c * w.n_c + d] * w.p[d])
     return -w.W[c * w.n_c + c] * w.p[c] > ROUNDING * (size + acceleration_terms(m, w, c))
+
+
+def largest_connected(w: Work, c: int) -> float:
+    """The largest force in w.p of the closed contacts that a chain of such connects with contact c."""
+    largest, more = 0.0, True
+    for d in range(w.n_c):
+        w.place[d] = 1 if d == c else 0
+    while more:
+        more = False
+        for d in range(w.n_c):
+            for e in range(w.n_c):
+                if (
+                    w.place[e] == 1
+                    and w.place[d] == 0
+                    and w.status[d] == CLOSED
+                    and w.W[d * w.n_c + e] != 0.0
+                ):
+                    w.place[d], more = 1, True
+    for d in range(w.n_c):
+        if w.place[d] == 1:
+            largest = max(largest, abs(w.p[d]))
+    return largest
 
 
 def zero_rounding(plan: Plan, w: Work) -> None:

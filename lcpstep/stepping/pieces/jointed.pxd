@@ -1,7 +1,7 @@
 from lcpstep.kernels.record cimport LEAD, TIME, Record
-from lcpstep.kernels.vectors cimport add, clear, copy
+from lcpstep.kernels.vectors cimport add, clear, copy, distance, largest
 from lcpstep.pointers cimport after, max, min
-from lcpstep.stepping.pieces.codes cimport JOINTS_FAILED, PROJECTION_FAILED
+from lcpstep.stepping.pieces.codes cimport JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
 from lcpstep.stepping.pieces.joints cimport accelerate, put, reduce, take, turn
 from lcpstep.stepping.pieces.state cimport Work
 

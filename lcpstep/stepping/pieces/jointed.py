@@ -16,9 +16,9 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.record import LEAD, TIME, Record
-    from lcpstep.kernels.vectors import add, clear, copy
+    from lcpstep.kernels.vectors import add, clear, copy, distance, largest
     from lcpstep.pointers import Doubles, after, max, min
-    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, PROJECTION_FAILED
+    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
     from lcpstep.stepping.pieces.joints import accelerate, put, reduce, take, turn
     from lcpstep.stepping.pieces.state import Work
 
@@ -86,9 +86,14 @@ def load_joints(w: Work) -> None:
 
 
 def reach_joints(w: Work, t: float, tau: float, slack: float) -> None:
-    """The position at the end of a piece onto the joints, by forces at its base, which act on the velocity too."""
+    """The position at the end of a piece onto the joints, by forces at its base, which act on the velocity too.
+
+    But for what is only rounding of the position: over a piece as short as that it would be any velocity.
+    """
     copy(w.joints.before, w.q, w.n_q)
     put_on_joints(w, t, slack, w.q)
+    if distance(w.q, w.joints.before, w.n_q) <= ROUNDING * largest(w.q, 0.0, w.n_q):
+        return
     piece, push = w.joints.piece, w.joints.push
     for k in range(w.n_j):
         piece[k] += push[k] / tau
