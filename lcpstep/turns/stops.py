@@ -35,7 +35,7 @@ class Turns(NamedTuple):
     """Where what moves by itself turns fast.
 
     stops : (m,)     times to look at, in [0, period), or in the span where nothing repeats; with the scene's corners
-    fast : (k, 2)    stretches between them
+    fast : (k, 2)    stretches between them, with as much on both sides, apart from each other
     sampled          what is known from samples alone, and turns fast, and why; ""
     """
 
@@ -45,11 +45,11 @@ class Turns(NamedTuple):
 
     def elsewhere(self, times: Array, period: float) -> NDArray[np.bool_]:
         """Which times lie in none of the stretches."""
+        if not len(self.fast):
+            return np.ones(len(times), dtype=bool)
         t = times if math.isinf(period) else np.mod(times, period)
-        order = np.argsort(self.fast[:, 0])
-        k = np.searchsorted(self.fast[order, 0], t, side="right") - 1
-        ends = np.append(self.fast[order, 1], -np.inf)
-        return np.asarray(ends[k] < t)
+        k = np.searchsorted(self.fast[:, 0], t, side="right") - 1
+        return np.asarray(np.append(self.fast[:, 1], -np.inf)[k] < t)
 
 
 def turns(scene: Scene) -> Turns:
@@ -106,9 +106,27 @@ def _remembered(
         stops = [x[x < period] for x in stops]
     return Turns(
         _apart(np.unique(np.concatenate(stops)), span[1] - span[0], own),
-        np.concatenate(stretches),
+        _widened(np.concatenate(stretches)),
         "; ".join(words),
     )
+
+
+def _widened(stretches: Array) -> Array:
+    """The stretches put together where they meet, and as much on both sides of each: a burr has its tails there."""
+    whole = _merged(stretches)
+    length = whole[:, 1:] - whole[:, :1]
+    return _merged(whole + length * np.array([[-1.0, 1.0]]))
+
+
+def _merged(stretches: Array) -> Array:
+    """Stretches in order, those that meet or overlap as one."""
+    made: list[list[float]] = []
+    for a, b in stretches[np.argsort(stretches[:, 0])]:
+        if made and a <= made[-1][1]:
+            made[-1][1] = max(made[-1][1], float(b))
+        else:
+            made.append([float(a), float(b)])
+    return np.array(made).reshape(-1, 2)
 
 
 def usual(found: Leaves, base: float) -> float:

@@ -70,7 +70,7 @@ def strikes(motion, p, phase):
 @pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3, 1e-4])
 def test_no_burr_is_flown_through(motion, width):
     rng = np.random.default_rng(int(1e4 * width))
-    for k in range(12):
+    for k in range(6):
         phase, place = rng.uniform(0.0, FAST), rng.uniform(0.5, 9.5)
         p = [rng.uniform(0.05, 1.0), width, place, 10.0]
         meets, clear = strikes(motion, p, phase)
@@ -163,3 +163,11 @@ def test_gaps_of_any_form_as_well(method):
     )  # fmt: skip
     m = simulate(scene, method)
     assert abs(m.impacts.time[0] - 4.47) < 3e-3
+
+
+def test_the_tails_of_a_burr_do_not_make_the_whole_scan_fine():
+    """One of the samples that show how fast everything turns lies five widths from the burr."""
+    scene = oscillator(bell, [0.495797345, 1.79999318e-05, 3.87452818], 0.3)
+    assert simulate(scene, EventDriven()).counts.steps < 1000
+    assert not turns(scene).elsewhere(np.array([3.87452818 - 1e-4]), math.inf)[0]
+    assert turns(scene).elsewhere(np.array([0.0, 3.8, 3.9, 10.0]), math.inf).all()
