@@ -189,6 +189,35 @@ def rocking(t: float, q: Any, *, b: float, h: float) -> Shapes:
     return [floor, Polygon(turned(block, q[0], (middle[0] - b, middle[1])), contacts=(0,))]
 
 
+def pecking(t: float, q: Any, *, height: float) -> Shapes:
+    """A sleeve around a pole, and a bird on it; q are the height of the sleeve and two angles."""
+    pole, half, inner, bird = 0.0025, 0.0058, 0.0031, 0.025
+    sides = [Line([(x, q[0] - height), (x, q[0] + height)], fixed=True) for x in (-pole, pole)]
+    sleeve = turned([(-inner, half), (-inner, -half)], q[1], (0.0, q[0]))
+    other = turned([(inner, half), (inner, -half)], q[1], (0.0, q[0]))
+    joint = turned([(0.010, 0.0)], q[1], (0.0, q[0]))[0]
+    body = turned([(0.015, 0.0)], q[2], joint)[0]
+    beak = turned([(0.015 - 0.0201, 0.020)], q[2], joint)[0]
+    return [
+        *sides,
+        Line(sleeve, contacts=(1, 2)),
+        Line(other, contacts=(1, 2)),
+        Line([(0.0, q[0]), joint]),
+        Line(spring(joint, body, 0.2 * bird)),
+        Circle(body, 0.15 * bird),
+        Line([body, beak]),
+        Point(beak, contacts=(0,)),
+    ]
+
+
+def leaning_rod(t: float, q: Any, *, half: float, reach: float) -> Shapes:
+    """A rod on a floor; q are its centre and angle."""
+    floor = Line([(-reach, 0.0), (reach, 0.0)], fixed=True)
+    dx, dy = half * math.cos(q[2]), half * math.sin(q[2])
+    tip = (q[0] - dx, q[1] - dy)
+    return [floor, Line([tip, (q[0] + dx, q[1] + dy)]), Point(tip, contacts=(0,))]
+
+
 def wheel(t: float, q: Any, *, radius: float, reach: float) -> Shapes:
     """A wheel on a floor; q are x, height and angle."""
     middle = (q[0], q[1] + radius)
@@ -310,6 +339,8 @@ MAKERS: dict[str, Callable[[Any, Any], Drawing]] = {
     ),
     "slope-landing": lambda s, p: partial(on_slope, slope=p["slope"], size=0.2, reach=p["v0"] * s.t_span[1]),
     "slider-crank": lambda s, p: partial(crank, p=s.p),
+    "woodpecker": lambda s, p: partial(pecking, height=0.05),
+    "falling-rod": lambda s, p: partial(leaning_rod, half=s.p[0], reach=1.5),
     "cam-follower": lambda s, p: partial(
         cam, p=s.p, outline=cam_outline(s.p), relative=p["coordinates"] == "relative"
     ),

@@ -117,7 +117,7 @@ def _case(title: str, found: Contest, bars: bool) -> dict[str, Any]:
 
 def _bar(x: Entrant) -> dict[str, Any]:
     """The error bar of a run."""
-    bar = error_bar(x.run, True, x.seconds) if x.run is not None else None
+    bar = error_bar(x.run, False, x.seconds) if x.run is not None else None
     return {} if bar is None else {"error_bar": bar.as_dict(), "error_bar_in_words": str(bar)}
 
 

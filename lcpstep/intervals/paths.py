@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Mask = NDArray[np.bool_]
-MOST = 512  # ways through a function
+MOST = 32  # ways through a function
 UNDER_WAY = threading.local()  # the evaluation of each thread
 
 

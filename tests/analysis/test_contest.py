@@ -36,10 +36,10 @@ def test_without_a_closed_form_the_reference_is_a_tighter_run():
 
 def test_what_is_refused_says_why_and_what_nothing_treats_is_an_error():
     found = contest(scenes.coulomb_oscillator(t_end=3.0), METHODS)
-    assert [bool(x.reason) for x in found.entrants] == [False, True, True, True]
+    assert [bool(x.reason) for x in found.entrants] == [False, True, True, False]
     assert "friction" in found.entrants[1].reason
     with pytest.raises(LcpStepError, match="no method treats 'coulomb-oscillator'"):
-        contest(scenes.coulomb_oscillator(t_end=3.0), METHODS[1:])
+        contest(scenes.coulomb_oscillator(t_end=3.0), METHODS[1:3])
 
 
 def test_steps_that_are_too_long_for_the_motion_are_left_out():
@@ -58,6 +58,6 @@ def test_a_picture_of_scenes_with_refusals():
     figure = contests(found, ["one", "two"])
     assert [len(ax.get_lines()) > 1 for ax in figure.axes] == [True, True, True, True, True, True]
     (legend,) = figure.legends
-    assert [x.get_text() for x in legend.get_texts()] == [
+    assert {x.get_text() for x in legend.get_texts()} == {
         "reference", "Moreau", "Located, order 2", "Located, order 4", "EventDriven",
-    ]  # fmt: skip
+    }  # fmt: skip
