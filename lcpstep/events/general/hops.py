@@ -35,7 +35,7 @@ REMAINDER = 331776.0 / (9.0 * 1625702400.0)
 LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
-STEADY = 1e-9  # of its terms: a gap velocity that changes by more at a corner does not do so by rounding
+STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
 MAX_ITERATIONS = 60
 
 
