@@ -107,7 +107,7 @@ def test_a_disturbed_scene_keeps_what_is_closed():
     assert after[1] != before[1]
 
 
-ELASTIC = replace(BALL, restitution=1.0, q0=(1e-3,), v0=(0.0,), t_span=(0.0, 900.0))
+ELASTIC = replace(BALL, restitution=1.0, q0=(1e-3,), v0=(0.0,), t_span=(0.0, 900.0), general=True)
 
 
 class Deaf(Description):
