@@ -34,7 +34,13 @@ REPEATED = 20  # times that a curved gap is taken as straight
 REFINED = 3  # times that contacts at rest are closed, until what is left is zero
 MOST = 5  # contacts named in a warning
 TINY = 1e-16  # relative residual of a large system
-AT_REST = (Kind.STICK, Kind.ACCUMULATION)  # after which a contact stays closed
+AT_REST = (
+    Kind.STICK,
+    Kind.ACCUMULATION,
+    Kind.SLIP,
+    Kind.STICK_TANGENT,
+    Kind.REVERSE,
+)  # after which a contact stays closed
 
 
 class PutBack(UserWarning):

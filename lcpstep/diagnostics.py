@@ -111,6 +111,9 @@ def energy(trajectory: Trajectory) -> Energy:
     friction, impacts = _friction(m), _contacts(m)
     change = np.diff(kinetic + potential) - work + damping
     obstacles[held] = (change + impacts)[held]
+    if m.friction_impulse.size and not hasattr(m.method, "theta"):
+        # sliding velocities between kept states, and at impacts, are not those of the ends: what is lost is known
+        friction = obstacles - change - impacts
     created = _created(m, change - obstacles, kinetic + np.abs(potential))
     summed = (_summed(x) for x in (work, damping, obstacles, impacts, friction))
     return Energy(m.t, kinetic, potential, *summed, created)  # type: ignore[call-arg]

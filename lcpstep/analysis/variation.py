@@ -46,12 +46,15 @@ def factors(run: Trajectory) -> list[Array]:
 
     Raises
     ------
-    LcpStepError   the run ended early, or a scene has more than one contact
+    LcpStepError   the run ended early, or a scene has more than one contact, or friction
     """
     if run.scene.n_c > 1:
         raise LcpStepError(
             f"scene: saltation matrices take one contact, {run.scene.name!r} has {run.scene.n_c}"
         )
+    contacts = run.scene.contacts
+    if contacts is not None and contacts.friction is not None:
+        raise LcpStepError(f"scene: saltation matrices do not treat friction, and {run.scene.name!r} has it")
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
     return _Variation(run).factors()

@@ -135,7 +135,7 @@ def closed_by_log(run: Trajectory, t: Array) -> Mask:
     closed = np.zeros((len(middle), run.scene.n_c), dtype=bool)
     log = run.impacts
     for c in np.unique(log.contact):
-        own = log[log.contact == c]
+        own = log[(log.contact == c) & (log.kind <= Kind.RELEASE)]
         since, last = np.inf, run.t[0]
         for time, kind, later in zip(own.time, own.kind, own.after, strict=True):
             if kind == Kind.ACCUMULATION:

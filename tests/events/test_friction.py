@@ -19,7 +19,9 @@ from lagrangian import (
 )
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.rough_contacts import critical_friction
-from lcpstep import EventDriven, Kind, Moreau, Status, simulate
+from lcpstep import EventDriven, Kind, LcpStepError, Moreau, Status, continued, simulate
+from lcpstep import energy as energy_balance
+from lcpstep.analysis.variation import factors
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built
 
@@ -305,6 +307,32 @@ def test_a_rod_that_lifts_off_or_stays_is_indeterminate():
         v0=[-4.0, 0.5 * math.cos(1.1) * 6.0, 6.0],
     )  # fmt: skip
     assert simulate(turning, EventDriven()).status == Status.PAINLEVE_INDETERMINATE
+
+
+# --- what is made of such runs
+
+
+def test_a_run_with_friction_goes_on_from_its_end():
+    scene = scenes.coulomb_oscillator(t_end=5.0)
+    first = simulate(scene, EventDriven())
+    second = simulate(continued(first, t_end=20.0), EventDriven())
+    whole = simulate(scenes.coulomb_oscillator(), EventDriven())
+    assert np.max(np.abs(second.q[-1] - whole.q[-1])) < 1e-11
+
+
+def test_the_energy_that_friction_takes_never_comes_back():
+    for scene in (scenes.sliding_block(), scenes.slope_landing(), scenes.slider_crank()):
+        E = energy_balance(simulate(scene, EventDriven(1e-11, 1e-11)))
+        assert np.min(np.diff(E.friction)) > -1e-12
+        assert len(E.created) == 0
+    E = energy_balance(simulate(scenes.sliding_block(), EventDriven()))
+    assert abs(E.friction[-1] - 0.5) < 1e-12
+
+
+def test_saltation_matrices_refuse_friction():
+    run = simulate(scenes.sliding_block(), EventDriven(), keep="impacts")
+    with pytest.raises(LcpStepError, match="friction"):
+        factors(run)
 
 
 PROGRAM = """
