@@ -1,19 +1,14 @@
-"""Which run a run is held against: another method, more accurate, or where there is none another step.
+"""Which run a run is held against: another method, more accurate.
 
     run                          companion                                          error of the run
-    Moreau                       EventDriven, else Located of order 4               the distance
-    Moreau, friction             Moreau at half the step (Richardson)               1.6 (2) times the distance
-    Moreau by a tolerance        the same, at a tenth of the tolerance              the distance
-    Located                      EventDriven, else Located of another order         the distance
+    Moreau, Located              EventDriven                                        the distance
     EventDriven                  Located "exact" where the motion has that form     the distance
     EventDriven, else            a far smaller tolerance; and `Located` looks       the distance
                                  whether it sees the same events
 
 The distance is the error of the run as far as the companion's own error is smaller. Moreau's smooth steps are those
 of `Located` of order 2, which is no companion for that reason; and a tolerance that is just a little smaller is none,
-since something else keeps the steps of `EventDriven` short where it is loose. For two steps (L. F. Richardson, Phil.
-Trans. R. Soc. A 210 (1911) 307) the error is twice the distance at order one, which impacts leave, and 4/3 at order
-two, of theta = 1/2 between them: in the middle, the bar is right within 1.25 for both.
+since something else keeps the steps of `EventDriven` short where it is loose.
 """
 
 from __future__ import annotations
@@ -35,22 +30,17 @@ from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 BEST = EventDriven(1e-13, 1e-13)
-TIGHTER = 0.1  # tolerance of a companion by the same method
 FAR = 0.03  # the same of event-driven runs that are tighter than usual
-BOTH_ORDERS = 1.6  # between 2 / (2 - 1) and 4 / (4 - 1)
 PIECES = 4.0  # of order 4 in a step of the event-driven run
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 
 @dataclass(frozen=True)
 class Companion:
-    """A method to hold a run against; the run's error is `factor` times the distance, or unknown for None.
-
-    One with the factor None only says whether the same events are seen.
-    """
+    """A method to hold a run against; `measures`: its distance is the error, or it only looks for the same events."""
 
     method: Any
-    factor: float | None = 1.0
+    measures: bool = True
 
 
 def companions(run: Trajectory) -> Iterator[tuple[Companion, ...]]:
@@ -60,15 +50,6 @@ def companions(run: Trajectory) -> Iterator[tuple[Companion, ...]]:
         yield from _of_event_driven(method, scene, run)
         return
     yield (Companion(BEST),)
-    if isinstance(method, Located):
-        yield (Companion(Located(method.h, 2 if method.order == 4 else 4)),)
-        return
-    yield (Companion(Located(method.h, 4)),)
-    if method.tolerance is None:
-        factor = BOTH_ORDERS if method.theta == 0.5 else 2.0
-        yield (Companion(replace(method, h=0.5 * method.h), factor),)
-    else:
-        yield (Companion(replace(method, tolerance=TIGHTER * method.tolerance)),)
 
 
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
@@ -80,7 +61,7 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
         pass
     rtol, atol = (max(LEAST_TOLERANCE, min(BEST.rtol, x * FAR)) for x in (method.rtol, method.atol))
     order = 4 if scene.n_j == 0 else 2
-    yield Companion(EventDriven(rtol, atol)), Companion(Located(step / PIECES, order), None)
+    yield Companion(EventDriven(rtol, atol)), Companion(Located(step / PIECES, order), measures=False)
 
 
 def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> Trajectory | None:

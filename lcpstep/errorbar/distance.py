@@ -98,17 +98,14 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
 
 
 def distance(
-    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, windows: Array, around: float,
-    factor: float,
+    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, windows: Array, around: float
 ) -> Distance:  # fmt: skip
-    """Distances of two runs times a factor; the largest of velocities without windows and what is `around` them."""
+    """Distances of two runs; the largest of velocities without windows and what is `around` them."""
     n, n_q = len(t), runs[0].scene.n_q
     times = np.concatenate([t, (t[:-1, None] + np.diff(t)[:, None] * GAUSS).ravel() if every else t[:0]])
     one, other = (at(x, times) for x in runs)
     energies = [energy(m, times, *x) for x in (one, other)]
-    apart = factor * np.abs(
-        np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]])
-    )
+    apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
     far, fast = (np.max(np.abs(x), axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
     struck = _between(windows, around, times)[:, None]

@@ -75,7 +75,7 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
 
 def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit."""
-    companion, other = found[0]
+    other = found[0][1]
     until, reason = _reached(run), ""
     for c, x in found:
         if _reached(x) < until:
@@ -92,8 +92,7 @@ def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf)
     t = looks(run, other, every, min(limit, until - around if reason else until))
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
-    factor = companion.factor or 1.0
-    apart = distance(m, (run, other), every, t, logs[0].windows, around, factor)
+    apart = distance(m, (run, other), every, t, logs[0].windows, around)
     texts = tuple(in_words(c.method) for c, _ in found)
     horizon = _lost(t, apart) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
@@ -103,21 +102,17 @@ def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf)
         Bar(b.largest[:n], b.integral[:n], b.unit) for b in (apart.position, apart.velocity, apart.energy)
     )
     known = float(t[n - 1]) if reason or math.isfinite(limit) else until
-    times, impulses = _of_impacts(run, other, logs[0].pairs, factor, known)
+    times, impulses = _of_impacts(run, logs[0].pairs, known)
     return ErrorBar(t[:n], position, velocity, energy, times, impulses, known, reason, horizon, texts)
 
 
-def _of_impacts(
-    run: Trajectory, other: Trajectory, pairs: Pairs, factor: float, until: float
-) -> tuple[Array, Array]:
+def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Array]:
     """Errors of times and impulses, one for each row of the log."""
     times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))
     known = ((pairs.stop <= until) & ~pairs.weak)[pairs.of_row]
     rows, pair = pairs.rows[known], pairs.of_row[known]
-    # two runs that put impacts at the ends of their steps may put them at the same time
-    unseen = 0.25 * resolved(run) if isinstance(other.method, Moreau) else 0.0
-    times[rows] = factor * pairs.time[pair] + ROUNDING * np.max(np.abs(run.t)) + unseen
-    impulses[rows] = factor * pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
+    times[rows] = pairs.time[pair] + ROUNDING * np.max(np.abs(run.t))
+    impulses[rows] = pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
     return times, impulses
 
 
