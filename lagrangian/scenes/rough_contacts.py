@@ -54,6 +54,7 @@ def woodpecker(mu: float = 0.3, g: float = 9.81, t_end: float = 1.0) -> Scene:
         t_span=(0.0, t_end),
         parameters={"mu": mu, "g": g},
         name="woodpecker",
+        coordinates=["height of the sleeve [m]", "angle of the sleeve [rad]", "angle of the bird [rad]"],
     )
 
 
@@ -105,6 +106,7 @@ def falling_rod(
         p=[0.5, g],
         parameters={"mu": mu, "angle": angle, "v0": v0, "g": g},
         name="falling-rod",
+        coordinates=["x [m]", "y [m]", "angle [rad]"],
     )
 
 
