@@ -1,9 +1,9 @@
 """What a run is held against: two motions by independent methods, as far as they agree.
 
 The event-driven run at 1e-13, and `Located` in exact pieces, or of order 4 (2 with joints) at a small part of the
-step; with dry friction, which `Moreau` alone takes, two of its runs at a small part of the step, theta = 1/2 and 1. A
-run is held against the one of the two that its bar does not come from; where their distance is not small beside the
-error and the bar, the truth is not known.
+step; with dry friction, where bars come from the event-driven run, two runs of `Moreau` at a small part of the step,
+theta = 1/2 and 1. A run is held against the one of the two that its bar does not come from; where their distance is
+not small beside the error and the bar, the truth is not known.
 """
 
 from __future__ import annotations
