@@ -59,12 +59,6 @@ class Comparison:
     l1_v: float
     first_impacts: Array
 
-    def agree_until(self, distance: float) -> float:
-        """Time from which on the positions have been further apart than `distance` [s]."""
-        apart = np.flatnonzero(np.max(np.abs(self.difference), axis=1) > distance)
-        t = self.fast.trajectory.t
-        return float(t[apart[0]] if len(apart) else t[-1])
-
 
 def compare(
     scene: Scene, method: Method, reference: Method, progress: Callable[[float], None] | None = None

@@ -17,3 +17,10 @@ def pytest_configure(config):
                 raise pytest.UsageError(
                     f"{name} has changed since it was built: python setup.py build_ext --inplace"
                 )
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty folder to work in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path

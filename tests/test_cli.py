@@ -8,13 +8,8 @@ import pytest
 from lagrangian import scenes
 from lagrangian.scenes import SCENES
 from lcpstep import EventDriven, Located, Moreau, cli, load, simulate
-from lcpstep.cli import main
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
-
-
-def run(capsys, *arguments):
-    status = main([str(x) for x in arguments])
-    return status, *capsys.readouterr()
+from tests.commands import run
 
 
 def test_scenes_are_listed_with_one_line_each(capsys):

@@ -3,19 +3,8 @@
 import numpy as np
 import pytest
 
-from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def run(capsys, *arguments):
-    status = main([str(x) for x in arguments])
-    return status, *capsys.readouterr()
+from tests.commands import run
 
 
 def test_a_new_scene_runs_as_it_stands_by_every_method(folder, capsys):

@@ -5,9 +5,9 @@ import pytest
 import xarray
 
 from lcpstep import UnknownName, load
-from lcpstep.cli import main
 from lcpstep.cli.common import DONE, FAILED, USAGE
 from lcpstep.parameters import ParameterStudy
+from tests.commands import run
 
 TEXT = """
 scene = "bouncing-ball"
@@ -27,17 +27,6 @@ h0 = { from = 0.25, to = 1.0, points = 4 }
 measures = ["impacts", "strongest", "q_end"]
 """
 FILES = 'file = "out.nc"\ntable = "out.csv"\npicture = "out.png"\nruns = "runs"\n'
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def run(capsys, *arguments):
-    status = main([str(x) for x in arguments])
-    return status, *capsys.readouterr()
 
 
 def test_a_study_is_run_over_all_combinations_and_its_result_carries_it(folder, capsys):

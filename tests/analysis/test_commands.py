@@ -6,15 +6,11 @@ import re
 import numpy as np
 import pytest
 
-from lcpstep.cli import lyapunov, main
+from lcpstep.cli import lyapunov
 from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
+from tests.commands import run
 
 xarray = pytest.importorskip("xarray")
-
-
-def run(capsys, *arguments):
-    status = main([str(x) for x in arguments])
-    return status, *capsys.readouterr()
 
 
 def test_attractor_classifies_saves_and_compares(capsys, tmp_path):

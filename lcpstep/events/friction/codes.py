@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from lcpstep.trajectory import Kind, Status
+from lcpstep.trajectory import Kind
 
 # Mode of a contact. One that leans does not slide either, but has all the friction that it can: another one, which
 # sticks, keeps it from sliding
 OPEN, STICKS, SLIDES, LEANS = range(4)
 BEGIN, MOVE, JUMP, DECIDE, OBEY = range(5)  # what comes next
-NO_IMPULSES, NO_FORCES = -2, -3  # no impulses, or no forces, of the contacts that would do
-STATUS = {NO_IMPULSES: Status.LCP_FAILED, NO_FORCES: Status.LCP_FAILED}
 IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE = (int(kind) for kind in Kind)

@@ -69,8 +69,7 @@ def measure_velocities(s: Rubbing, v: Doubles) -> None:
     for i in range(s.n_r):
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
     for c in range(s.n_c):
-        s.noise[c] = NOISE * size_of(s, s.n_j + c, v)
-        s.terms[c] = max(s.terms[c], s.noise[c])
+        s.terms[c] = max(s.terms[c], NOISE * size_of(s, s.n_j + c, v))
 
 
 def size_of(s: Rubbing, i: int, v: Doubles) -> float:

@@ -6,7 +6,7 @@ from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.pointers cimport abs, after, max, min
 
 cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
 cdef double RESOLVED, OFF
@@ -21,5 +21,4 @@ cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil
 cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
-cdef double min_of(double a, double b) noexcept nogil
 cdef bint finish_step(Rubbing s, double tau) noexcept nogil

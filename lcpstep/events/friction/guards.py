@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, finite, largest, product
-    from lcpstep.pointers import Doubles, abs, after, max
+    from lcpstep.pointers import Doubles, abs, after, max, min
 
 SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
@@ -151,7 +151,7 @@ def arm(s: Rubbing) -> None:
 def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
     """Time from now at which guard g acts: secants on steps of that length, of which the last one is left."""
     t0 = s.clock.t0
-    tau = min_of(s.found * h, longest)
+    tau = min(s.found * h, longest)
     if tau <= 0.0:
         return 0.0
     s.step(t0, tau)
@@ -161,14 +161,9 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         change = -s.value[g] / s.slope if s.slope < 0.0 and s.armed[g] == 1 else 0.0
         if abs(change) <= 2.0 * RESOLUTION * (abs(t0) + tau) or abs(change) > 1e-3 * h:
             break
-        tau = min_of(max(tau + change, 0.0), longest)
+        tau = min(max(tau + change, 0.0), longest)
         s.step(t0, tau)
     return tau
-
-
-def min_of(a: float, b: float) -> float:
-    """The smaller one."""
-    return a if a < b else b
 
 
 def finish_step(s: Rubbing, tau: float) -> bool:

@@ -2,9 +2,10 @@ cimport cython
 from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure_velocities, size_of
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
 from lcpstep.events.friction.keep cimport log, put_on_account
-from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of, solve
+from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy, product

@@ -13,16 +13,18 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, NO_IMPULSES, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, OPEN, SLIDES, STICKS
+from lcpstep.events.general.ends import NO_IMPULSES
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import log, put_on_account
-    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
+    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, product
@@ -78,7 +80,7 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     for f in range(n_f):
         c = s.problem.ids[s.problem.carrier[f]]
         s.problem.rate[n_a + f] = (1.0 + s.tangential[c]) * s.velocity[s.n_j + s.n_c + c]
-    if not solve(s, n_a, n_f):
+    if not solve_contacts(s.problem, n_a, n_f):
         return False
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])

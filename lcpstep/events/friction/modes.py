@@ -16,7 +16,6 @@ import cython
 from lcpstep.events.friction.codes import (
     CLOSED,
     LEANS,
-    NO_FORCES,
     OPEN,
     RELEASE,
     REVERSE,
@@ -25,13 +24,15 @@ from lcpstep.events.friction.codes import (
     STICK_TANGENT,
     STICKS,
 )
+from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
-    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of, solve
+    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, largest, product
@@ -50,8 +51,6 @@ def decide(s: Rubbing) -> int:
     copy(s.a, s.a_free, s.n_q)
     hold_joints(s)
     constrain(s, s.a, s.bias)
-    for c in range(s.n_c):
-        s.curve[c] = product(s.R, s.a, s.n_j + c, s.n_q) + s.bias[s.n_j + c]
     n_a, n_f = list_unknowns(s)
     if n_a == 0:
         return DONE
@@ -78,7 +77,7 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
         s.culprit = s.problem.ids[jams]
         if n_a == 1:
             return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
-    if not solve(s, n_a, n_f):
+    if not solve_contacts(s.problem, n_a, n_f):
         return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
     return PAINLEVE_INDETERMINATE if jams >= 0 else DONE
 

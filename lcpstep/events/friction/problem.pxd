@@ -1,5 +1,4 @@
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.vectors cimport copy
 
 cdef Py_ssize_t OPEN
@@ -9,4 +8,3 @@ cdef void eliminate_joints(Rubbing s) noexcept nogil
 cdef Py_ssize_t row_of(Rubbing s, Py_ssize_t a, Py_ssize_t n_a) noexcept nogil
 cdef (Py_ssize_t, Py_ssize_t) list_unknowns(Rubbing s) noexcept nogil
 cdef void fill(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
-cdef bint solve(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil

@@ -12,7 +12,6 @@ from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.vectors import copy
 
 DEPENDENT = 1e-12  # relative: joints whose pivot is smaller say what others have said
@@ -64,8 +63,3 @@ def fill(s: Rubbing, n_a: int, n_f: int) -> None:
                 c = s.problem.ids[b]
                 share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
             s.problem.mobility[a * m + b] = s.S[i * r + k] - share
-
-
-def solve(s: Rubbing, n_a: int, n_f: int) -> bool:
-    """Impulses or forces of the listed unknowns, from `rate` of the problem; False where none was found."""
-    return solve_contacts(s.problem, n_a, n_f)

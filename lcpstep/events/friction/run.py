@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events import running
-from lcpstep.events.friction.codes import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.events.friction.loop import keep_state, run
 from lcpstep.events.friction.smooth import Smooth
+from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.events.general.run import FIRST_STEP, MOST_ROWS, Moved, quadrature
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.clock import Clock
@@ -26,8 +26,9 @@ Array = NDArray[np.float64]
 def start(scene: Scene, method: Any) -> Smooth:
     """The state at the start of the span; `method` has rtol and atol."""
     contacts, joints, tangents = models(scene)
-    friction: Any = scene.contacts and scene.contacts.friction
-    tangential = friction.restitution if friction.restitution is not None else scene.contacts.restitution  # type: ignore[union-attr]
+    given: Any = scene.contacts
+    friction = given.friction
+    tangential = given.restitution if friction.restitution is None else friction.restitution
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = Smooth(

@@ -57,8 +57,6 @@ cdef class Rubbing(RungeKutta):
     cdef double* new_direction
     cdef double* terms
     cdef double* before
-    cdef double* curve
-    cdef double* noise
     cdef double* owed
     cdef Py_ssize_t* mode
     cdef Py_ssize_t* was_mode
