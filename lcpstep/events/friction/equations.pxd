@@ -6,6 +6,8 @@ from lcpstep.pointers cimport abs, after, max
 
 cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef void measure_rows(Rubbing s, double t, double* y) noexcept nogil
+cdef void measure_rates(Rubbing s, double t, double* y) noexcept nogil
+cdef void respond(Rubbing s) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_velocities(Rubbing s, double* v) noexcept nogil

@@ -25,7 +25,16 @@ def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
 
 def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
     """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
-    n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
+    if not s.measured or s.moving:
+        measure_rates(s, t, y)
+    if not s.measured:
+        respond(s)
+        s.measured = s.constant
+
+
+def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
+    """Rows with their rates and biases."""
+    n, n_c, n_j = s.n_q, s.n_c, s.n_j
     q, v, side = y, after(y, n), s.clock.inside(t)
     if n_j > 0:
         bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
@@ -35,6 +44,11 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
     k = n_j + n_c
     bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
     gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
+
+
+def respond(s: Rubbing) -> None:
+    """The Delassus matrix of the rows, and what an impulse on each of them does."""
+    n, r = s.n_q, s.n_r
     for i in range(r):
         row = after(s.MR, i * n)
         copy(row, after(s.R, i * n), n)

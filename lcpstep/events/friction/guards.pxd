@@ -12,6 +12,7 @@ cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
 cdef double RESOLVED, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
+cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(found=bint)
 cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil

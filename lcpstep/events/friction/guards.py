@@ -36,8 +36,13 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
         return False
     if s.n_held == 0:
         measure_rows(s, t, y)
-    measure_gaps(s, t, y)
     list_multipliers(s)
+    return read(s, t, y)
+
+
+def read(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The same where rows and multipliers are known."""
+    measure_gaps(s, t, y)
     v, total = after(y, s.n_q), 0.0
     for c in range(s.n_c):
         i, k = s.n_j + c, GUARDS * c

@@ -149,7 +149,7 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
         return False
     if s.n_held > 0:
         measure_rows(s, t, y)
-        if not hold_again(s):
+        if not s.constant and not hold_again(s):
             return False
         constrain(s, a, s.bias)
     copy(dy, after(y, n), n)
@@ -172,12 +172,12 @@ def project(s: Rubbing, t: float) -> None:
     n = s.n_q
     for level in range(3):  # positions twice, velocities once
         x = s.q if level < 2 else s.v
-        if not free_motion(s, t, s.y, s.a_free):
+        if not s.constant and not free_motion(s, t, s.y, s.a_free):
             return
         measure_rows(s, t, s.y)
         if level < 2:
             measure_gaps(s, t, s.y)
-        if not hold_again(s):
+        if not s.constant and not hold_again(s):
             return
         for m in range(s.n_held):
             i = s.held[m]
