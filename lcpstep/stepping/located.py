@@ -92,9 +92,7 @@ class Located:
 
         return LocatedRun(self, scene, kept).finish(progress)
 
-    def run_with_friction(
-        self, scene: Scene, kept: Kept, progress: Callable[[float], None]
-    ) -> Trajectory:
+    def run_with_friction(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene with friction."""
         from lcpstep.model import require
 

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport gap_size, measure_gaps, measure_rows, size_of
+from lcpstep.events.friction.equations cimport gap_size, measure_gaps, measure_rates, size_of
 from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
 from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing

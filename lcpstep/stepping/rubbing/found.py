@@ -13,14 +13,14 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import measure_rows
+    from lcpstep.events.friction.equations import measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.held import list_multipliers
-    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.events.friction.state import GUARDS, NOISE
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.pointers import Doubles, abs, after, min
     from lcpstep.stepping.rubbing.strides import Strides
 
 SECANTS = 60
@@ -34,7 +34,21 @@ def note_base(s: Strides, t: float) -> bool:
     s.evaluations += 1
     list_multipliers(s)
     copy(s.leaving, s.multiplier, s.n_r)
-    return note(s, t, s.y, s.K, s.begin_value, s.begin_slope)
+    if not note(s, t, s.y, s.K, s.begin_value, s.begin_slope):
+        return False
+    widen_bands(s)
+    return True
+
+
+def widen_bands(s: Strides) -> None:
+    """Sliding velocities that rounding of the forces makes within a step have no sign: slip begins with none."""
+    for c in range(s.n_c):
+        if s.mode[c] == SLIDES:
+            i, g, size = s.n_j + s.n_c + c, GUARDS * c + 1, 0.0
+            for j in range(s.n_q):
+                size += abs(s.R[i * s.n_q + j] * s.a_free[j])
+            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * size)
+            s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
 
 
 def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
@@ -56,7 +70,7 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
 def read_guards(s: Strides, t: float, y: Doubles) -> bool:
     """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
     if s.n_held == 0:
-        measure_rows(s, t, y)
+        measure_rates(s, t, y)
     return read(s, t, y)
 
 
@@ -98,7 +112,9 @@ def curve(s: Strides, g: int, h: float) -> float:
     """Bernstein coefficients of guard g over the step, of degree three; the least of them."""
     b, c = s.scan.c, g // GUARDS
     b[0], b[3] = s.begin_value[g], s.end_value[g]
-    moves = s.mode[c] == OPEN if g % GUARDS == 0 else s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
+    moves = (
+        s.mode[c] == OPEN if g % GUARDS == 0 else s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
+    )
     if moves and s.order == 4:
         b[1] = b[0] + h * s.begin_slope[g] / 3.0
         b[2] = b[3] - h * s.end_slope[g] / 3.0

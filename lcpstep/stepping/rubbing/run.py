@@ -8,14 +8,15 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.events.friction.run import FrictionRun, start
-from lcpstep.recording import Kept
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
 
-ROUNDING = 1e-12  # absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
+ROUNDING = (
+    1e-12  # absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
+)
 
 
 class RubbingRun(FrictionRun):

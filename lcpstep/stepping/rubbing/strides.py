@@ -6,8 +6,8 @@
 Each ends with the acceleration where it arrives, with which the next one begins. Impulses of contacts are integrated
 along with the motion, by the same weights. Between its ends a step is the cubic that has their values and slopes.
 
-Sources: W. Swope et al., J. Chem. Phys. 76 (1982) 637; E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential
-Equations I (Springer 1993), sections II.1 and II.6.
+Sources: W. Swope et al., J. Chem. Phys. 76 (1982) 637; E. Hairer, S. Norsett, G. Wanner, Solving Ordinary
+Differential Equations I (Springer 1993), sections II.1 and II.6.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.events.friction.smooth import Smooth
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.kernels.vectors import add, clear, copy, finite
-    from lcpstep.pointers import Doubles, after, min
+    from lcpstep.pointers import after, min
 
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
 
