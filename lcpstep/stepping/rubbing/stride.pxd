@@ -21,6 +21,7 @@ cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
 cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
+cdef double keep_between(Strides s, Record record, double t, double tau) noexcept nogil
 cdef void press(Strides s, double a, double b) noexcept nogil
 cdef void arrive_with(Strides s, double t) noexcept nogil
 cdef void end_step(Strides s, Record record, Tally tally) noexcept nogil

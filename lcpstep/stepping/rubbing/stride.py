@@ -102,11 +102,26 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    if tau > 0.0:
+        pressed = keep_between(s, record, t, tau)
+        press(s, pressed, 1.0)
+        copy(s.y, s.y_new, s.n)
+    s.clock.start_at(t)
+    if tau > 0.0 and s.n_held > 0:
+        project(s, t)
+    while record.wants(t, t >= s.t_end):  # the end of the span
+        keep(s, record, record.times[record.next_time], s.y)
+        record.next_time += 1
+
+
+def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
+    """Keep the states asked for before the end t of the step, and its dense output; up to where impulses are summed."""
     pressed = 0.0
-    if tau > 0.0 and (record.dense_size > 0 or record.wants(t, t >= s.t_end)):
+    s.length = tau
+    if record.dense_size > 0 or record.wants(t, False):
         s.complete(s.clock.t0, tau)
-    while record.wants(t, t >= s.t_end):
-        place = (record.times[record.next_time] - s.clock.t0) / tau if tau > 0.0 else 0.0
+    while record.wants(t, False):
+        place = (record.times[record.next_time] - s.clock.t0) / tau
         copy(s.seen, s.y, s.n)
         if place > 0.0:
             press(s, pressed, place)
@@ -114,14 +129,8 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
             pressed = place
         keep(s, record, record.times[record.next_time], s.seen)
         record.next_time += 1
-    if tau > 0.0:
-        s.length = tau
-        press(s, pressed, 1.0)
-        store_dense(s, record)
-        copy(s.y, s.y_new, s.n)
-    s.clock.start_at(t)
-    if tau > 0.0 and s.n_held > 0:
-        project(s, t)
+    store_dense(s, record)
+    return pressed
 
 
 def press(s: Strides, a: float, b: float) -> None:
