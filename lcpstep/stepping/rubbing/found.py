@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, min
+    from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.rubbing.strides import Strides
 
 SECANTS = 60
@@ -41,14 +41,29 @@ def note_base(s: Strides, t: float) -> bool:
 
 
 def widen_bands(s: Strides) -> None:
-    """Sliding velocities that rounding of the forces makes within a step have no sign: slip begins with none."""
+    """Gaps and sliding velocities that rounding of the forces makes within a step have no sign.
+
+    A contact that opens, or begins to slide, does so with none, for its force has come to zero or to the edge of its
+    cone.
+    """
     for c in range(s.n_c):
-        if s.mode[c] == SLIDES:
-            i, g, size = s.n_j + s.n_c + c, GUARDS * c + 1, 0.0
-            for j in range(s.n_q):
-                size += abs(s.R[i * s.n_q + j] * s.a_free[j])
-            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * size)
-            s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+        g, i = GUARDS * c, s.n_j + c
+        if s.mode[c] == OPEN:
+            s.band[g] = max(s.band[g], s.h * NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i)))
+        elif s.mode[c] == SLIDES:
+            g, i = g + 1, i + s.n_c
+            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i))
+        else:
+            continue
+        s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+
+
+def pushed(s: Strides, i: int) -> float:
+    """Size of the terms of the acceleration of row i without contact forces, their signs left aside."""
+    size = abs(s.bias[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * s.a_free[j])
+    return size
 
 
 def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
