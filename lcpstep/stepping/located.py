@@ -42,7 +42,7 @@ class Located:
     Raises
     ------
     ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
-    LcpStepError   when it runs: the scene has friction (with order "exact", or a tolerance), joints without friction
+    LcpStepError   when it runs: the scene has friction (with order "exact"), joints without friction
         (with order 4, "exact", or a tolerance), or, with order "exact", not the linear motion under constant and
         harmonic forces that it takes
 
@@ -102,9 +102,8 @@ class Located:
         """The motion of a scene with friction."""
         from lcpstep.model import require
 
-        if self.order == "exact" or self.tolerance is not None:
-            variant = "a tolerance" if self.tolerance is not None else "order='exact'"
-            require(scene, f"Located with {variant}", joints=True, friction=False)
+        if self.order == "exact":
+            require(scene, "Located with order='exact'", joints=True, friction=False)
         from lcpstep.stepping.rubbing.run import RubbingRun
 
         return RubbingRun(self, scene, kept).finish(progress)

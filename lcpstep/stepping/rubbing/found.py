@@ -93,11 +93,16 @@ def note_arrival(s: Strides, t: float, h: float) -> bool:
     """Guards at the end of the step just made, and of the forces between with order four."""
     if not note(s, t + h, s.y_new, s.arrival, s.end_value, s.end_slope):
         return False
+    note_middle(s, t, h, s.middle_value)
+    return True
+
+
+def note_middle(s: Strides, t: float, h: float, value: Doubles) -> None:
+    """With order four, guards of the forces between the ends of the step just made."""
     if s.order == 4 and s.n_held > 0:
         copy(s.multiplier, s.middle, s.n_r)
         read(s, t + 0.5 * h, s.y_stage)
-        copy(s.middle_value, s.value, GUARDS * s.n_c)
-    return True
+        copy(value, s.value, GUARDS * s.n_c)
 
 
 def first_event(s: Strides, h: float) -> int:
@@ -123,13 +128,18 @@ def arm(s: Strides) -> None:
             s.armed[g] = 1
 
 
+def is_motion(s: Strides, g: int) -> bool:
+    """Whether guard g is a gap or a sliding velocity, rather than one of forces."""
+    c = g // GUARDS
+    if g % GUARDS == 0:
+        return s.mode[c] == OPEN
+    return s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
+
+
 def curve(s: Strides, g: int, h: float) -> float:
     """Bernstein coefficients of guard g over the step, of degree three; the least of them."""
-    b, c = s.scan.c, g // GUARDS
+    b, moves = s.scan.c, is_motion(s, g)
     b[0], b[3] = s.begin_value[g], s.end_value[g]
-    moves = (
-        s.mode[c] == OPEN if g % GUARDS == 0 else s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
-    )
     if moves and s.order == 4:
         b[1] = b[0] + h * s.begin_slope[g] / 3.0
         b[2] = b[3] - h * s.end_slope[g] / 3.0
