@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.judge.describe import Description
 from lagrangian import Coulomb, LinearContacts
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.analysis.errors import Difference, energies
+from lcpstep.accuracy.errors import Difference, energies
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errorbar.companions import Companion
 from lcpstep.errorbar.estimate import against
@@ -92,7 +92,7 @@ def truth_of_friction(scene: Any, h: float) -> Truth | None:
 
 
 def errors(run: Trajectory, reference: Trajectory, until: float) -> dict[str, float]:
-    """Errors of a run up to a time: those of `lcpstep.analysis.errors`, and of impacts that have partners."""
+    """Errors of a run up to a time: those of `lcpstep.accuracy.errors`, and of impacts that have partners."""
     apart = Difference(run, reference, t_end=until)
     seen = against(run, True, [(Companion(reference.method), reference)], until)
     values = (
