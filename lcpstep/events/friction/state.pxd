@@ -3,10 +3,12 @@ from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
 from lcpstep.kernels.clock cimport Clock, RESOLUTION
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport after, indices_after
 
-cdef Py_ssize_t GUARDS, BEGIN
+cdef Py_ssize_t GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
 
 
@@ -21,6 +23,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
+    cdef bint constant, moving, measured
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -70,3 +73,4 @@ cdef class Rubbing(RungeKutta):
     cdef double* band
     cdef double* samples
     cdef Py_ssize_t* armed
+    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -12,6 +12,7 @@ import cython
 import numpy as np
 
 from lcpstep.events.friction.codes import BEGIN
+from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
@@ -19,7 +20,9 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION, Clock
     from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
     from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import after, indices_after
 
 GUARDS = (
@@ -33,6 +36,7 @@ class Rubbing(RungeKutta):
 
     contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
+    constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
@@ -77,6 +81,8 @@ class Rubbing(RungeKutta):
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
+        self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
+        self.moving, self.measured = contacts.motion.given or joints.motion.given, False
         self.scan, self.problem = Scan(), ContactProblem(np.array(mu), True, r, False)
         self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
         self.rule = np.array([nodes, weights])
@@ -134,6 +140,10 @@ class Rubbing(RungeKutta):
         self.samples = after(self.band, GUARDS * n_c)
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
+
+    def proceed(self, record: Record, tally: Tally) -> int:
+        """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
+        return NOT_FINITE
 
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
