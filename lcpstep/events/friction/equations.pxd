@@ -4,8 +4,11 @@ from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max
 
+cdef Py_ssize_t LEANS, SLIDES, STICKS
+
 cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
-cdef void measure_rows(Rubbing s, double t, double* y) noexcept nogil
+cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil
+cdef bint measure_friction(Rubbing s, double t, double* q, double* v) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_velocities(Rubbing s, double* v) noexcept nogil

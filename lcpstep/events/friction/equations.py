@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
+
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
@@ -23,8 +25,11 @@ def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
     return divide_by_mass(s.contacts, side, q, v, s.M, s.work, a)
 
 
-def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
-    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
+def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`.
+
+    False where a coefficient of friction is none.
+    """
     n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
     q, v, side = y, after(y, n), s.clock.inside(t)
     if n_j > 0:
@@ -41,13 +46,29 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
         inverse_mass(s.contacts, s.M, s.work, row)
         for j in range(i + 1):
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
+    return not s.coefficients.varies or measure_friction(s, side, q, v)
+
+
+def measure_friction(s: Rubbing, t: float, q: Doubles, v: Doubles) -> bool:
+    """Coefficients of friction at the sliding velocities, which on the way to zero do not change their sign."""
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        s.slip[c] = product(s.R, v, i, s.n_q) + s.rate[i]
+        if (
+            s.mode[c] == STICKS
+            or s.mode[c] == LEANS
+            or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0)
+        ):
+            s.slip[c] = 0.0
+    return s.coefficients.measure(t, q, s.slip)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
     if not free_motion(s, t, y, s.a_free):
         return False
-    measure_rows(s, t, y)
+    if not measure_rows(s, t, y):
+        return False
     measure_gaps(s, t, y)
     measure_velocities(s, after(y, s.n_q))
     total = 0.0

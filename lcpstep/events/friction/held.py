@@ -32,7 +32,7 @@ def pull(s: Rubbing, i: int) -> float:
     """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
     c = i - s.n_j
     if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
-        return -s.direction[c] * s.mu[c]
+        return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
     return 0.0
 
 
@@ -148,8 +148,7 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if not free_motion(s, t, y, a):
         return False
     if s.n_held > 0:
-        measure_rows(s, t, y)
-        if not hold_again(s):
+        if not measure_rows(s, t, y) or not hold_again(s):
             return False
         constrain(s, a, s.bias)
     copy(dy, after(y, n), n)
@@ -174,7 +173,8 @@ def project(s: Rubbing, t: float) -> None:
         x = s.q if level < 2 else s.v
         if not free_motion(s, t, s.y, s.a_free):
             return
-        measure_rows(s, t, s.y)
+        if not measure_rows(s, t, s.y):
+            return
         if level < 2:
             measure_gaps(s, t, s.y)
         if not hold_again(s):
