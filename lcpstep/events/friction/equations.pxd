@@ -5,10 +5,13 @@ from lcpstep.kernels.linear cimport positive_definite
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max
 
+cdef Py_ssize_t LEANS, SLIDES, STICKS
+
 cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
-cdef void measure_rows(Rubbing s, double t, double* y) noexcept nogil
+cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_rates(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_biases(Rubbing s, double t, double* y) noexcept nogil
+cdef bint measure_friction(Rubbing s, double t, double* y) noexcept nogil
 cdef bint renew_mass(Rubbing s, double t, double* y) noexcept nogil
 cdef void respond(Rubbing s) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
