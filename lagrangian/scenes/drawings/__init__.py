@@ -16,6 +16,7 @@ from lagrangian.scenes.drawings.blocks import (
     feet,
     on_belt,
     on_slope,
+    on_swaying,
     rocking,
     sprung,
     stacked,
@@ -82,6 +83,12 @@ MAKERS: dict[str, Callable[[Any, Any], Drawing]] = {
     "elastic-chain": lambda s, p: partial(chain, distance=p["distance"]),
     "rocking-block": lambda s, p: partial(rocking, b=p["b"], h=p["h"]),
     "coulomb-oscillator": lambda s, p: partial(on_belt, size=abs(p["x0"]) or 1.0, contacts=(0,)),
+    "mass-on-belt": lambda s, p: partial(on_swaying, p=s.p, size=1.0),
+    "mass-on-shaken-belt": lambda s, p: partial(on_swaying, p=s.p, size=1.0),
+    "superball": lambda s, p: partial(
+        wheel, radius=p["radius"], reach=abs(p["v0"]) * s.t_span[1] + p["radius"]
+    ),
+    "sliding-rocking-block": lambda s, p: partial(rocking, b=p["b"], h=p["h"]),
     "slipping-wheel": lambda s, p: partial(
         wheel, radius=p["radius"], reach=p["v0"] * s.t_span[1] + p["radius"]
     ),

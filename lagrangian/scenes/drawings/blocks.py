@@ -21,12 +21,31 @@ def sprung(t: float, q: Any, *, stop: float, size: float) -> Shapes:
     ]
 
 
-def on_belt(t: float, x: Any, *, size: float, belt: float = 0.0, contacts: tuple[int, ...] = ()) -> Shapes:
-    """A block on a spring, on a floor or a belt that runs with a speed."""
+def on_swaying(t: float, q: Any, *, p: Any, size: float) -> Shapes:
+    """A block on a spring, on a belt; p as in `mass_on_belt`."""
+    at = p[0] * t + p[1] * (math.cos(p[2] * t + p[3]) - math.cos(p[3]))
+    return on_belt(t, q, size=size, moved=at, contacts=(0,))
+
+
+def on_belt(
+    t: float,
+    x: Any,
+    *,
+    size: float,
+    belt: float = 0.0,
+    moved: float | None = None,
+    contacts: tuple[int, ...] = (),
+) -> Shapes:
+    """A block on a spring, on a floor or a belt that runs with a speed, or has moved so far."""
+    far = belt * t if moved is None else moved
     w, wall, end = 0.3 * size, -2.0 * size, 2.0 * size
     pitch = 0.5 * size
     first = math.floor(2.0 * end / pitch)
-    marks = [wall + (k * pitch + belt * t) % (first * pitch) for k in range(first)] if belt else []
+    marks = (
+        [wall + (k * pitch + far) % (first * pitch) for k in range(first)]
+        if belt or moved is not None
+        else []
+    )
     return [
         Line([(wall, w), (wall, 0.0), (end, 0.0)], fixed=True),
         *(Line([(at, 0.0), (at - 0.1 * w, -0.3 * w)], fixed=True) for at in marks),
