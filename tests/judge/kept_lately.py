@@ -40,7 +40,7 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
                 (-0.151, -422.0, 0.00764, -1.32, 143.0, 344.0),
             ),
             family="anything",
-        ),  # fmt: skip
+        ),
         ("located",),
     ),
     "left at speed while the force on another vanishes": (
@@ -55,7 +55,7 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
             restitution=(0.0, 0.98, 0.0),
             K=((0.0016, -5.4, -0.00139), (-5.4, 26100.0, 4.36), (-0.00139, 4.36, 0.00198)),
             family="corner",
-        ),  # fmt: skip
+        ),
         ("located", "located-4", "located-exact", "located-4-tolerance"),
     ),
-}
+}  # fmt: skip
