@@ -58,4 +58,15 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located", "located-4", "located-exact", "located-4-tolerance"),
     ),
+    "sliding into the apex of five walls, far from time zero": (
+        Description(
+            M=((1.15, 0.316, 0.266), (0.316, 2.54, 0.396), (0.266, 0.396, 1.8)), q0=(0.0, 0.0, 0.0),
+            v0=(-2.02, -0.304, -0.112), t_span=(0.0, 35.9921), h=0.0859, G=((0.137, -0.291, 0.947),
+            (0.198, 0.0248, 0.98), (0.151, 0.785, 0.601), (-0.109, 0.0602, 0.992), (-0.569, -0.533,
+            0.626)), offset=(0.0, 0.0, 0.0, 0.0, 0.0), restitution=(1.0, 1.0, 0.28, 0.45, 0.0),
+            C=((0.0386, 0.0, 0.0), (0.0, 0.0854, 0.0), (0.0, 0.0, 0.0606)), constant=(0.0, 0.0, -17.7),
+            family="wedge",
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
 }  # fmt: skip
