@@ -17,14 +17,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.partners import Alike
+from lcpstep.errorbar.partners import Alike, Apart
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 199, 599  # breaks besides the events
+LEAST, MOST = 199, 2999  # breaks besides the events
 GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+GRADES = 12  # times an interval after an event is halved towards it
+BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
@@ -52,14 +54,27 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
         kept = run.t[run.t <= end]
         return kept if len(kept) <= MOST else kept[np.unique(np.searchsorted(kept, wanted, side="right") - 1)]
     events = event_times(run, other)
-    middles = 0.5 * (events[1:] + events[:-1])[:: 1 + len(events) // MOST]
-    t = np.unique(np.concatenate([wanted, events, middles, run.t if few else wanted]))
+    t = np.unique(np.concatenate([wanted, events, _after(events, run), run.t if few else wanted]))
     return t[(t >= run.t[0]) & (t <= end)]
+
+
+def _after(events: Array, run: Trajectory) -> Array:
+    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
+    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // MOST], run.t[-1:]])
+    halves = 0.5 ** np.arange(1, 2 + min(GRADES, MOST // len(some)))
+    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
 
 
 def event_times(run: Trajectory, other: Trajectory) -> Array:
     """When anything happened in either run."""
     return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
+
+
+def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
+    """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
+    events = event_times(run, other)
+    short = np.flatnonzero(np.diff(events) < BRIEF * span)
+    return np.column_stack([events[short], events[short + 1]])
 
 
 def at(run: Trajectory, t: Array) -> tuple[Array, Array]:
@@ -88,13 +103,23 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
         kept = (run.t[k] > events[end]) & (run.t[k] < until)
         after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
         told = until > events[end]
-        apart = np.max(np.abs(at(run, after[told])[1] - at(other, after[told])[1]), axis=1)
         found = np.full(end.shape, math.inf)
-        found[told] = np.where(apart <= SAME * np.broadcast_to(jump, end.shape)[told], after[told], math.inf)
+        differ = moving_apart(run, other)(after[told], np.broadcast_to(jump, end.shape)[told])
+        found[told] = np.where(differ, math.inf, after[told])
         soonest = np.min(found, axis=0)
         return np.where(np.isfinite(soonest), soonest, math.nan)
 
     return again
+
+
+def moving_apart(run: Trajectory, other: Trajectory) -> Apart:
+    """Whether velocities differ at times by more than a share of jumps."""
+
+    def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
+        apart = np.abs(at(run, t)[1] - at(other, t)[1])
+        return np.asarray(np.max(apart, axis=1, initial=0.0) > SAME * jump)
+
+    return differ
 
 
 def distance(
@@ -108,6 +133,7 @@ def distance(
     apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
     far, fast = (np.max(np.abs(x), axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
+    windows = np.concatenate([windows, brief(*runs, float(t[-1] - t[0]))])
     struck = _between(windows, around, times)[:, None]
     largest = _largest(np.where(struck & (np.arange(2 * n_q + 1) >= n_q), 0.0, apart), n) + floor
     integral = _integral(t, apart) + floor * (t - t[0])[:, None]
