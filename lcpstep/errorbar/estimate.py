@@ -12,7 +12,6 @@ from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.companions import Companion, companions, followed, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks, moving_apart
 from lcpstep.errorbar.partners import Pairs, Partners, partners
-from lcpstep.kernels.model import Model
 from lcpstep.model import model
 from lcpstep.recording import Kept
 from lcpstep.stepping.moreau import Moreau
@@ -88,7 +87,8 @@ def against(
             until = _reached(x)
             reason = f"{in_words(c.method)} ends there, {x.message}"
     m = model(run.scene)
-    logs = [_matched(m, run, x, every, until, resolution) for _, x in found]
+    falls = fall(m, run)
+    logs = [_matched(run, x, every, until, resolution, falls) for _, x in found]
     for (c, _), pairs in zip(found, logs, strict=True):
         if pairs.differs < until:
             until = pairs.differs
@@ -97,7 +97,7 @@ def against(
     t = looks(run, other, every, min(limit, until - around if reason else until))
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
-    apart = distance(m, (run, other), every, t, logs[0].windows, around)
+    apart = distance(m, (run, other), every, t, logs[0].windows, around, falls)
     texts = tuple(in_words(c.method) for c, _ in found)
     horizon = _lost(t, apart) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
@@ -122,10 +122,10 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
 
 
 def _matched(
-    m: Model, run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float
+    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, falls: float
 ) -> Partners:
     """Partners of the impacts of two runs; a jump is none that is rounding of what moves, or would."""
-    still = STILL * (float(np.max(np.abs(run.v))) + fall(m, run))
+    still = STILL * (float(np.max(np.abs(run.v))) + falls)
     if not every:
         return partners(run.impacts, other.impacts, until, resolution, still)
     same, differ = alike(run, other, resolution), moving_apart(run, other)

@@ -172,7 +172,11 @@ def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pai
     """
     if apart is None or not len(pairs.time):
         return pairs, []
-    late = np.flatnonzero((pairs.time > LATE * np.median(pairs.time)) & (pairs.time > resolution))
+    late = np.flatnonzero(
+        (pairs.time > LATE * np.sort(pairs.time)[len(pairs.time) // 2]) & (pairs.time > resolution)
+    )
+    if not len(late):
+        return pairs, []
     good = np.ones(len(pairs.time), dtype=bool)
     good[late] = apart((pairs.start + 0.5 * pairs.time)[late], pairs.jump[late])
     lost, words = pairs.of(~good), "an impact without partner"
