@@ -31,11 +31,15 @@ LATE = 4.0  # times the median difference of partners' times: such partners are 
 
 
 class Suspect(NamedTuple):
-    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it."""
+    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it.
+
+    since : when the contact did something else in one of the runs, shortly before; its time where it did not [s]
+    """
 
     time: float
     jump: float
     reason: str
+    since: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,11 +155,14 @@ def partners(
         )
         i, j, differing = matched(one, other, weak, resolution)
         found, alone = _credible(Pairs.joined(one, other, i, j, weak), resolution, apart)
-        late = end - MARGIN * float(np.max(found.time, initial=resolution))
-        suspects += [
-            x._replace(reason=f"{x.reason} at contact {contact}") for x in differing + alone if x.time < late
-        ]
-        windows += [np.array([[x.time, end]]) for x in differing + alone if x.time >= late]
+        margin = MARGIN * float(np.max(found.time, initial=resolution))
+        times = np.concatenate([log["time"][log["contact"] == contact] for log in (a, b)])
+        for x in differing + alone:
+            if x.time < end - margin:
+                since = _since(x.time, times, found.stop, margin)
+                suspects.append(x._replace(reason=f"{x.reason} at contact {contact}", since=since))
+            else:
+                windows.append(np.array([[x.time, end]]))
         windows.append(_tails((a, b), contact, found.start, (one, other), end))
         pairs.append(found)
     all_pairs = Pairs(*(np.concatenate(x) for x in zip(*pairs, strict=True)))
@@ -188,6 +195,15 @@ def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pai
     return pairs.of(good), alone
 
 
+def _since(time: float, times: Array, stops: Array, margin: float) -> float:
+    """When a contact did something before an event without partner, and after its last impact that has one.
+
+    One run may rest where the other strikes once more: their velocities differ from when the first has come to rest.
+    """
+    after = float(np.max(stops[stops < time], initial=-math.inf))
+    return float(np.min(times[(times > max(after, time - margin)) & (times <= time)], initial=time))
+
+
 def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
     """The first of the events after which the motions differ, and the times from others to where they are alike."""
     suspects = sorted(suspects, key=lambda x: x.time)
@@ -195,7 +211,7 @@ def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array
     if suspects and alike is not None:
         again = alike(*(np.array([getattr(x, name) for x in suspects]) for name in ("time", "jump")))
     harmful = [x for x, time in zip(suspects, again, strict=True) if not math.isfinite(time)]
-    harmless = [(x.time, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
+    harmless = [(x.since, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
     first = harmful[0] if harmful else Suspect(math.inf, 0.0, "")
     return first, np.array(harmless).reshape(-1, 2)
 
