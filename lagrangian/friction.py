@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -150,7 +151,7 @@ class Coulomb(Pickled):
         if places and not (fixed and not callable(self.tangent)):
             size = ELSEWHERE * max(1.0, float(np.max(np.abs(q))))
             places += [q + size * np.cos(k * np.arange(1.0, len(q) + 1.0)) for k in (1.0, 2.0)]
-        parallel = np.arange(0)
+        parallel: Any = np.arange(0)
         for k, x in enumerate(places):
             found = self._parallel((t, x, v, p), normals)
             parallel = found if k == 0 else np.intersect1d(parallel, found)
@@ -162,7 +163,7 @@ class Coulomb(Pickled):
                 f"q = {checks.shown(q)}"
             )
 
-    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> Array:
+    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> Any:
         """Contacts with friction whose tangent lies along their normal."""
         N = normals(*at)
         T = self.tangents(at, len(N))

@@ -1,8 +1,7 @@
-"""The examples and the documentation run: each example draws, and a number of it is pinned to its independent value."""
+"""The examples and the documentation run: each example draws, and a number of it is what is known independently."""
 
 import contextlib
 import io
-import math
 import runpy
 from pathlib import Path
 

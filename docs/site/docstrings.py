@@ -1,7 +1,7 @@
 """Docstrings of this project as numpydoc and reStructuredText want them.
 
-Here a parameter stands with its meaning on one line, `name : type   meaning`, and text is plain: a `|q|` is the size of q
-and no reference.
+Here a parameter stands with its meaning on one line, `name : type   meaning`, and text is plain: a `|q|` is the size
+of q and no reference.
 """
 
 import re

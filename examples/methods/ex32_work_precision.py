@@ -7,9 +7,10 @@ fitted with their uncertainty: one, two and four. Times are those of the machine
 Source of the form: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (Springer 1996), IV.10.
 """
 
+from lcpstep.analysis.work_precision import Study
+
 from lagrangian import scenes
 from lcpstep import Located, Moreau, study
-from lcpstep.analysis.work_precision import Study
 from lcpstep.plot.work_precision import work_precision
 
 

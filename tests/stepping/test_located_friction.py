@@ -1,4 +1,4 @@
-"""Steps with friction, every slip, stick and impact at its own time: closed forms, orders, agreement event by event."""
+"""Steps with friction, every slip, stick and impact at its own time: closed forms, orders, the event-driven run."""
 
 import math
 
@@ -97,7 +97,7 @@ def test_these_scenes_have_every_kind_of_event():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("order, levels", [(2, (1000, 10_000, 100_000)), (4, (1000, 3000, 10_000))])
+@pytest.mark.parametrize(("order", "levels"), [(2, (1000, 10_000, 100_000)), (4, (1000, 3000, 10_000))])
 def test_the_woodpecker_keeps_the_order_too(order, levels):
     assert fitted_order(scenes.woodpecker(t_end=0.4), order, levels) > {2: 1.9, 4: 3.8}[order]
 

@@ -115,7 +115,7 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
 
 
 def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
-    """Keep the states asked for before the end t of the step, and its dense output; up to where impulses are summed."""
+    """Keep the states asked for before the end t of the step, and its dense output; where impulses are summed to."""
     pressed = 0.0
     s.length = tau
     if record.dense_size > 0 or record.wants(t, False):
