@@ -65,6 +65,20 @@ def pendulum():
     )  # fmt: skip
 
 
+def falling_coefficient(t, q, u, p, out):
+    out[0] = 0.2 + 0.3 * math.exp(-abs(u[0]) / 0.3)
+
+
+def weakening():
+    """Bounces, sticks, slips and turns about with a coefficient that falls as it slides faster."""
+    return driven([4.0, 8.0], restitution=0.5, friction=Coulomb(falling_coefficient, [[1.0, 0.0]]))
+
+
+def clinging():
+    """The same with more friction where it sticks."""
+    return driven([4.0, 8.0], restitution=0.5, friction=Coulomb(0.3, [[1.0, 0.0]], mu_s=0.45))
+
+
 def fitted_order(scene, order, levels):
     """Slope of log(mean error) over log(h); errors are those of q at twenty times."""
     t = np.linspace(*scene.t_span, 21)[1:]
@@ -84,9 +98,16 @@ LEVELS = {2: (30, 300, 3000, 30000), 4: (30, 100, 300, 1000)}
 
 
 @pytest.mark.parametrize("order", ORDERS)
-@pytest.mark.parametrize("make", [on_a_shaken_floor, torn_off, pendulum, lambda: block(21)])
+@pytest.mark.parametrize("make", [on_a_shaken_floor, torn_off, pendulum, clinging, lambda: block(21)])
 def test_impacts_reversals_sticking_and_release_cost_no_order(make, order):
     assert fitted_order(make(), order, LEVELS[order]) > {2: 1.9, 4: 3.8}[order]
+
+
+@pytest.mark.parametrize(
+    ("order", "levels"), [(2, (300, 3000, 30_000, 300_000)), (4, (100, 300, 1000, 3000))]
+)
+def test_a_coefficient_that_depends_on_the_sliding_velocity_costs_none_either(order, levels):
+    assert fitted_order(weakening(), order, levels) > {2: 1.9, 4: 3.8}[order]
 
 
 def test_these_scenes_have_every_kind_of_event():

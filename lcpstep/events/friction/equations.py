@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
+
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
@@ -24,14 +26,18 @@ def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
     return divide_by_mass(s.contacts, side, q, v, s.M, s.work, a)
 
 
-def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
-    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
+def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`.
+
+    False where a coefficient of friction is none.
+    """
     measure_rates(s, t, y)
     if not s.measured or s.moving:
         measure_biases(s, t, y)
     if not s.measured:
         respond(s)
         s.measured = s.constant
+    return measure_friction(s, t, y)
 
 
 def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
@@ -75,11 +81,26 @@ def respond(s: Rubbing) -> None:
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
 
 
+def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Coefficients of friction at the sliding velocities, which on the way to zero do not change their sign."""
+    if not s.coefficients.varies:
+        return True
+    q, v = y, after(y, s.n_q)
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        s.slip[c] = product(s.R, v, i, s.n_q) + s.rate[i]
+        sticks = s.mode[c] == STICKS or s.mode[c] == LEANS
+        if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
+            s.slip[c] = 0.0
+    return s.coefficients.measure(s.clock.inside(t), q, s.slip)
+
+
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
     if not free_motion(s, t, y, s.a_free):
         return False
-    measure_rows(s, t, y)
+    if not measure_rows(s, t, y):
+        return False
     measure_gaps(s, t, y)
     measure_velocities(s, after(y, s.n_q))
     total = 0.0

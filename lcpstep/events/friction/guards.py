@@ -54,10 +54,10 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
         if is_held(s, i):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
-        if s.mode[c] == SLIDES and s.mu[c] > 0.0:
+        if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1:
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
-            most = s.mu[c] * s.multiplier[i]
+            most = s.mu_s[c] * s.multiplier[i]
             s.value[k + 1] = most - s.multiplier[i + s.n_c]
             s.value[k + 2] = most + s.multiplier[i + s.n_c]
         total += s.value[k] + s.value[k + 1] + s.value[k + 2]
@@ -83,7 +83,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
             s.band[k] = max(NOISE * gap_size(s, c), -2.0 * s.value[k])  # deeper than it is now
         else:
             s.band[k] = forces
-            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu[c])
+            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c])
             if s.mode[c] == SLIDES:
                 s.band[k + 1] = NOISE * size_of(s, i + s.n_c, s.v)
         for g in range(k, k + GUARDS):

@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport (
-    add_impulse, free_motion, measure_gaps, measure_rates, measure_rows, renew_mass, respond
+    add_impulse, free_motion, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
 )
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.vectors cimport clear, copy, product

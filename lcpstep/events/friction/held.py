@@ -17,6 +17,7 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import (
         add_impulse,
         free_motion,
+        measure_friction,
         measure_gaps,
         measure_rates,
         measure_rows,
@@ -35,7 +36,7 @@ def pull(s: Rubbing, i: int) -> float:
     """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
     c = i - s.n_j
     if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
-        return -s.direction[c] * s.mu[c]
+        return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
     return 0.0
 
 
@@ -151,8 +152,7 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if not free_motion(s, t, y, a):
         return False
     if s.n_held > 0:
-        measure_rows(s, t, y)
-        if not s.constant and not hold_again(s):
+        if not measure_rows(s, t, y) or not (s.constant or hold_again(s)):
             return False
         constrain(s, a, s.bias)
     copy(dy, after(y, n), n)
@@ -206,7 +206,7 @@ def take_rows(s: Rubbing, t: float) -> bool:
         return False
     measure_rates(s, t, s.y)
     respond(s)
-    return hold_again(s)
+    return measure_friction(s, t, s.y) and hold_again(s)
 
 
 def push_by_change(s: Rubbing, x: Doubles) -> None:

@@ -1,6 +1,7 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
 from lcpstep.kernels.clock cimport Clock, RESOLUTION
+from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -17,6 +18,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Model contacts, joints, tangents
     cdef readonly Clock clock
     cdef readonly ContactProblem problem
+    cdef readonly Coefficients coefficients
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_nodes
     cdef public Py_ssize_t next, culprit
@@ -54,6 +56,8 @@ cdef class Rubbing(RungeKutta):
     cdef double* account
     cdef double* shifted_rate
     cdef double* mu
+    cdef double* mu_s
+    cdef double* slip
     cdef double* tangential
     cdef double* direction
     cdef double* was_direction

@@ -133,7 +133,7 @@ def is_motion(s: Strides, g: int) -> bool:
     c = g // GUARDS
     if g % GUARDS == 0:
         return s.mode[c] == OPEN
-    return s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
+    return s.mode[c] == SLIDES and g % GUARDS == 1 and s.coefficients.rough[c] == 1
 
 
 def curve(s: Strides, g: int, h: float) -> float:
