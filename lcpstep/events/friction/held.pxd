@@ -24,5 +24,6 @@ cdef void list_multipliers(Rubbing s) noexcept nogil
 cdef bint is_on_rows(Rubbing s) noexcept nogil
 cdef bint take_rows(Rubbing s, double t) noexcept nogil
 cdef void push_by_change(Rubbing s, double* x) noexcept nogil
-cdef void project(Rubbing s, double t) noexcept nogil
+cdef bint project(Rubbing s, double t) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
+cdef void count_impulses(Rubbing s, double* x) noexcept nogil

@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport measure
-from lcpstep.events.friction.held cimport hold_modes, project
+from lcpstep.events.friction.held cimport count_impulses, hold_modes, project
 from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
 from lcpstep.events.friction.modes cimport decide
 from lcpstep.events.friction.state cimport GUARDS

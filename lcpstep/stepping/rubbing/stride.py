@@ -9,7 +9,7 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.held import count_impulses, hold_modes, project
     from lcpstep.events.friction.keep import keep, keep_event, store_dense
     from lcpstep.events.friction.modes import decide
     from lcpstep.events.friction.state import GUARDS
@@ -120,8 +120,8 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
-    if tau > 0.0 and s.n_held > 0:
-        project(s, t)
+    if tau > 0.0 and s.n_held > 0 and project(s, t):
+        count_impulses(s, s.change)
     while record.wants(t, t >= s.t_end):  # the end of the span
         keep(s, record, record.times[record.next_time], s.y)
         record.next_time += 1
