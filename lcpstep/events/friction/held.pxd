@@ -18,6 +18,7 @@ cdef bint hold_again(Rubbing s) noexcept nogil
 cdef void solve_held(Rubbing s, double* x) noexcept nogil
 cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
 cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
+cdef bint nothing(double* x, Py_ssize_t n) noexcept nogil
 cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
 @cython.locals(zero=bint)

@@ -139,10 +139,20 @@ def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
         for m in range(s.n_held):
             i = s.held[m]
             s.change[m] = -bias[i] - product(s.R, a, i, s.n_q)
+        if nothing(s.change, s.n_held):
+            break
         solve_held(s, s.change)
         for m in range(s.n_held):
             s.x[m] += s.change[m]
             push(s, s.held[m], s.change[m], a)
+
+
+def nothing(x: Doubles, n: int) -> bool:
+    """Whether all entries are exactly zero."""
+    total = 0.0
+    for i in range(n):
+        total += abs(x[i])
+    return total == 0.0
 
 
 def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
@@ -215,6 +225,8 @@ def take_rows(s: Rubbing, t: float) -> bool:
 
 def push_by_change(s: Rubbing, x: Doubles) -> None:
     """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
+    if nothing(s.change, s.n_held):
+        return
     solve_held(s, s.change)
     for m in range(s.n_held):
         push(s, s.held[m], s.change[m], x)
