@@ -9,9 +9,13 @@ Laws of impact, for the impulses p_N >= 0 and |p_T| <= mu p_N:
     "moreau"   p_T = -mu p_N sign(xi_T), xi = u+ + r u-, 0 <= xi_N complementary to p_N: Coulomb's law between
                impulses and averages. Creates no energy if all contacts that strike together have one r.
     "newton"   the same with no restitution on the tangent, xi_T = u_T+. May create energy.
+    "stronge"  Coulomb's law at every instant of an impact that is integrated over p_N, through slip, reversal and
+               stick; it ends when the normal impulse has given back r^2 of the work that it took in compression.
+               Never creates energy. Contacts that strike together do so in turn, the fastest first.
 
 Sources: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3;
-J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988); E. J. Routh, Dynamics
+of a System of Rigid Bodies (1905), volume 1, chapter 5; W. J. Stronge, Impact Mechanics (Cambridge 2000), chapter 3.
 """
 
 from __future__ import annotations
@@ -26,7 +30,7 @@ from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.pickling import Pickled
 
-LAWS = ("moreau", "newton")
+LAWS = ("moreau", "newton", "stronge")
 Normals = Callable[[float, Array, Array, Array], Array]  # G (n_c, n_q) at a state t, q, v, p
 PARALLEL = 1e-12  # squared sine of the angle between normal and tangent, below which they are one direction
 ELSEWHERE = (
@@ -51,7 +55,7 @@ class Coulomb(Pickled):
     mu_s : (n_c,) or one number, mu_s >= mu, or None
         Coefficient of what sticks; None (the default) for mu, or mu at u = 0. Impacts have mu, at the sliding
         velocity before them.
-    law : "moreau" or "newton"   of impacts
+    law : "moreau", "newton" or "stronge"   of impacts
 
     Raises
     ------

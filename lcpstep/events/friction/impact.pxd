@@ -6,6 +6,7 @@ from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknow
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.coulomb cimport solve_contacts
+from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy, product
@@ -18,6 +19,8 @@ cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept n
 @cython.locals(hit=bint)
 cdef bint approaches(Rubbing s) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(share=double)
+cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void find_free(Rubbing s) noexcept nogil
 cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(hops=bint)

@@ -2,8 +2,9 @@
 
     xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
 
-Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy. Source:
-J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy; with
+none on the tangents it is Newton's, and may. Impacts integrated over their impulse, in turn: `kernels.energetic`.
+Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
 
 A contact that hops no higher than the tolerance is closed: the rest of its impacts, summed up, is the impulse that
 takes its velocity, with the friction that belongs to it, and the forces of the closed contact make up for the rest.
@@ -25,6 +26,7 @@ if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, product
@@ -68,20 +70,14 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
         if s.mode[c] == STICKS:
             s.velocity[i + s.n_c] = 0.0
-        if s.mode[c] == OPEN and s.touches[c] == 1 and s.before[c] <= s.terms[c]:
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (s.in_turn or s.before[c] <= s.terms[c]):
             s.mode[c] = SLIDES
         s.free[c] = 1
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
     eliminate_joints(s)
     fill(s, n_a, n_f)
-    for a in range(n_a):
-        c = s.problem.ids[a]
-        s.problem.rate[a] = (1.0 + s.contacts.restitution[c]) * min(s.before[c], 0.0)
-    for f in range(n_f):
-        c = s.problem.ids[s.problem.carrier[f]]
-        s.problem.rate[n_a + f] = (1.0 + s.tangential[c]) * s.velocity[s.n_j + s.n_c + c]
-    if not solve_contacts(s.problem, n_a, n_f):
+    if not find_impulses(s, n_a, n_f):
         return False
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])
@@ -95,6 +91,21 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             log(s, record, tally, t, c, IMPACT, s.before[c], u, s.problem.impulse[a])
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
     return True
+
+
+def find_impulses(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none."""
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        fall = min(s.before[c], 0.0)
+        s.problem.rate[a] = s.before[c] if s.in_turn else (1.0 + s.contacts.restitution[c]) * fall
+    for f in range(n_f):
+        c = s.problem.ids[s.problem.carrier[f]]
+        share = 1.0 if s.in_turn else 1.0 + s.tangential[c]
+        s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
+    if s.in_turn:
+        return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
+    return solve_contacts(s.problem, n_a, n_f)
 
 
 def find_free(s: Rubbing) -> None:

@@ -31,8 +31,8 @@ def start(scene: Scene, method: Any) -> Smooth:
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = Smooth(
-        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution), clock,
-        scene.t_span[1], scan, method.rtol, method.atol, *quadrature(),
+        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
+        friction.law == "stronge", clock, scene.t_span[1], scan, method.rtol, method.atol, *quadrature(),
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan

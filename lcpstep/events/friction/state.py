@@ -42,6 +42,7 @@ class Rubbing(RungeKutta):
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
     tangential : (n_c,)          restitution on the tangent
+    in_turn                      impacts are integrated, one contact after the other: see `kernels.energetic`
     mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
@@ -56,6 +57,7 @@ class Rubbing(RungeKutta):
     Parameters
     ----------
     contacts, joints, tangents : Model;  coefficients : Coefficients;  tangential : (n_c,)
+    in_turn : bool
     clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
     """
 
@@ -66,6 +68,7 @@ class Rubbing(RungeKutta):
         tangents: Model,
         coefficients: Coefficients,
         tangential: Any,
+        in_turn: bool,
         clock: Clock,
         t_end: float,
         scan_length: float,
@@ -79,7 +82,7 @@ class Rubbing(RungeKutta):
         r = n_j + 2 * n_c
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
-        self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
+        self.t_end, self.scan_length, self.next, self.in_turn = t_end, scan_length, BEGIN, in_turn
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
