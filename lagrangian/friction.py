@@ -22,9 +22,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
@@ -154,7 +155,7 @@ class Coulomb(Pickled):
         if places and not (fixed and not callable(self.tangent)):
             size = ELSEWHERE * max(1.0, float(np.max(np.abs(q))))
             places += [q + size * np.cos(k * np.arange(1.0, len(q) + 1.0)) for k in (1.0, 2.0)]
-        parallel = np.arange(0)
+        parallel: NDArray[Any] = np.arange(0)
         for k, x in enumerate(places):
             found = self._parallel((t, x, v, p), normals)
             parallel = found if k == 0 else np.intersect1d(parallel, found)
@@ -166,7 +167,7 @@ class Coulomb(Pickled):
                 f"q = {checks.shown(q)}"
             )
 
-    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> Array:
+    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> NDArray[Any]:
         """Contacts with friction whose tangent lies along their normal."""
         N = normals(*at)
         T = self.tangents(at, len(N))

@@ -22,7 +22,7 @@ if not cython.compiled:
 
     from lcpstep.kernels.coulomb import ContactProblem, solve_contacts
     from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import Doubles, abs, inf, max
+    from lcpstep.pointers import Doubles, abs, inf, max, min
 
 PHASES = 4  # of a single impact: sliding, then rest or sliding back, the end of compression between any two
 LOCKED = 1e-13  # of W_NN: a contact that sticks and has less mobility is wedged; of e: a smaller one is none
@@ -52,7 +52,7 @@ def strike_in_turn(c: ContactProblem, restitution: Doubles, n_a: int, n_f: int, 
             break
         i = c.ids[next_one]
         e = restitution[i] if -u[next_one] >= c.slow[next_one] else 0.0
-        if not strike_one(c, next_one, n_a, n_f, e):
+        if not strike_one(c, next_one, n_a, n_f, e, jams >= 0):
             return False
         if jams >= 0:
             jams = -1
@@ -71,8 +71,8 @@ def fastest_of(u: Doubles, n_a: int, slow: float) -> int:
     return found
 
 
-def strike_one(c: ContactProblem, a: int, n_a: int, n_f: int, e: float) -> bool:
-    """The impact of unknown a alone: its impulses are added, and what they do to the velocities in c.z."""
+def strike_one(c: ContactProblem, a: int, n_a: int, n_f: int, e: float, jams: bool) -> bool:
+    """The impact of unknown a alone, which may jam: its impulses are added, and what they do to the velocities in c.z."""
     m, T, W, p = n_a + n_f, -1, c.mobility, c.b
     for f in range(n_f):
         if c.carrier[f] == a:
@@ -83,7 +83,7 @@ def strike_one(c: ContactProblem, a: int, n_a: int, n_f: int, e: float) -> bool:
             return False
         p[0] = -(1.0 + e) * c.z[a] / W[a * m + a]
     elif not integrate(
-        W[a * m + a], W[a * m + T], W[T * m + a], W[T * m + T], c.mu[c.ids[a]], e, c.z[a], c.z[T], p
+        W[a * m + a], W[a * m + T], W[T * m + a], W[T * m + T], c.mu[c.ids[a]], e, c.z[a], c.z[T], jams, p
     ):
         return False
     c.impulse[a] += p[0]
@@ -97,9 +97,13 @@ def strike_one(c: ContactProblem, a: int, n_a: int, n_f: int, e: float) -> bool:
 
 
 def integrate(
-    W_NN: float, W_NT: float, W_TN: float, W_TT: float, mu: float, e: float, u: float, slip: float, p: Doubles
-) -> bool:
-    """Impulses p (2,) of one contact that approaches with u <= 0 and slides with `slip`; False where none end it."""
+    W_NN: float, W_NT: float, W_TN: float, W_TT: float, mu: float, e: float, u: float, slip: float, jams: bool,
+    p: Doubles,
+) -> bool:  # fmt: skip
+    """Impulses p (2,) of one contact that approaches with u <= 0 and slides with `slip`; False where none end it.
+
+    jams : its sliding ends whatever the normal does; then the mobility of the normal is not positive, up to rounding
+    """
     taken, back, compressed, fall = 0.0, 0.0, False, -u
     p[0] = p[1] = 0.0
     for _ in range(PHASES):
@@ -111,6 +115,8 @@ def integrate(
             share = -W_TN / W_TT
         du, dslip = W_NN + W_NT * share, 0.0 if sticks else W_TN + W_TT * share
         length = -slip / dslip if slip * dslip < 0.0 else inf
+        if jams and slip != 0.0 and not compressed:
+            du = min(du, 0.0)
         if compressed:
             if du <= LOCKED * W_NN:
                 return True

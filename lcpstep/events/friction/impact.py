@@ -14,12 +14,19 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, JAM, JUMP, OPEN, SLIDES, STICKS
 from lcpstep.events.general.ends import NO_IMPULSES
-from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
+    from lcpstep.events.friction.equations import (
+        apply,
+        gap_size,
+        gap_tolerance,
+        measure,
+        measure_velocities,
+        size_of,
+    )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import log, put_on_account
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
@@ -29,8 +36,8 @@ if not cython.compiled:
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, after, min
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import abs, after, inf, min
 
 ROUNDS = 1000  # problems of impacts at one instant
 SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
@@ -79,6 +86,12 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     fill(s, n_a, n_f)
     if not find_impulses(s, n_a, n_f):
         return False
+    strike_with(s, record, tally, t, n_a, n_f, -1)
+    return True
+
+
+def strike_with(s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int) -> None:
+    """Apply the impulses found, and close or open the contacts by the velocities that they leave."""
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])
     hold_joints(s)
@@ -88,9 +101,9 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
-            log(s, record, tally, t, c, IMPACT, s.before[c], u, s.problem.impulse[a])
+            kind = JAM if c == jammed else IMPACT
+            log(s, record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
-    return True
 
 
 def find_impulses(s: Rubbing, n_a: int, n_f: int) -> bool:
@@ -106,6 +119,42 @@ def find_impulses(s: Rubbing, n_a: int, n_f: int) -> bool:
     if s.in_turn:
         return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
     return solve_contacts(s.problem, n_a, n_f)
+
+
+def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """The impact without collision of the contact that jams (`culprit`), at the base state; a status.
+
+    Its force grows beyond all bounds while it slides: an impulse that presses it together until the sliding ends, and
+    what follows of the impact. By the laws that do not integrate it the normal has no restitution, as u- = 0.
+    """
+    if not measure(s, t, s.y):
+        return NOT_FINITE
+    if record.full(4 * s.n_c + 4):
+        return BUFFER_FULL
+    hit, first = s.culprit, -1
+    for c in range(s.n_c):
+        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        s.free[c] = 1
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+    s.coefficients.use(s.problem.mu)
+    n_a, n_f = list_unknowns(s)
+    eliminate_joints(s)
+    fill(s, n_a, n_f)
+    for a in range(n_a):
+        s.problem.rate[a] = 0.0
+        s.problem.slow[a] = 0.0 if s.in_turn else inf
+        if s.problem.ids[a] == hit:
+            first = a
+    for f in range(n_f):
+        s.problem.rate[n_a + f] = s.velocity[s.n_j + s.n_c + s.problem.ids[s.problem.carrier[f]]]
+    done = first >= 0 and strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, first)
+    if not (done and s.problem.impulse[first] > 0.0):
+        return PAINLEVE_INCONSISTENT
+    s.jams += 1
+    strike_with(s, record, tally, t, n_a, n_f, hit)
+    clear(s.problem.slow, s.n_c)
+    s.next = JUMP
+    return DONE
 
 
 def find_free(s: Rubbing) -> None:

@@ -32,7 +32,7 @@ def start(scene: Scene, method: Any) -> Smooth:
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = Smooth(
         contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
-        friction.law == "stronge", clock, scene.t_span[1], scan, method.rtol, method.atol, *quadrature(),
+        friction.law == "stronge", method.jamming == "impact", clock, scene.t_span[1], scan, method.rtol, method.atol, *quadrature(),
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -86,6 +86,13 @@ class FrictionRun(running.EventRun):
     def status(self, code: int) -> Status:
         """How the run ended, by what the kernel returned."""
         return STATUS.get(code) or Status(code)
+
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        said, times = super().message(code), self.system.jams
+        if times == 0:
+            return said
+        return f"{said}; sliding jammed {times} time{'s' * (times > 1)} and ended in impacts without collision (Kind.JAM)"
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

@@ -42,6 +42,7 @@ class Rubbing(RungeKutta):
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
     tangential : (n_c,)          restitution on the tangent
+    yields                       sliding that jams ends in an impact without collision
     in_turn                      impacts are integrated, one contact after the other: see `kernels.energetic`
     mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
@@ -52,12 +53,13 @@ class Rubbing(RungeKutta):
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
+    jams                         how often it did
     culprit                      contact or joint that a failure is about, or -1
 
     Parameters
     ----------
     contacts, joints, tangents : Model;  coefficients : Coefficients;  tangential : (n_c,)
-    in_turn : bool
+    in_turn, yields : bool
     clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
     """
 
@@ -69,6 +71,7 @@ class Rubbing(RungeKutta):
         coefficients: Coefficients,
         tangential: Any,
         in_turn: bool,
+        yields: bool,
         clock: Clock,
         t_end: float,
         scan_length: float,
@@ -83,6 +86,7 @@ class Rubbing(RungeKutta):
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next, self.in_turn = t_end, scan_length, BEGIN, in_turn
+        self.yields, self.jams = yields, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)

@@ -43,7 +43,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
     if by_force:
         code = look_ahead(s, h)
-        if code != DONE:
+        if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
     tau = locate(s, g, h, border - t0)
     if tau > 0.0 and not finish_step(s, tau):
@@ -51,6 +51,8 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
+    if code != DONE:
+        return code
     if by_force:
         s.next = OBEY
     elif s.mode[c] == OPEN:
