@@ -32,7 +32,8 @@ def start(scene: Scene, method: Any) -> Smooth:
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = Smooth(
         contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
-        friction.law == "stronge", method.jamming == "impact", clock, scene.t_span[1], scan, method.rtol, method.atol, *quadrature(),
+        friction.law == "stronge", method.jamming == "impact", clock, scene.t_span[1], scan, method.rtol,
+        method.atol, *quadrature(),
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -92,7 +93,8 @@ class FrictionRun(running.EventRun):
         said, times = super().message(code), self.system.jams
         if times == 0:
             return said
-        return f"{said}; sliding jammed {times} time{'s' * (times > 1)} and ended in impacts without collision (Kind.JAM)"
+        often = f"{times} time{'s' * (times > 1)}"
+        return f"{said}; sliding jammed {often} and ended in impacts without collision (Kind.JAM)"
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
