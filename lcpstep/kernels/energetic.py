@@ -72,7 +72,7 @@ def fastest_of(u: Doubles, n_a: int, slow: float) -> int:
 
 
 def strike_one(c: ContactProblem, a: int, n_a: int, n_f: int, e: float, jams: bool) -> bool:
-    """The impact of unknown a alone, which may jam; its impulses, and what they do to the velocities c.z, are added."""
+    """The impact of unknown a alone, which may jam: its impulses and what they do to the velocities are added."""
     m, T, W, p = n_a + n_f, -1, c.mobility, c.b
     for f in range(n_f):
         if c.carrier[f] == a:
