@@ -18,9 +18,9 @@ cdef double SEEN, STILL, TOGETHER
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(hit=bint)
 cdef bint approaches(Rubbing s) noexcept nogil
-cdef bint strike(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-@cython.locals(share=double)
-cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
+@cython.locals(share=double, own=bint)
+cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f, bint plastic) noexcept nogil
 cdef void strike_with(
     Rubbing s, Record record, Tally tally, double t, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t jammed
 ) noexcept nogil

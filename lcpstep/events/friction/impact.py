@@ -46,14 +46,18 @@ STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
 def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
-    """Impacts until no contact on its surface approaches; those that are left without speed are closed."""
-    for _ in range(ROUNDS):
+    """Impacts until no contact on its surface approaches; those that are left without speed are closed.
+
+    Impacts that go to and fro without end, in a wedge that closes, end in a plastic one of all contacts that touch.
+    """
+    while s.rounds < 2 * ROUNDS:
         if not approaches(s):
             find_free(s)
             return DONE
         if record.full(4 * s.n_c + 4):
             return BUFFER_FULL
-        if not strike(s, record, tally, t):
+        s.rounds += 1
+        if not strike(s, record, tally, t, s.rounds > ROUNDS):
             return NO_IMPULSES
     return TOO_MANY_EVENTS
 
@@ -70,21 +74,21 @@ def approaches(s: Rubbing) -> bool:
     return hit
 
 
-def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
-    """The impact of the contacts that are closed or approach; False where no impulses are found."""
+def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+    """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found."""
     for c in range(s.n_c):
         i = s.n_j + c
         s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
         if s.mode[c] == STICKS:
             s.velocity[i + s.n_c] = 0.0
-        if s.mode[c] == OPEN and s.touches[c] == 1 and (s.in_turn or s.before[c] <= s.terms[c]):
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= s.terms[c]):
             s.mode[c] = SLIDES
         s.free[c] = 1
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
     eliminate_joints(s)
     fill(s, n_a, n_f)
-    if not find_impulses(s, n_a, n_f):
+    if not find_impulses(s, n_a, n_f, plastic):
         return False
     strike_with(s, record, tally, t, n_a, n_f, -1)
     return True
@@ -106,17 +110,18 @@ def strike_with(s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
 
 
-def find_impulses(s: Rubbing, n_a: int, n_f: int) -> bool:
+def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none."""
+    own = s.in_turn or plastic
     for a in range(n_a):
         c = s.problem.ids[a]
         fall = min(s.before[c], 0.0)
-        s.problem.rate[a] = s.before[c] if s.in_turn else (1.0 + s.contacts.restitution[c]) * fall
+        s.problem.rate[a] = s.before[c] if own else (1.0 + s.contacts.restitution[c]) * fall
     for f in range(n_f):
         c = s.problem.ids[s.problem.carrier[f]]
-        share = 1.0 if s.in_turn else 1.0 + s.tangential[c]
+        share = 1.0 if own else 1.0 + s.tangential[c]
         s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
-    if s.in_turn:
+    if s.in_turn and not plastic:
         return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
     return solve_contacts(s.problem, n_a, n_f)
 
@@ -234,6 +239,7 @@ def find_touching(s: Rubbing) -> None:
 
 def forget_terms(s: Rubbing) -> None:
     """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
+    s.rounds = 0
     for c in range(s.n_c):
         s.terms[c] = 0.0
     measure_velocities(s, after(s.y, s.n_q))

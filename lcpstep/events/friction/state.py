@@ -53,7 +53,7 @@ class Rubbing(RungeKutta):
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
-    jams                         how often it did
+    jams                         how often it did;  rounds    problems of impacts at this instant
     culprit                      contact or joint that a failure is about, or -1
 
     Parameters
@@ -86,7 +86,7 @@ class Rubbing(RungeKutta):
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next, self.in_turn = t_end, scan_length, BEGIN, in_turn
-        self.yields, self.jams = yields, 0
+        self.yields, self.jams, self.rounds = yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
