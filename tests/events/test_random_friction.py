@@ -20,7 +20,7 @@ def test_runs_end_create_no_energy_and_are_those_of_small_steps(first, law):
 
 @pytest.mark.parametrize("seed", [37, 482, 725])
 def test_what_has_no_solution_is_said(seed):
-    """Walls close on a body that friction holds between them, or belts pull it in; in 37 it meets them in turn first."""
+    """Walls close on a body that friction holds between them, or belts pull it in; in 37 it meets them in turn."""
     scene = draw(seed)
     run = simulate(scene, EventDriven(1e-10, 1e-10, max_events=20000))
     assert run.status == Status.LCP_FAILED
