@@ -12,7 +12,7 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, moves, obstacle, total_force
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -32,6 +32,9 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
     """
     n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
     q, v, side = y, after(y, n), s.clock.inside(t)
+    if s.known:
+        measure_motion(s, side, q, v)
+        return not s.coefficients.varies or measure_friction(s, side, q, v)
     if n_j > 0:
         bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
         gap_rates(s.joints, side, q, v, s.R, s.rate)
@@ -46,7 +49,21 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
         inverse_mass(s.contacts, s.M, s.work, row)
         for j in range(i + 1):
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
+    s.known = s.constant
     return not s.coefficients.varies or measure_friction(s, side, q, v)
+
+
+def measure_motion(s: Rubbing, t: float, q: Doubles, v: Doubles) -> None:
+    """Rates and biases of rows that never change: those of obstacles and joints that move."""
+    if moves(s.joints):
+        obstacle(s.joints, t, q, v)
+        for j in range(s.n_j):
+            s.rate[j], s.bias[j] = -s.joints.motion_now[3 * j + 1], -s.joints.motion_now[3 * j + 2]
+    if moves(s.contacts):
+        obstacle(s.contacts, t, q, v)
+        for c in range(s.n_c):
+            i = s.n_j + c
+            s.rate[i], s.bias[i] = -s.contacts.motion_now[3 * c + 1], -s.contacts.motion_now[3 * c + 2]
 
 
 def measure_friction(s: Rubbing, t: float, q: Doubles, v: Doubles) -> bool:
@@ -65,6 +82,7 @@ def measure_friction(s: Rubbing, t: float, q: Doubles, v: Doubles) -> bool:
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
+    s.factored = False
     if not free_motion(s, t, y, s.a_free):
         return False
     if not measure_rows(s, t, y):

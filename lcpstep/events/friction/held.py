@@ -68,7 +68,7 @@ def hold(s: Rubbing, i: int) -> bool:
 
 def hold_joints(s: Rubbing) -> None:
     """Hold the independent joints, and nothing else."""
-    s.n_held = 0
+    s.n_held, s.factored = 0, False
     for i in range(s.n_j):
         hold(s, i)
 
@@ -95,6 +95,8 @@ def hold_modes(s: Rubbing) -> bool:
 
 def hold_again(s: Rubbing) -> bool:
     """The same rows with the matrices of another state; False where they have become dependent."""
+    if s.factored:
+        return True
     count = s.n_held
     s.n_held = 0
     for m in range(count):
@@ -104,6 +106,7 @@ def hold_again(s: Rubbing) -> bool:
             s.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c else -1
             s.n_held = count
             return False
+    s.factored = s.constant and not s.coefficients.varies
     return True
 
 
@@ -171,7 +174,7 @@ def project(s: Rubbing, t: float) -> None:
     n = s.n_q
     for level in range(3):  # positions twice, velocities once
         x = s.q if level < 2 else s.v
-        if not free_motion(s, t, s.y, s.a_free):
+        if not s.known and not free_motion(s, t, s.y, s.a_free):
             return
         if not measure_rows(s, t, s.y):
             return

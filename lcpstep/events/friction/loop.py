@@ -133,6 +133,7 @@ def follow(s: Rubbing, record: Record, tally: Tally) -> int:
 
 def set_out(s: Rubbing, record: Record, t: float) -> int:
     """The motion goes on with the modes at hand."""
+    s.factored = False
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
     if not begin_guards(s, t):

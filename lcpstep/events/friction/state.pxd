@@ -20,7 +20,8 @@ cdef class Rubbing(RungeKutta):
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_nodes
     cdef public Py_ssize_t next, culprit, jams, rounds
-    cdef readonly bint in_turn, yields
+    cdef readonly bint in_turn, yields, constant
+    cdef bint known, factored
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope

@@ -49,6 +49,8 @@ class Rubbing(RungeKutta):
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
+    constant, known              rows and mass never change; they have been measured
+    factored                     L is that of the rows held, and stays it while modes last: with constant rows alone
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
@@ -87,6 +89,8 @@ class Rubbing(RungeKutta):
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next, self.in_turn = t_end, scan_length, BEGIN, in_turn
         self.yields, self.jams, self.rounds = yields, 0, 0
+        flat = contacts.flat and tangents.flat and joints.flat
+        self.constant, self.known, self.factored = flat and not contacts.mass.given, False, False
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)

@@ -9,8 +9,8 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import lift, measure
-    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate, look
-    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate
+    from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
     from lcpstep.events.friction.modes import decide
@@ -130,7 +130,8 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
     for k in range(s.n_nodes):
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
-        look(s, s.clock.t0 + tau, s.seen)
+        right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
+        list_multipliers(s)
         share = s.weights[k] * (b - a)
         for c in range(s.n_c):
             s.impulse[c] = s.impulse[c] + share * s.multiplier[s.n_j + c]
