@@ -9,9 +9,13 @@ Laws of impact, for the impulses p_N >= 0 and |p_T| <= mu p_N:
     "moreau"   p_T = -mu p_N sign(xi_T), xi = u+ + r u-, 0 <= xi_N complementary to p_N: Coulomb's law between
                impulses and averages. Creates no energy if all contacts that strike together have one r.
     "newton"   the same with no restitution on the tangent, xi_T = u_T+. May create energy.
+    "stronge"  Coulomb's law at every instant of an impact that is integrated over p_N, through slip, reversal and
+               stick; it ends when the normal impulse has given back r^2 of the work that it took in compression.
+               Never creates energy. Contacts that strike together do so in turn, the fastest first.
 
 Sources: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3;
-J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988); E. J. Routh, Dynamics
+of a System of Rigid Bodies (1905), volume 1, chapter 5; W. J. Stronge, Impact Mechanics (Cambridge 2000), chapter 3.
 """
 
 from __future__ import annotations
@@ -21,13 +25,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.pickling import Pickled
 
-LAWS = ("moreau", "newton")
+LAWS = ("moreau", "newton", "stronge")
 Normals = Callable[[float, Array, Array, Array], Array]  # G (n_c, n_q) at a state t, q, v, p
 PARALLEL = 1e-12  # squared sine of the angle between normal and tangent, below which they are one direction
 ELSEWHERE = (
@@ -52,7 +56,7 @@ class Coulomb(Pickled):
     mu_s : (n_c,) or one number, mu_s >= mu, or None
         Coefficient of what sticks; None (the default) for mu, or mu at u = 0. Impacts have mu, at the sliding
         velocity before them.
-    law : "moreau" or "newton"   of impacts
+    law : "moreau", "newton" or "stronge"   of impacts
 
     Raises
     ------
@@ -151,7 +155,7 @@ class Coulomb(Pickled):
         if places and not (fixed and not callable(self.tangent)):
             size = ELSEWHERE * max(1.0, float(np.max(np.abs(q))))
             places += [q + size * np.cos(k * np.arange(1.0, len(q) + 1.0)) for k in (1.0, 2.0)]
-        parallel: Any = np.arange(0)
+        parallel: NDArray[Any] = np.arange(0)
         for k, x in enumerate(places):
             found = self._parallel((t, x, v, p), normals)
             parallel = found if k == 0 else np.intersect1d(parallel, found)
@@ -163,7 +167,7 @@ class Coulomb(Pickled):
                 f"q = {checks.shown(q)}"
             )
 
-    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> Any:
+    def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> NDArray[Any]:
         """Contacts with friction whose tangent lies along their normal."""
         N = normals(*at)
         T = self.tangents(at, len(N))

@@ -46,6 +46,7 @@ class Kind(IntEnum):
     SLIP = 4  # a contact that stuck slides; `before`, `after`: sliding velocities, of the next two as well
     STICK_TANGENT = 5  # a contact that slid sticks
     REVERSE = 6  # a contact slides the other way
+    JAM = 7  # sliding without a force that would hold the contact: an impact without collision
 
 
 # time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)

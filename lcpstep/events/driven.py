@@ -26,10 +26,12 @@ class EventDriven:
     max_events : bound on the number of events of a run
     audit : whether the finished run is searched for events that it has not noticed, see `lcpstep.audit`; those that
         are found are taken, and `Trajectory.audit` says what could be shown
+    jamming : "stop" or "impact"   what follows where no force keeps a sliding contact on its surface (Painleve): the
+        run ends with PAINLEVE_INCONSISTENT, or an impact without collision ends the sliding; `Kind.JAM` in the log
 
     Raises
     ------
-    ValueError   a tolerance or the bound is out of range
+    ValueError   a tolerance or the bound is out of range, or jamming is neither of the two
 
     Notes
     -----
@@ -57,6 +59,7 @@ class EventDriven:
     atol: float = 1e-12
     max_events: int = 10_000_000
     audit: bool = field(default=False, repr=False)
+    jamming: str = field(default="stop", repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rtol", checks.number("rtol", self.rtol, least=LEAST_TOLERANCE, most=1.0))
@@ -66,6 +69,8 @@ class EventDriven:
             raise ValueError(f"max_events: expected a whole number, got {self.max_events!r}")
         object.__setattr__(self, "max_events", int(most))
         checks.instance("audit", self.audit, bool)
+        if self.jamming not in ("stop", "impact"):
+            raise ValueError(f'jamming: expected "stop" or "impact", got {self.jamming!r}')
 
     def run_hybrid(
         self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]

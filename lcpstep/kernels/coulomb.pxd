@@ -18,6 +18,8 @@ cdef class ContactProblem:
     cdef double* W
     cdef double* b
     cdef double* z
+    cdef double* slow
+    cdef double* sum
     cdef Py_ssize_t* ids
     cdef Py_ssize_t* carrier
     cdef bint warm

@@ -49,6 +49,8 @@ class ContactProblem:
     warm     the impulses of the last problem are a guess for the next; without one, a problem with several solutions
              has the same whatever came before
     W, b, z  of the problem with friction
+    slow, sum    (n_c,) and (m,) of impacts in turn, see `energetic`: speeds below which contacts have no restitution;
+                 impulses of those before
 
     Parameters
     ----------
@@ -59,11 +61,13 @@ class ContactProblem:
         n_c = len(mu)
         unknowns = 4 * n_c if frictional else 0
         numbers = {"mobility": 4 * n_c * n_c, "rate": n, "impulse": 2 * n_c, "W": unknowns * unknowns}
+        numbers["slow"], numbers["sum"] = n_c, 2 * n_c
         self.arrays = {name: np.zeros(size) for name, size in numbers.items()} | {"mu": mu}
         self.arrays |= {"b": np.zeros(unknowns), "z": np.zeros(unknowns)}
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.mobility, self.rate = doubles(self.arrays["mobility"]), doubles(self.arrays["rate"])
         self.impulse, self.mu = doubles(self.arrays["impulse"]), doubles(mu)
+        self.slow, self.sum = doubles(self.arrays["slow"]), doubles(self.arrays["sum"])
         self.W, self.b, self.z = (
             doubles(self.arrays["W"]),
             doubles(self.arrays["b"]),

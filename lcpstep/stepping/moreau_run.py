@@ -163,13 +163,14 @@ class MoreauRun(StepRun):
 def rows(scene: Scene, joints: Model, tangents: Model, projected: bool) -> Rows:
     """Joints and tangents of a scene, with the rows of a step."""
     n_c, contacts, r_T = scene.n_c, scene.contacts, np.zeros(scene.n_c)
+    in_turn = False
     friction = None if contacts is None else contacts.friction
     if contacts is not None and friction is not None:
-        r_T = friction.tangential(contacts.restitution)
+        r_T, in_turn = friction.tangential(contacts.restitution), friction.law == "stronge"
     n = n_c + tangents.n_c + joints.n_c
     warm = n == n_c and not projected
     problem = ContactProblem(np.zeros(n_c), friction is not None, n, warm)
-    return Rows(joints, tangents, n_c, tangents.n_c, coefficients(scene), r_T, projected, problem)
+    return Rows(joints, tangents, n_c, tangents.n_c, coefficients(scene), r_T, in_turn, projected, problem)
 
 
 def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool) -> Plan:

@@ -8,4 +8,4 @@ from lcpstep.trajectory import Kind
 # sticks, keeps it from sliding
 OPEN, STICKS, SLIDES, LEANS = range(4)
 BEGIN, MOVE, JUMP, DECIDE, OBEY = range(5)  # what comes next
-IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE = (int(kind) for kind in Kind)
+IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)

@@ -12,12 +12,14 @@ cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
 cdef double RESOLVED, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
+@cython.locals(opened=bint)
 cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(found=bint)
 cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
 @cython.locals(fine=bint, error=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
+cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil

@@ -42,8 +42,11 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
 
 def read(s: Rubbing, t: float, y: Doubles) -> bool:
     """The same where rows and multipliers are known."""
-    measure_gaps(s, t, y)
-    v, total = after(y, s.n_q), 0.0
+    v, total, opened = after(y, s.n_q), 0.0, False
+    for c in range(s.n_c):
+        opened = opened or s.mode[c] == OPEN
+    if opened:
+        measure_gaps(s, t, y)
     for c in range(s.n_c):
         i, k = s.n_j + c, GUARDS * c
         s.value[k] = s.value[k + 1] = s.value[k + 2] = OFF
@@ -101,6 +104,8 @@ def first_event(s: Rubbing, h: float) -> int:
             return UNKNOWN
         fine = True
         for g in range(n):
+            if not has(s, g):
+                continue
             copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
             error = convert(s.scan)
             if error > RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[g] and parts < PARTS:
@@ -120,6 +125,12 @@ def first_event(s: Rubbing, h: float) -> int:
         arm(s)
         part += 1
     return -1
+
+
+def has(s: Rubbing, g: int) -> bool:
+    """Whether the contact of guard g has that guard in its mode; the value of others is OFF."""
+    mode, which = s.mode[g // GUARDS], g % GUARDS
+    return which == 0 or mode == STICKS or (which == 1 and mode == SLIDES)
 
 
 def sample(s: Rubbing, h: float, a: float, b: float) -> bool:

@@ -1,23 +1,31 @@
 cimport cython
-from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure_velocities, size_of
+from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure, measure_velocities, size_of
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
 from lcpstep.events.friction.keep cimport log, put_on_account
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.coulomb cimport solve_contacts
+from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, min
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, after, inf, min
 
-cdef Py_ssize_t ACCUMULATION, IMPACT, NO_IMPULSES, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
+cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
 cdef double SEEN, STILL, TOGETHER
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(hit=bint)
 cdef bint approaches(Rubbing s) noexcept nogil
-cdef bint strike(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
+@cython.locals(share=double, own=bint)
+cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f, bint plastic) noexcept nogil
+cdef void strike_with(
+    Rubbing s, Record record, Tally tally, double t, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t jammed
+) noexcept nogil
+@cython.locals(done=bint)
+cdef Py_ssize_t jam(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef void find_free(Rubbing s) noexcept nogil
 cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(hops=bint)

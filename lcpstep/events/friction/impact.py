@@ -2,8 +2,9 @@
 
     xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
 
-Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy. Source:
-J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy; with
+none on the tangents it is Newton's, and may. Impacts integrated over their impulse, in turn: `kernels.energetic`.
+Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
 
 A contact that hops no higher than the tolerance is closed: the rest of its impacts, summed up, is the impulse that
 takes its velocity, with the friction that belongs to it, and the forces of the closed contact make up for the rest.
@@ -13,22 +14,30 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import ACCUMULATION, IMPACT, JAM, JUMP, OPEN, SLIDES, STICKS
 from lcpstep.events.general.ends import NO_IMPULSES
-from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import apply, gap_size, gap_tolerance, measure_velocities, size_of
+    from lcpstep.events.friction.equations import (
+        apply,
+        gap_size,
+        gap_tolerance,
+        measure,
+        measure_velocities,
+        size_of,
+    )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import log, put_on_account
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, after, min
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import abs, after, inf, min
 
 ROUNDS = 1000  # problems of impacts at one instant
 SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
@@ -37,14 +46,18 @@ STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
 def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
-    """Impacts until no contact on its surface approaches; those that are left without speed are closed."""
-    for _ in range(ROUNDS):
+    """Impacts until no contact on its surface approaches; those that are left without speed are closed.
+
+    Impacts that go to and fro without end, in a wedge that closes, end in a plastic one of all contacts that touch.
+    """
+    while s.rounds < 2 * ROUNDS:
         if not approaches(s):
             find_free(s)
             return DONE
         if record.full(4 * s.n_c + 4):
             return BUFFER_FULL
-        if not strike(s, record, tally, t):
+        s.rounds += 1
+        if not strike(s, record, tally, t, s.rounds > ROUNDS):
             return NO_IMPULSES
     return TOO_MANY_EVENTS
 
@@ -61,28 +74,28 @@ def approaches(s: Rubbing) -> bool:
     return hit
 
 
-def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
-    """The impact of the contacts that are closed or approach; False where no impulses are found."""
+def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+    """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found."""
     for c in range(s.n_c):
         i = s.n_j + c
         s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
         if s.mode[c] == STICKS:
             s.velocity[i + s.n_c] = 0.0
-        if s.mode[c] == OPEN and s.touches[c] == 1 and s.before[c] <= s.terms[c]:
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= s.terms[c]):
             s.mode[c] = SLIDES
         s.free[c] = 1
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
     eliminate_joints(s)
     fill(s, n_a, n_f)
-    for a in range(n_a):
-        c = s.problem.ids[a]
-        s.problem.rate[a] = (1.0 + s.contacts.restitution[c]) * min(s.before[c], 0.0)
-    for f in range(n_f):
-        c = s.problem.ids[s.problem.carrier[f]]
-        s.problem.rate[n_a + f] = (1.0 + s.tangential[c]) * s.velocity[s.n_j + s.n_c + c]
-    if not solve_contacts(s.problem, n_a, n_f):
+    if not find_impulses(s, n_a, n_f, plastic):
         return False
+    strike_with(s, record, tally, t, n_a, n_f, -1)
+    return True
+
+
+def strike_with(s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int) -> None:
+    """Apply the impulses found, and close or open the contacts by the velocities that they leave."""
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])
     hold_joints(s)
@@ -92,9 +105,61 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
-            log(s, record, tally, t, c, IMPACT, s.before[c], u, s.problem.impulse[a])
+            kind = JAM if c == jammed else IMPACT
+            log(s, record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
-    return True
+
+
+def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
+    """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none."""
+    own = s.in_turn or plastic
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        fall = min(s.before[c], 0.0)
+        s.problem.rate[a] = s.before[c] if own else (1.0 + s.contacts.restitution[c]) * fall
+    for f in range(n_f):
+        c = s.problem.ids[s.problem.carrier[f]]
+        share = 1.0 if own else 1.0 + s.tangential[c]
+        s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
+    if s.in_turn and not plastic:
+        return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
+    return solve_contacts(s.problem, n_a, n_f)
+
+
+def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """The impact without collision of the contact that jams (`culprit`), at the base state; a status.
+
+    Its force grows beyond all bounds while it slides: an impulse that presses it together until the sliding ends, and
+    what follows of the impact. By the laws that do not integrate it the normal has no restitution, as u- = 0.
+    """
+    if not measure(s, t, s.y):
+        return NOT_FINITE
+    if record.full(4 * s.n_c + 4):
+        return BUFFER_FULL
+    hit, first = s.culprit, -1
+    for c in range(s.n_c):
+        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        s.free[c] = 1
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+    s.coefficients.use(s.problem.mu)
+    n_a, n_f = list_unknowns(s)
+    eliminate_joints(s)
+    fill(s, n_a, n_f)
+    for a in range(n_a):
+        s.problem.rate[a] = 0.0
+        s.problem.slow[a] = 0.0 if s.in_turn else inf
+        if s.problem.ids[a] == hit:
+            first = a
+    for f in range(n_f):
+        s.problem.rate[n_a + f] = s.velocity[s.n_j + s.n_c + s.problem.ids[s.problem.carrier[f]]]
+    done = first >= 0 and strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, first)
+    if not (done and s.problem.impulse[first] > 0.0):
+        return PAINLEVE_INCONSISTENT
+    s.jams += 1
+    strike_with(s, record, tally, t, n_a, n_f, hit)
+    clear(s.problem.slow, s.n_c)
+    s.next = JUMP
+    return DONE
 
 
 def find_free(s: Rubbing) -> None:
@@ -174,6 +239,7 @@ def find_touching(s: Rubbing) -> None:
 
 def forget_terms(s: Rubbing) -> None:
     """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
+    s.rounds = 0
     for c in range(s.n_c):
         s.terms[c] = 0.0
     measure_velocities(s, after(s.y, s.n_q))

@@ -1,6 +1,6 @@
 from lcpstep.events.friction.equations cimport gap_size, measure
 from lcpstep.events.friction.guards cimport begin_guards
-from lcpstep.events.friction.impact cimport close_small, forget_terms, jump, still
+from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey
 from lcpstep.events.friction.state cimport NOISE, Rubbing
@@ -8,7 +8,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs
 
-cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, SLACK
+cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN, BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS, SLACK
 
 cdef Py_ssize_t released(Rubbing s, Record record, Tally tally, Py_ssize_t goal) noexcept
 cdef void put_back(Rubbing s, Record record) noexcept nogil

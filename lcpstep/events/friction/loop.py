@@ -13,12 +13,12 @@ from typing import Any
 import cython
 
 from lcpstep.events.friction.codes import BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN
-from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import gap_size, measure
     from lcpstep.events.friction.guards import begin_guards
-    from lcpstep.events.friction.impact import close_small, forget_terms, jump, still
+    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, obey
     from lcpstep.events.friction.state import NOISE, Rubbing
@@ -76,6 +76,8 @@ def go_on(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
             code = turn_corner(s)
         else:
             code = s.proceed(record, tally)
+        if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
+            code = jam(s, record, tally, s.clock.t0)
     return code
 
 

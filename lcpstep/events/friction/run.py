@@ -23,16 +23,19 @@ from lcpstep.trajectory import Status
 Array = NDArray[np.float64]
 
 
-def start(scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any) -> Any:
-    """The state at the start of the span, of that kind of motion, which may ask for more than tolerances."""
+def start(scene: Scene, kind: Callable[..., Any], yields: bool, rtol: float, atol: float, *more: Any) -> Any:
+    """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
+
+    yields : whether sliding that jams ends in an impact
+    """
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
     friction = given.friction
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = kind(
-        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution), clock,
-        scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
+        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
+        friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -52,7 +55,7 @@ class FrictionRun(running.EventRun):
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
-        return start(scene, Smooth, method.rtol, method.atol)
+        return start(scene, Smooth, method.jamming == "impact", method.rtol, method.atol)
 
     @property
     def now(self) -> float:
@@ -90,6 +93,14 @@ class FrictionRun(running.EventRun):
     def status(self, code: int) -> Status:
         """How the run ended, by what the kernel returned."""
         return STATUS.get(code) or Status(code)
+
+    def message(self, code: int) -> str:
+        """How the run ended, in words."""
+        said, times = super().message(code), self.system.jams
+        if times == 0:
+            return said
+        often = f"{times} time{'s' * (times > 1)}"
+        return f"{said}; sliding jammed {often} and ended in impacts without collision (Kind.JAM)"
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

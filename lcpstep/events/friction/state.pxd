@@ -21,7 +21,8 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Coefficients coefficients
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_nodes
-    cdef public Py_ssize_t next, culprit
+    cdef public Py_ssize_t next, culprit, jams, rounds
+    cdef readonly bint in_turn, yields
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope

@@ -46,6 +46,8 @@ class Rubbing(RungeKutta):
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
     tangential : (n_c,)          restitution on the tangent
+    yields                       sliding that jams ends in an impact without collision
+    in_turn                      impacts are integrated, one contact after the other: see `kernels.energetic`
     mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
@@ -55,11 +57,13 @@ class Rubbing(RungeKutta):
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
+    jams                         how often it did;  rounds    problems of impacts at this instant
     culprit                      contact or joint that a failure is about, or -1
 
     Parameters
     ----------
     contacts, joints, tangents : Model;  coefficients : Coefficients;  tangential : (n_c,)
+    in_turn, yields : bool
     clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
     """
 
@@ -70,6 +74,8 @@ class Rubbing(RungeKutta):
         tangents: Model,
         coefficients: Coefficients,
         tangential: Any,
+        in_turn: bool,
+        yields: bool,
         clock: Clock,
         t_end: float,
         scan_length: float,
@@ -87,6 +93,7 @@ class Rubbing(RungeKutta):
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
         self.constant = self.constant and not coefficients.varies
         self.moving, self.measured = contacts.motion.given or joints.motion.given, False
+        self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)

@@ -9,8 +9,8 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import lift, measure
-    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate, look
-    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate
+    from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
     from lcpstep.events.friction.modes import decide
@@ -43,7 +43,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
     if by_force:
         code = look_ahead(s, h)
-        if code != DONE:
+        if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
     tau = locate(s, g, h, border - t0)
     if tau > 0.0 and not finish_step(s, tau):
@@ -51,6 +51,8 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
+    if code != DONE:
+        return code
     if by_force:
         s.next = OBEY
     elif s.mode[c] == OPEN:
@@ -128,7 +130,8 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
     for k in range(s.n_nodes):
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
-        look(s, s.clock.t0 + tau, s.seen)
+        right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
+        list_multipliers(s)
         share = s.weights[k] * (b - a)
         for c in range(s.n_c):
             s.impulse[c] = s.impulse[c] + share * s.multiplier[s.n_j + c]

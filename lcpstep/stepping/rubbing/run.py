@@ -34,6 +34,7 @@ class RubbingRun(FrictionRun):
         system: RubbingSteps = start(
             scene,
             RubbingSteps,
+            False,
             ROUNDING,
             ROUNDING,
             order,

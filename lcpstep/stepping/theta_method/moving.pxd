@@ -45,7 +45,7 @@ cdef class Rows:
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
     cdef readonly Py_ssize_t n_c, n_t, n_j, n
-    cdef readonly bint projected, turning
+    cdef readonly bint projected, turning, in_turn
     cdef Elimination elimination
     cdef double* H
     cdef double* T

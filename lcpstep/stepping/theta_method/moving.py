@@ -77,7 +77,7 @@ class Rows:
     D : (n_j, n_q)         directions of the joints' forces
     p : (n,)               impulses
     sliding : (n_t,)       sliding velocities at the start of the step;  at_rest : the same, 0 of what sticks
-    tangent_restitution : (n_c,)
+    tangent_restitution : (n_c,);  in_turn    see `kernels.energetic`
     failed : (n_j,)        1 for joints that contradict others
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
@@ -87,7 +87,7 @@ class Rows:
     Parameters
     ----------
     joints, tangents : Model;  n_c, n_t : int;  coefficients : Coefficients;  tangent_restitution : (n_c,)
-    projected : bool
+    in_turn, projected : bool
     problem : ContactProblem for n rows
     """
 
@@ -99,13 +99,14 @@ class Rows:
         n_t: int,
         coefficients: Coefficients,
         tangent_restitution: Any,
+        in_turn: bool,
         projected: bool,
         problem: ContactProblem,
     ) -> None:
         n_q, n_j = joints.n_q, joints.n_c
         n = n_c + n_t + n_j
         self.joints, self.tangents, self.problem = joints, tangents, problem
-        self.coefficients = coefficients
+        self.coefficients, self.in_turn = coefficients, in_turn
         self.coefficients.use(self.problem.mu)
         self.n_c, self.n_t, self.n_j, self.n = n_c, n_t, n_j, n
         self.projected, self.turning = projected, not joints.flat

@@ -1,5 +1,6 @@
 cimport cython
 from lcpstep.kernels.dynamics cimport gap_rates
+from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
@@ -19,13 +20,14 @@ cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH
 cdef Py_ssize_t impulses(
     Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
 ) noexcept nogil
-cdef bint solve(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
+cdef bint solve(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
 cdef void note_sticking(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t take_part(
     Py_ssize_t* ids, Py_ssize_t* carrier, Py_ssize_t* rough, Py_ssize_t n_a, Py_ssize_t n_c, Py_ssize_t n_t, Py_ssize_t n_j
 ) noexcept nogil
 cdef void round_off(Rows c, double* v, Py_ssize_t n_k, Py_ssize_t n_q) noexcept nogil
 cdef bint usable(double* W, Py_ssize_t* ids, Py_ssize_t n_k, Py_ssize_t n) noexcept nogil
+@cython.locals(found=bint)
 cdef bint strikes(State s, Rows c, Py_ssize_t n_a) noexcept nogil
 cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil

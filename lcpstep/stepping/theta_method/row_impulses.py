@@ -14,6 +14,7 @@ from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, 
 if not cython.compiled:
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.stiction import AT_REST, solve_steps, terms
@@ -51,12 +52,12 @@ def impulses(
     for k in range(n_k):
         rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
     impact = False
-    if n_f > 0:
+    if n_f > 0 or c.in_turn:
         round_off(c, s.v_free, n_a + n_f, s.n_q)
         impact = strikes(s, c, n_a)
-    for k in range(n_a):
+    for k in range(0 if c.in_turn else n_a):
         rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
-    for f in range(n_f if impact else 0):
+    for f in range(n_f if impact and not c.in_turn else 0):
         i = ids[c.problem.carrier[f]]
         rate[n_a + f] += c.tangent_restitution[i] * c.sliding[i]
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
@@ -66,14 +67,17 @@ def impulses(
         if external and not solved:
             return NEED_LCP
         s.problems += 1
-        if not solved and not solve(s, c, n_a, n_f, impact):
+        if not solved and not solve(m, s, c, n_a, n_f, impact):
             return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
     return FINISHED
 
 
-def solve(s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool:
+def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool:
     """Impulses of the contacts from their rates; False where there are none."""
+    if impact and c.in_turn:
+        c.coefficients.use(c.problem.mu)
+        return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
     if n_f == 0 or not c.coefficients.two:
         return solve_contacts(c.problem, n_a, n_f)
     if impact:
@@ -134,13 +138,13 @@ def usable(W: Doubles, ids: Indices, n_k: int, n: int) -> bool:
 
 def strikes(s: State, c: Rows, n_a: int) -> bool:
     """Whether a contact closes faster than the forces of one step could move it; rates are without restitution."""
-    size_v = largest(s.v, 0.0, s.n_q)
+    size_v, found = largest(s.v, 0.0, s.n_q), False
     for k in range(n_a):
         i = c.problem.ids[k]
         size = largest(after(c.H, i * s.n_q), 0.0, s.n_q)
-        if s.u[i] < -(abs(c.problem.rate[k] - s.u[i]) + ROUNDING * size * size_v):
-            return True
-    return False
+        c.problem.slow[k] = abs(c.problem.rate[k] - s.u[i]) + ROUNDING * size * size_v
+        found = found or s.u[i] < -c.problem.slow[k]
+    return found
 
 
 def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:

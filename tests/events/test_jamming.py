@@ -1,0 +1,75 @@
+"""Painleve's paradox answered by an impact without collision, where that is asked for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lagrangian import scenes
+from lagrangian.scenes.rough_contacts import critical_friction
+from lcpstep import EventDriven, Kind, Moreau, Status, energy, simulate
+
+ASKED = EventDriven(1e-11, 1e-11, jamming="impact")
+
+
+def rod(law="moreau", restitution=0.0, **parameters):
+    scene = scenes.falling_rod(**parameters)
+    friction = replace(scene.contacts.friction, law=law)
+    return replace(scene, contacts=replace(scene.contacts, restitution=restitution, friction=friction))
+
+
+def rows(scene):
+    """Normal and tangent at the start, (2, 3), and their mobility."""
+    at = (0.0, np.array(scene.q0), np.array(scene.v0), np.array(scene.p))
+    D = np.vstack([scene.contacts.normals(*at), scene.contacts.friction.tangents(at, 1)])
+    return D, D @ np.diag([1.0, 1.0, 12.0]) @ D.T
+
+
+@pytest.mark.parametrize("law", ["moreau", "newton", "stronge"])
+def test_the_tip_of_a_rod_that_jams_comes_to_rest_at_once(law):
+    """Its sliding ends, and it sticks: the impulse takes both velocities of the tip."""
+    scene = rod(law, mu=1.8, angle=1.1)
+    run = simulate(scene, ASKED, keep=[1e-9])
+    D, W = rows(scene)
+    p = np.linalg.solve(W, -D @ np.asarray(scene.v0))
+    expected = np.asarray(scene.v0) + np.diag([1.0, 1.0, 12.0]) @ D.T @ p
+    assert run.status == Status.DONE
+    assert np.max(np.abs(run.v[-1] - expected)) < 1e-7
+    jam = run.impacts[run.impacts.kind == Kind.JAM]
+    assert len(jam) == 1
+    assert jam.before[0] == 0.0
+    assert jam.impulse[0] == pytest.approx(p[0], rel=1e-12)
+    assert run.impulse[0, 0] == pytest.approx(p[0], abs=1e-6)
+    assert "jammed 1 time" in run.message
+
+
+def test_restitution_of_energy_throws_the_rod_off_its_surface():
+    """The jam presses the tip in: r^2 of that work comes back (Stronge), by the other laws nothing does."""
+    for law, thrown in (("moreau", False), ("stronge", True)):
+        run = simulate(rod(law, restitution=0.5, mu=1.8, angle=1.1), ASKED)
+        jam = run.impacts[run.impacts.kind == Kind.JAM]
+        assert (jam.after[0] > 1e-3) == thrown
+        assert len(energy(run).created) == 0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.5, 1.4), st.floats(0.9, 1.3), st.floats(-3.0, -0.3))
+def test_moreaus_steps_jam_in_the_same_way_and_no_energy_is_made(angle, share, v0):
+    scene = rod(mu=share * critical_friction(angle), angle=angle, v0=v0, t_end=0.05)
+    run = simulate(scene, ASKED)
+    E = 0.5 * np.einsum("ij,j,ij->i", run.v, [1.0, 1.0, 1.0 / 12.0], run.v) + 9.81 * run.q[:, 1]
+    assert run.status == Status.DONE
+    assert np.max(np.diff(E)) < 1e-9
+    assert (simulate(scene, EventDriven(1e-11, 1e-11)).status == Status.DONE) == (
+        not np.any(run.impacts.kind == Kind.JAM)
+    )
+    coarse, fine = (simulate(scene, Moreau(h), keep=[0.05]).q[-1] for h in (1e-3, 1e-5))
+    assert np.max(np.abs(fine - run.q[-1])) < 0.1 * np.max(np.abs(coarse - run.q[-1])) + 1e-6
+
+
+def test_what_is_to_follow_a_jam_is_named():
+    with pytest.raises(ValueError, match="jamming: expected"):
+        EventDriven(jamming="bounce")
+    assert simulate(rod(mu=1.8, angle=1.1), EventDriven()).status == Status.PAINLEVE_INCONSISTENT
