@@ -34,7 +34,6 @@ class RubbingRun(FrictionRun):
         system: RubbingSteps = start(
             scene,
             RubbingSteps,
-            False,
             ROUNDING,
             ROUNDING,
             order,
