@@ -1,4 +1,4 @@
-"""Impacts of every scene of the catalogue: the same for another end, later, and whatever is stored; or the bar ends."""
+"""Impacts of every scene of the catalogue: the same for another end, later, whatever is stored; or the bar ends."""
 
 from dataclasses import replace
 
