@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from benchmarks.judge.describe import Description
 from lagrangian import Coulomb, LinearContacts
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.analysis.errors import Difference, energies
+from lcpstep.accuracy.errors import Difference, energies
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errorbar.companions import Companion
 from lcpstep.errorbar.distance import fall, looks, merged, with_nodes
@@ -133,7 +133,7 @@ def truth_of_friction(scene: Any, h: float) -> Truth | None:
 
 
 def errors(run: Trajectory, reference: Trajectory, until: float, resolution: float | None = None) -> Errors:
-    """Errors of a run up to a time: those of `lcpstep.analysis.errors`, and of impacts that have partners."""
+    """Errors of a run up to a time: those of `lcpstep.accuracy.errors`, and of impacts that have partners."""
     apart = Difference(run, reference, t_end=until)
     seen = against(run, True, [(Companion(reference.method), reference)], until, resolution)
     known = np.isfinite(seen.impact_time) & (run.error is None or np.isfinite(run.error.impact_time))
