@@ -22,6 +22,7 @@ file = "study.nc"
 from __future__ import annotations
 
 import itertools
+import math
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -56,6 +57,14 @@ MEASURES: dict[str, tuple[str, Callable[[Any], Any]]] = {  # of a run: unit, val
     "events": ("1", lambda run: len(run.impacts)),
     "steps": ("1", lambda run: run.counts.steps),
     "penetration": ("m", lambda run: float(np.max(run.penetration, initial=0.0))),
+}
+ERRORS: dict[str, tuple[str, Callable[[Any], Any]]] = {  # of an error bar: unit, value
+    "position_error": ("m", lambda bar: bar.position.sup),
+    "velocity_error": ("m/s", lambda bar: bar.velocity.sup),
+    "impact_time_error": ("s", lambda bar: bar.latest),
+    "impulse_error": ("N s", lambda bar: bar.strongest),
+    "energy_error": ("J", lambda bar: bar.energy.sup),
+    "known_until": ("s", lambda bar: bar.until),
 }
 ORDINARY = ("impacts", "impulse", "strongest", "q_end", "v_end")
 
@@ -103,7 +112,7 @@ class ParameterStudy:
         measures = sections["outputs"].get("measures", list(ORDINARY))
         if not isinstance(measures, list) or not measures:
             raise ValueError(f"{name}: [outputs]: measures: expected a list of names, got {measures!r}")
-        _known(f"{name}: [outputs]", "measure", measures, MEASURES)
+        _known(f"{name}: [outputs]", "measure", measures, MEASURES | ERRORS)
         sweep = {key: _values(f"{name}: [sweep]: {key}", x) for key, x in sections["sweep"].items()}
         t_end = None if "t_end" not in given else checks.positive(f"{name}: t_end", given["t_end"])
         twice = sorted(set(sweep) & set(sections["parameters"]))
@@ -113,6 +122,11 @@ class ParameterStudy:
             text, given["scene"], _method(name, sections["method"]), t_end, sections["parameters"], sweep,
             sections["outputs"] | {"measures": measures},
         )  # fmt: skip
+
+    @property
+    def tells_errors(self) -> bool:
+        """Whether every run gets an error bar."""
+        return any(name in ERRORS for name in self.outputs["measures"])
 
     @property
     def points(self) -> list[dict[str, Any]]:
@@ -147,12 +161,12 @@ class ParameterStudy:
             raise LcpStepError(
                 f"scene: {modes.name!r} has modes; parameter studies take scenes with contacts"
             )
-        rows, ended = [], []
+        rows, ended, measures = [], [], self.outputs["measures"]
         for k, scene in enumerate(scenes):
-            run = self._one(scene, 1 if kept or "penetration" in self.outputs["measures"] else None)
+            run = self._one(scene, 1 if kept or self.tells_errors or "penetration" in measures else None)
             if kept is not None:
                 kept(k, run)
-            rows.append({name: MEASURES[name][1](run) for name in self.outputs["measures"]})
+            rows.append({name: _measured(name, run) for name in measures})
             ended.append(run.status.name)
             if progress is not None:
                 progress(k + 1, len(points))
@@ -162,7 +176,7 @@ class ParameterStudy:
         """One run; one that fails is what it was up to there."""
         what: Keep = keep or "impacts"  # the last state with them, wherever the run ends
         try:
-            return simulate(scene, self.method, keep=what)
+            return simulate(scene, self.method, keep=what, error=self.tells_errors)
         except SimulationError as error:
             found: Trajectory = error.trajectory
             return found
@@ -172,16 +186,25 @@ class ParameterStudy:
         shape, names = tuple(map(len, self.sweep.values())), tuple(self.sweep)
         variables: dict[str, Any] = {"status": (names, np.array(ended).reshape(shape))}
         n, units = scene.n_q, {}
-        labels = {"q_end": scene.labels[:n], "v_end": scene.labels[n:]}
+        labels = dict.fromkeys(("q_end", "position_error"), scene.labels[:n])
+        labels |= dict.fromkeys(("v_end", "velocity_error"), scene.labels[n:])
         own = {name: checks.common_unit(of) or "1" for name, of in labels.items()}
         for name in self.outputs["measures"]:
             values = np.array([row[name] for row in rows])
             inner = ("coordinate",) if values.ndim > 1 else ()
             variables[name] = ((*names, *inner), values.reshape(*shape, *values.shape[1:]))
-            units[name] = own.get(name, MEASURES[name][0])
+            units[name] = own.get(name, (MEASURES | ERRORS)[name][0])
         coordinates = {key: np.asarray(values) for key, values in self.sweep.items()}
         attributes = dataset.provenance(scene, self.method) | {"study": self.text}
         return dataset.labelled(variables, coordinates, attributes, units)
+
+
+def _measured(name: str, run: Trajectory) -> Any:
+    """A measure of a run, nan for an error that is not known."""
+    if name in MEASURES:
+        return MEASURES[name][1](run)
+    value = math.nan if run.error is None else float(ERRORS[name][1](run.error))
+    return value if math.isfinite(value) else math.nan
 
 
 def _known(where: str, what: str, given: Any, known: Any) -> None:

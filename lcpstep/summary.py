@@ -28,6 +28,7 @@ def html(run: Any) -> str:
         ("ended", f"{run.status.name}: {run.message}"),
         ("kept", f"{len(run.t)} states of {run.counts.steps} steps"),
         (*_events(run),),
+        *([("error bar", str(run.error))] if getattr(run, "error", None) else []),
     ]
     lines = [f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows]
     x = run.q if isinstance(run, Trajectory) else run.x

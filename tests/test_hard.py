@@ -92,3 +92,41 @@ def test_what_the_page_shows_as_passed_goes_on_passing():
     passed = {(row.scene, row.what, row.method) for row in table() if row.passed}
     heavy = {(c.scene, c.what) for c in CHECKS if c.heavy}
     assert [x for x in shown if x not in passed and x[:2] not in heavy] == []
+
+
+def test_error_bars_of_steps_tell_the_errors_without_the_answer():
+    scenes = (
+        "bouncing-ball",
+        "impact-oscillator",
+        "bowl",
+        "coulomb-oscillator",
+        "sliding-block",
+        "slope-landing",
+    )
+    rows = [row for row in table(scenes, ["moreau"], bars=True) if row.what.startswith("states")]
+    assert len(rows) >= 7
+    for row in rows:
+        assert row.known == 1.0
+        assert 0.5 < row.bar / row.error < 2.0
+    assert table(["sliding-block"], ["moreau"])[0].bar is None
+
+
+def test_error_bars_of_event_driven_runs_are_not_below_the_errors():
+    rows = [
+        row for row in table((*QUICK, "falling-rod"), ["event-driven"], bars=True) if "states" in row.what
+    ]
+    assert len(rows) >= 4
+    for row in rows:
+        assert row.error <= 2.0 * row.bar
+        assert row.bar < 1e-10
+
+
+def test_the_command_prints_error_bars_beside_errors(capsys):
+    assert main(["hard", "--scene", "chattering-table", "--error", "--method", "moreau"]) == 0
+    line = capsys.readouterr().out.splitlines()[0]
+    assert "  bar 8" in line
+    assert " % " in line
+    main(["hard", "--scene", "chattering-table", "--error", "--method", "moreau", "--json"])
+    row = json.loads(capsys.readouterr().out)[0]
+    assert row["error"] < 2.0 * row["bar"]
+    assert 0.0 < row["bar_holds_for"] < 1.0

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import xarray
 
-from lcpstep import UnknownName, load
+from lagrangian import scenes
+from lcpstep import Moreau, UnknownName, load, simulate
 from lcpstep.cli.common import DONE, FAILED, USAGE
 from lcpstep.parameters import ParameterStudy
 from tests.commands import run
@@ -110,3 +111,27 @@ def test_parameters_that_the_scene_does_not_have(folder, capsys):
     assert "No such file" in run(capsys, "run", "nothing.toml")[2]
     (folder / "study.toml").write_text('scene = "hybrid-abs"')
     assert "has modes; parameter studies take scenes with contacts" in run(capsys, "run", "study.toml")[2]
+
+
+def test_error_bars_of_every_run_are_measures_too(folder, capsys):
+    measures = '"position_error", "impact_time_error", "known_until"'
+    text = (
+        TEXT.replace('"event-driven"', '"moreau"\nh = 1e-3').replace('"q_end"', measures)
+        + 'file = "out.nc"\n'
+    )
+    (folder / "study.toml").write_text(text)
+    status, out, _ = run(capsys, "run", "study.toml")
+    assert status == DONE
+    assert "position_error" in out
+    with xarray.open_dataset("out.nc") as data:
+        assert data.position_error.attrs["units"] == "m"
+        assert data.impact_time_error.attrs["units"] == "s"
+        for r in (0.25, 0.5):
+            for h0 in (0.25, 0.5, 0.75):
+                told = data.sel(restitution=r, h0=h0)
+                ball = scenes.bouncing_ball(g=8.0, restitution=r, h0=h0, t_end=0.6)
+                one = simulate(ball, Moreau(1e-3))
+                error = np.max(np.abs(one.q - ball.exact(one.t)[0]))
+                assert 0.5 < error / told.position_error < 2.0
+                assert told.known_until == 0.6
+                assert 0.0 < told.impact_time_error < 0.01

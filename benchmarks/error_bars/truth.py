@@ -25,7 +25,8 @@ from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.accuracy.errors import Difference, energies
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errorbar.companions import Companion
-from lcpstep.errorbar.distance import fall
+from lcpstep.errorbar.distance import fall, looks, merged, with_nodes
+from lcpstep.errorbar.distance import within as inside
 from lcpstep.errorbar.estimate import against, resolved
 from lcpstep.errors import LcpStepError, SimulationInterrupted
 from lcpstep.model import model
@@ -60,9 +61,15 @@ class Truth:
         best = self.by_steps if steps else self.less_tight or self.by_events
         check = self.by_steps if best is self.by_events else self.by_events
         unsure = errors(best, check, until, resolved(run) if steps else None).of
+        own = errors(run, best, until)
+        free = away_from_impacts(run, best, unsure["impact times"])
+        own.of["velocity, sup"], unsure["velocity, sup"] = (
+            fastest(run, best, free),
+            fastest(best, check, free),
+        )
         if best is self.less_tight and self.confirmed < until:
             unsure = dict.fromkeys(unsure, np.inf)
-        return errors(run, best, until), unsure
+        return own, unsure
 
     @cached_property
     def confirmed(self) -> float:
@@ -132,6 +139,18 @@ def errors(run: Trajectory, reference: Trajectory, until: float, resolution: flo
     known = np.isfinite(seen.impact_time) & (run.error is None or np.isfinite(run.error.impact_time))
     smooth = (apart.sup_position, apart.l1_velocity, seen.velocity.sup, apart.energy)
     return Errors(_by_name(smooth, seen, known), known)
+
+
+def away_from_impacts(run: Trajectory, reference: Trajectory, margin: float) -> NDArray[np.float64]:
+    """Times about which the bar of a run says something of velocities, as far as impacts of the truth are known."""
+    t = with_nodes(looks(run, reference, True, run.error.until))
+    t = np.unique(t[t <= run.error.until])
+    return t[~inside(merged(run.error.left_out, margin), t)]
+
+
+def fastest(run: Trajectory, reference: Trajectory, t: NDArray[np.float64]) -> float:
+    """The largest difference of velocities at some times."""
+    return float(np.max(np.abs(run.at(t)[1] - reference.at(t)[1]), initial=0.0)) if len(t) else 0.0
 
 
 def told(bar: ErrorBar, known: NDArray[np.bool_]) -> dict[str, float]:

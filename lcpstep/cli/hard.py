@@ -26,6 +26,11 @@ def add(commands: Any) -> None:
         "--method", nargs="+", default=[], metavar="METHOD", help=f"only these of: {', '.join(METHODS)}"
     )
     p.add_argument("--full", action="store_true", help="the heavy checks too; takes minutes")
+    p.add_argument(
+        "--error",
+        action="store_true",
+        help="error bars of the runs, which tell what the errors are without the answer; a run more each",
+    )
     form = p.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="print JSON")
     form.add_argument("--markdown", action="store_true", help="print the page docs/hard-cases.md")
@@ -42,7 +47,7 @@ def run_hard(options: argparse.Namespace) -> int:
         elif sys.stderr.isatty():
             print(f"{row.scene}: {row.what}, {row.method}", file=sys.stderr)
 
-    rows = table(options.scene, options.method, options.full, show)
+    rows = table(options.scene, options.method, options.full, show, options.error)
     if options.json:
         print(json.dumps([row.as_json() for row in rows], indent=2))
     elif options.markdown:

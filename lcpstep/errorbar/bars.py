@@ -55,7 +55,7 @@ class ErrorBar:
     t : (m,)   times of the functions of time [s]
     position : Bar [m], the unit of the coordinates
     velocity : Bar [m/s]; `sup` leaves out the time between an impact and its partner in the companion, where one of
-        the two velocities has jumped already; `l1` [m] does not
+        the two velocities has jumped already, `left_out`; `l1` [m] does not
     energy : Bar [J], of the kinetic energy and that of constant stiffness and forces; `sup` as for velocities
     impact_time, impact_impulse : (n_events,)   of every row of the impact log [s], [N s]; nan for what is no impact,
         has no partner, is weak (its jump below a fiftieth of the largest), or comes after `until`
@@ -64,6 +64,7 @@ class ErrorBar:
     horizon : time beyond which the run does not predict the motion: its error is a quarter of the range of the
         coordinate that moves most; infinite where that does not happen until the bar ends [s]
     companions : the runs that it comes from, in words
+    left_out : (k, 2)   intervals that `sup` and `largest` of velocity and energy say nothing about [s]
     """
 
     t: Array
@@ -76,6 +77,7 @@ class ErrorBar:
     reason: str
     horizon: float
     companions: tuple[str, ...]
+    left_out: Array
 
     @property
     def latest(self) -> float:

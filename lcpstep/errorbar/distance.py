@@ -47,6 +47,7 @@ class Distance:
     position: Bar
     velocity: Bar
     energy: Bar
+    left_out: Array
     size: float  # half the range of the coordinate that moves most, or what is no motion but rounding
 
 
@@ -155,7 +156,7 @@ def distance(
     falls : see `fall` [m/s]
     """
     n_q, length = runs[0].scene.n_q, float(t[-1] - t[0])
-    times = _with_nodes(t) if every else t
+    times = with_nodes(t) if every else t
     one, other = (at(x, times, every) for x in runs)
     energies = [energy(m, times, *x) for x in (one, other)]
     apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
@@ -164,17 +165,17 @@ def distance(
     integral = _integral(t, apart, every) + floor * (t - t[0])[:, None]
     if not every and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
-    windows = np.concatenate([windows, brief(*runs, length)])
-    apart[_between(windows, around, times), n_q:] = 0.0
+    left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
+    apart[within(left_out, times), n_q:] = 0.0
     largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * every] + floor
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
     size = 0.5 * float(np.ptp(one[0], axis=0).max())
-    return Distance(position, velocity, power, max(size, least))
+    return Distance(position, velocity, power, left_out, max(size, least))
 
 
-def _with_nodes(t: Array) -> Array:
+def with_nodes(t: Array) -> Array:
     """Times (n,), and after each but the last the nodes between it and the next."""
     between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
     return np.append(between.ravel(), t[-1])
@@ -186,10 +187,19 @@ def _integral(t: Array, x: Array, every: bool) -> Array:
     return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
 
 
-def _between(windows: Array, around: float, t: Array) -> NDArray[np.bool_]:
-    """Whether times lie in intervals, or that near to them."""
-    start, end = np.sort(windows[:, 0] - around), np.sort(windows[:, 1] + around)
-    return np.asarray(np.searchsorted(start, t, side="right") > np.searchsorted(end, t, side="left"))
+def merged(windows: Array, around: float) -> Array:
+    """Intervals with what is around them, those that overlap as one, in their order (k, 2)."""
+    if not len(windows):
+        return windows
+    windows = windows[np.argsort(windows[:, 0])]
+    ends = np.maximum.accumulate(windows[:, 1]) + around
+    first = np.append(True, windows[1:, 0] - around > ends[:-1])
+    return np.column_stack([windows[first, 0] - around, ends[np.append(first[1:], True)]])
+
+
+def within(intervals: Array, t: Array) -> NDArray[np.bool_]:
+    """Whether times lie in intervals that do not overlap."""
+    return np.asarray(np.searchsorted(intervals[:, 0], t, side="right") > np.searchsorted(intervals[:, 1], t))
 
 
 def energy(m: Model, t: Array, q: Array, v: Array) -> Array:

@@ -69,7 +69,8 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
         for k, unit in ((run.scene.n_q, "m"), (run.scene.n_q, "m/s"), (1, "J"))
     )
     at = float(start[0])
-    return ErrorBar(start, position, velocity, energy, missing, missing, at, reason, at, ())
+    nothing = np.zeros((0, 2))
+    return ErrorBar(start, position, velocity, energy, missing, missing, at, reason, at, (), nothing)
 
 
 def against(
@@ -108,7 +109,8 @@ def against(
     )
     known = float(t[n - 1]) if reason or math.isfinite(limit) else until
     times, impulses = _of_impacts(run, logs[0].pairs, known)
-    return ErrorBar(t[:n], position, velocity, energy, times, impulses, known, reason, horizon, texts)
+    bars, out = (position, velocity, energy), apart.left_out
+    return ErrorBar(t[:n], *bars, times, impulses, known, reason, horizon, texts, out[out[:, 0] < known])
 
 
 def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Array]:

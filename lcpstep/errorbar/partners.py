@@ -268,16 +268,15 @@ def _room(time: Array, resolution: float) -> Array:
 
 
 def _tails(logs: tuple[Any, Any], contact: int, last: Array, both: tuple[Blows, Blows], end: float) -> Array:
-    """From the last impacts of chattering sequences that have partners to where the sequences end in both runs.
+    """From the first impacts of chattering sequences without partner to where the sequences end in both runs.
 
-    A sequence begins where the contact has closed, opened or come to rest before.
+    A sequence begins after the contact has closed, opened or come to rest before.
     """
     struck, found = np.concatenate([x.first for x in both]), []
     for log in logs:
         own = log[log["contact"] == contact]
         turns = own["time"][own["kind"] != Kind.IMPACT]
         for stop in own["time"][own["kind"] == Kind.ACCUMULATION]:
-            before = np.concatenate([last[last <= stop], turns[turns < stop]])
-            since = np.max(before) if len(before) else np.min(struck[struck <= stop], initial=stop)
-            found.append((since, min(stop, end)))
+            since = max(np.max(x, initial=-math.inf) for x in (last[last <= stop], turns[turns < stop]))
+            found.append((np.min(struck[(struck > since) & (struck <= stop)], initial=stop), min(stop, end)))
     return np.array(found).reshape(-1, 2)

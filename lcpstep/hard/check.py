@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.errorbar.estimate import error_bar
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.hard.methods import METHODS, MOREAU
 from lcpstep.recording import Keep
@@ -65,6 +66,9 @@ class Row:
     error, bound : how far off, and how far it may be; None where there is none
     seconds : time of the runs, compilation left out
     note : why it failed or was refused, or a remark
+    bar : what error bars of its runs say, the largest: positions [m] or, if that is more, the mean of velocities
+        [m/s], of plain Moreau positions alone; None where none was asked for
+    known : share of the span up to which they hold
     """
 
     scene: str
@@ -75,6 +79,8 @@ class Row:
     bound: float | None
     seconds: float
     note: str = ""
+    bar: float | None = None
+    known: float = 1.0
 
     @property
     def passed(self) -> bool:
@@ -85,19 +91,26 @@ class Row:
         """The line as JSON carries it: finite numbers or null."""
         finite = {
             name: x if x is not None and np.isfinite(x) else None
-            for name, x in (("error", self.error), ("bound", self.bound))
+            for name, x in (("error", self.error), ("bound", self.bound), ("bar", self.bar))
         }
         return {
             "scene": self.scene, "what": self.what, "method": self.method, "passed": self.passed,
-            "outcome": self.outcome, **finite, "seconds": self.seconds, "note": self.note,
+            "outcome": self.outcome, **finite, "bar_holds_for": self.known, "seconds": self.seconds,
+            "note": self.note,
         }  # fmt: skip
 
 
 class Solver:
-    """Runs scenes by one method with the step of the check, and keeps account of the work."""
+    """Runs scenes by one method with the step of the check, and keeps account of the work.
 
-    def __init__(self, method: str, period: float) -> None:
-        self.method = method
+    bars : whether runs get error bars; `seconds` is the time without them, `bar` the largest, `known` the share
+        of the span that all of them cover
+    """
+
+    def __init__(self, method: str, period: float, bars: bool = False) -> None:
+        self.method, self.bars = method, bars
+        self.bar: float | None = None
+        self.known = 1.0
         self.h, self.period = period / (MOREAU_STEPS if method == MOREAU else STEPS), period
         self.seconds = self.jumps = self.speed = self.size = self.length = 0.0
 
@@ -109,15 +122,25 @@ class Solver:
         simulate(warm, METHODS[self.method](1e-9 * (t_end - t_start)))  # takes the compilation
         begin = time.perf_counter()
         run = simulate(scene, method, keep=keep)
-        self.seconds += time.perf_counter() - begin
+        seconds = time.perf_counter() - begin
+        self.seconds += seconds
         if run.status != Status.DONE:
             raise Stopped(f"{run.status.name}: {run.message}")
+        if self.bars:
+            self._tell(simulate(scene, method), seconds)
         log = run.impacts[run.impacts.kind == Kind.IMPACT]
         self.jumps = max(self.jumps, float(np.sum(np.abs(log.after - log.before))))
         self.speed = max(self.speed, float(np.max(np.abs(run.v), initial=0.0)))
         self.length = max(self.length, t_end - t_start)
         self.size = max(self.size, float(np.max(np.ptp(run.q, axis=0), initial=0.0)))
         return run
+
+    def _tell(self, run: Trajectory, seconds: float) -> None:
+        """Note what the error bar of a run that kept every step says, as `state_error` measures it."""
+        bar, (start, end) = error_bar(run, True, seconds), run.scene.t_span
+        speed = 0.0 if self.method == MOREAU else bar.velocity.l1 / (bar.until - start or 1.0)
+        self.bar = max(bar.position.sup, speed, self.bar or 0.0)
+        self.known = min((bar.until - start) / (end - start), self.known)
 
     def first_order(self) -> float:
         """What order one allows: see the head of this file."""
@@ -157,9 +180,9 @@ def check(
     return registered
 
 
-def run_check(c: Check, method: str) -> Row:
-    """Put one method to a check."""
-    solve, bound = Solver(method, c.period), c.bounds[method]
+def run_check(c: Check, method: str, bars: bool = False) -> Row:
+    """Put one method to a check; with `bars` its runs get error bars."""
+    solve, bound = Solver(method, c.period, bars), c.bounds[method]
     shown = None if bound < 0.0 else bound
     try:
         found = c.measure(solve)
@@ -176,7 +199,18 @@ def run_check(c: Check, method: str) -> Row:
     if bound < 0.0:
         bound = solve.first_order() if bound == FIRST_ORDER else solve.second_order()
     outcome = "passed" if found.error <= bound else "failed"
-    return Row(c.scene, c.what, method, outcome, found.error, bound, solve.seconds, found.note)
+    return Row(
+        c.scene,
+        c.what,
+        method,
+        outcome,
+        found.error,
+        bound,
+        solve.seconds,
+        found.note,
+        solve.bar,
+        solve.known,
+    )
 
 
 def sample_times(scene: Scene) -> Array:

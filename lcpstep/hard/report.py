@@ -19,7 +19,7 @@ def line(row: Row) -> str:
     note = note if len(note) <= SHOWN else note[: SHOWN - 3] + "..."
     return (
         f"{row.outcome:8}{row.scene:20}{row.what:58}{row.method:14}{_number(row.error):>9}{_number(row.bound):>9}"
-        f"{row.seconds:9.3f} s  {note}"
+        f"  {_bar(row):18}{row.seconds:9.3f} s  {note}"
     ).rstrip()
 
 
@@ -93,6 +93,13 @@ def _failures(rows: list[Row]) -> list[str]:
 def _remark(row: Row) -> str:
     why = reason(row.method, row.scene, row.what) if row.outcome == "failed" else ""
     return "; ".join(text for text in (why, row.note) if text)
+
+
+def _bar(row: Row) -> str:
+    """What the error bars say."""
+    if row.bar is None:
+        return ""
+    return f"bar {_number(row.bar)}" + (f" to {100.0 * row.known:.0f} %" if row.known < 1.0 else "")
 
 
 def _number(x: float | None) -> str:

@@ -29,6 +29,7 @@ def table(
     methods: Iterable[str] = (),
     full: bool = False,
     progress: Callable[[Row], None] | None = None,
+    bars: bool = False,
 ) -> list[Row]:
     """Run the checks.
 
@@ -37,6 +38,7 @@ def table(
     scenes, methods : names of those wanted; all where none is given
     full : the heavy checks too, which take minutes
     progress : called with each line as it is done
+    bars : give the runs error bars
 
     Raises
     ------
@@ -55,7 +57,7 @@ def table(
             continue
         for method in METHODS:
             if method in c.bounds and (not by or method in by):
-                rows.append(run_check(c, method))
+                rows.append(run_check(c, method, bars))
                 if progress is not None:
                     progress(rows[-1])
     return rows

@@ -11,7 +11,7 @@ from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport abs, max, min
 from lcpstep.rows cimport copy
 
-cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, LAST_EXCHANGES, SPREADING, MOST, STARTS, FEWEST_STARTS, STRIDE, PER_SQUARE, THOROUGH, MULTIPLIER, MODULUS, SIXTHS, TINY
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, LAST_EXCHANGES, SPREADING, MOST, STARTS, FEWEST_STARTS, STRIDE, PER_SQUARE, THOROUGH, PATIENT, MULTIPLIER, MODULUS, SIXTHS, TINY
 cdef double TOLERANCE, STRICT, ALMOST, SMALLEST_PIVOT, LARGER_PIVOT
 
 cdef Py_ssize_t solve_small(double* W, double* b, double* z, Py_ssize_t n, Workspace work) noexcept nogil

@@ -42,6 +42,7 @@ ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again f
 STARTS, FEWEST_STARTS = 12, 2  # times that Lemke's method is started
 STRIDE = 7919  # a prime that scatters them
 PER_SQUARE, THOROUGH = 25, 3_000_000_000  # the same of a thorough search, times n^2, and at most this by n^3
+PATIENT = 70_000_000_000_000  # or this by n^5: seconds where a search has a chance, up to a hundred unknowns
 MULTIPLIER, MODULUS = (
     48271,
     2147483647,
@@ -175,6 +176,8 @@ def number_of_starts(n: int, work: Workspace) -> int:
     affordable, enough = THOROUGH // (n * n * n), STARTS
     if work.thorough and PER_SQUARE * n * n > STARTS:
         enough = PER_SQUARE * n * n
+        if PATIENT // (n * n * n * n * n) > affordable:
+            affordable = PATIENT // (n * n * n * n * n)
     if affordable < FEWEST_STARTS:
         return FEWEST_STARTS
     return affordable if affordable < enough else enough

@@ -14,6 +14,7 @@ from lcpstep.accuracy.compare import Comparison, compare
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.orbits import PeriodicOrbit, periodic_orbit
 from lcpstep.analysis.starts import random_starts
+from lcpstep.errorbar.estimate import error_bar
 from lcpstep.maps import sections
 from lcpstep.plot.motion import portraits, time_series
 from lcpstep.plot.orbits import motion_panel, state_panel
@@ -49,8 +50,13 @@ def portraits_of_both() -> tuple[Any, dict[str, Any]]:
 def _impacts(titles: list[str], found: list[Comparison]) -> dict[str, Any]:
     return {
         title: {
-            name: {"impact_times": run.impacts.time, "before": run.impacts.before, "after": run.impacts.after}
-            for name, run in (("time-stepping", c.fast.trajectory), ("event-driven", c.reference.trajectory))
+            name: {
+                "impact_times": run.trajectory.impacts.time,
+                "before": run.trajectory.impacts.before,
+                "after": run.trajectory.impacts.after,
+                "error_bar": error_bar(run.trajectory, True, run.seconds).as_dict(),
+            }
+            for name, run in (("time-stepping", c.fast), ("event-driven", c.reference))
         }
         for title, c in zip(titles, found, strict=True)
     }

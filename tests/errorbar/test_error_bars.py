@@ -307,3 +307,17 @@ def test_an_error_that_does_not_depend_on_the_tolerance_is_seen_by_the_other_met
     scene = Scene(system=LinearSystem(1.0, K=1.0), q0=1.0, v0=0.0, t_span=(0.0, 10.0))
     assert find_reference(scene, None).uncertainty(["sup_position"])["sup_position"] > 1e-3
     assert simulate(scene, EventDriven(), error=True).error.position.sup > 1e-3
+
+
+def test_times_about_which_the_bar_of_velocities_says_nothing_are_few_and_told():
+    run = simulate(scenes.impact_oscillator(t_end=20.0), Located(1e-2), error=True)
+    out = run.error.left_out
+    assert np.all(out[:, 0] <= out[:, 1])
+    assert np.all(out[1:, 0] > out[:-1, 1])
+    hits = run.impacts.time
+    assert np.all(np.min(np.abs(hits[:, None] - np.mean(out, axis=1)), axis=1) < 1e-3)
+    assert np.sum(np.diff(out)) < 1e-3 * 20.0
+    t = np.linspace(0.0, 20.0, 5001)
+    t = t[~np.any((t[:, None] >= out[:, 0]) & (t[:, None] <= out[:, 1]), axis=1)]
+    apart = np.max(np.abs(run.at(t)[1] - run.scene.exact(t)[1]))
+    assert 0.5 < apart / run.error.velocity.sup < 1.01

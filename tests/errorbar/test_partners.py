@@ -90,7 +90,15 @@ def test_the_end_of_a_chattering_sequence_is_no_different_event():
     short = np.concatenate([log(*rows[:8]), log((end, 0, 0.0), kind=Kind.ACCUMULATION)])
     found = partners(long, short, 10.0, FINE)
     assert found.differs == math.inf
-    assert any(start <= times[7] and stop == pytest.approx(end) for start, stop in found.windows)
+    assert any(times[7] < start <= times[8] and stop == pytest.approx(end) for start, stop in found.windows)
+
+
+def test_a_sequence_that_ends_long_after_the_last_partners_is_left_out_from_where_it_begins():
+    some = [(1.0, 0, 2.0), (50.0, 0, 1e-12), (50.0 + 1e-6, 0, 1e-13)]
+    rest, end = log((1.5, 0, 0.0), kind=Kind.STICK), log((50.1, 0, 0.0), kind=Kind.ACCUMULATION)
+    found = partners(np.concatenate([log(*some), rest, end]), log((1.0, 0, 2.0)), 100.0, FINE)
+    assert found.differs == math.inf
+    assert sum(stop - start for start, stop in found.windows) < 0.2
 
 
 def test_no_impacts_at_all():

@@ -66,6 +66,15 @@ def test_indefinite_matrices(n, symmetric):
         solved(W, planted(W, rng))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [60007, 60008, 60016, 60023])
+def test_indefinite_matrices_that_need_many_starts(seed):
+    rng = np.random.default_rng(seed)
+    W = rng.normal(size=(60, 60))
+    W = W + W.T
+    solved(W, planted(W, rng))
+
+
 @pytest.mark.parametrize("n", [9, 12, 20, 50])
 @pytest.mark.parametrize("ratio", [1e8, 1e10, 1e12])
 def test_chains_of_heavy_and_light_bodies_in_turn(n, ratio):
