@@ -69,4 +69,13 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "event-driven-loose"),
     ),
+    "a bowl that shrinks around a body in its middle": (
+        Description(
+            M=((1.0,),), q0=(0.193,), v0=(0.0,), t_span=(0.0, 1.37072), h=0.00208, G=((-0.0,), (-0.0,)),
+            offset=(1.1411485507887524, 2.3945780402021355), restitution=(0.0, 0.49), K=((1.03,),),
+            constant=(-9.81,), amplitude=(-0.184, 0.369), phase=(2.82, 2.82), omega=21.4, bend=(-1.16,
+            -1.48), round=(1.0, 0.3), family="curved",
+        ),
+        ("located-4",),
+    ),
 }  # fmt: skip
