@@ -79,10 +79,8 @@ def interrupted(words, folder, after, again=None):
         out, err = process.communicate(timeout=60)
     finally:
         process.kill()
-    ended = (
-        {interrupt.INTERRUPTED} if again is None else {interrupt.INTERRUPTED, -signal.SIGINT}
-    )  # both are 130 to a shell
-    assert process.returncode in ended, err
+    signalled = interrupt.INTERRUPTED if again is None else -signal.SIGINT  # which a shell calls 130 too
+    assert process.returncode in {interrupt.INTERRUPTED, signalled}, err
     assert "Traceback" not in err
     return out, err, time.perf_counter() - begin
 
