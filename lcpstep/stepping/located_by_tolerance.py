@@ -122,8 +122,7 @@ class Attempts(Control):
             early = trial < TRIALS - 2 and (self.alike or self.saved.closed_now > 0)
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
-        if entire:
-            self.in_time()
+        self.in_time()
         self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
         if not self.full:
             self.weigh(end - start)
@@ -218,8 +217,7 @@ class Attempts(Control):
 
     def in_time(self) -> None:
         """Nothing of a step comes after the multiple that it ends at, by rounding."""
-        if self.from_time + self.h > self.to_time:
-            stamp(self.record, self.saved_row, self.saved_event, self.to_time, self.to_time)
+        stamp(self.record, self.saved_row, self.saved_event, self.to_time, self.to_time)
 
     def led(self, to: Led, code: int) -> None:
         """Where the part that has just been taken led."""

@@ -103,4 +103,12 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located",),
     ),
+    "steps by a tolerance beside a moving wall that is never touched": (
+        Description(
+            M=((0.746,),), q0=(0.0,), v0=(0.0,), t_span=(0.0, 0.08446), h=0.00103, G=((-1.0,),),
+            offset=(0.0593,), restitution=0.21, K=((10.9,),), C=((0.541,),), sine=(-0.942,),
+            force_omega=2.99, amplitude=(0.0444,), phase=(0.0,), omega=21.5, family="wall",
+        ),
+        ("located-tolerance", "located"),
+    ),
 }  # fmt: skip
