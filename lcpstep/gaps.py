@@ -54,7 +54,8 @@ def closing_in(scene: Scene, t: float, q: Array, contacts: list[int]) -> list[in
 
     By the lemma of J. Farkas (Theorie der einfachen Ungleichungen, 1902) G v + g_t >= 0 has no solution v where there
     are weights y >= 0 with G^T y = 0 and g_t^T y < 0: what is left between the obstacles of the contacts with y > 0
-    depends on no coordinate, and shrinks. Joints are equations, whose weights have either sign.
+    depends on no coordinate, and shrinks; as does a gap alone whose row is zero. Joints are equations, whose weights
+    have either sign.
     """
     from scipy.optimize import nnls
 
@@ -63,6 +64,10 @@ def closing_in(scene: Scene, t: float, q: Array, contacts: list[int]) -> list[in
         J, turn = _rows(scene.joints.as_contacts(), scene, t, q, list(range(scene.n_j)))
         G, rate = np.vstack([G, J, -J]), np.concatenate([rate, turn, -turn])
     size = np.linalg.norm(G, axis=1)
+    alone = [c for c, g, u in zip(contacts, size, rate, strict=False) if g == 0.0 and u < 0.0]
+    if alone:  # as in the middle of a bowl that shrinks
+        return alone
+    size = np.where(size > 0.0, size, np.inf)
     G, rate = G / size[:, None], rate / size
     fastest = float(np.max(np.abs(rate), initial=0.0))
     if fastest == 0.0:
@@ -91,4 +96,6 @@ def no_way_out(scene: Scene, t: float, q: Array, contacts: list[int]) -> str:
     between = closing_in(scene, t, q, contacts) if contacts else []
     if not between:
         return ""
+    if len(between) == 1:
+        return f"the obstacle of contact {between[0]} closes in, and its gap depends on no coordinate here"
     return f"the obstacles of contacts {between} approach each other with nothing left between them"

@@ -62,8 +62,8 @@ def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, m
     np.testing.assert_array_equal(caught.value.trajectory.t, whole.t)
 
 
-def interrupted(words, folder, after):
-    """Run a command, interrupt it after a time; its output, its errors, and how long it took to end."""
+def interrupted(words, folder, after, again=None):
+    """Run a command, interrupt it after a time, and again; its output, its errors, and how long it took to end."""
     process = subprocess.Popen(
         [sys.executable, "-c", READY, *words], cwd=folder, env=environment(),
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -73,10 +73,14 @@ def interrupted(words, folder, after):
         time.sleep(after)
         begin = time.perf_counter()
         process.send_signal(signal.SIGINT)
+        if again is not None:
+            time.sleep(again)
+            process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     finally:
         process.kill()
-    assert process.returncode == interrupt.INTERRUPTED, err
+    signalled = interrupt.INTERRUPTED if again is None else -signal.SIGINT  # which a shell calls 130 too
+    assert process.returncode in {interrupt.INTERRUPTED, signalled}, err
     assert "Traceback" not in err
     return out, err, time.perf_counter() - begin
 
@@ -107,6 +111,17 @@ def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
 def test_no_command_is_left_out():
     (commands,) = (x for x in cli.parser()._actions if isinstance(x, argparse._SubParsersAction))
     assert set(commands.choices) == set(LONG) | ENDS_AT_ONCE
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("between", [0.0, 0.02, 0.2])
+@pytest.mark.parametrize("command", ["simulate", "bifurcation", "hard", "map"])
+def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_path):
+    words = [command, *LONG[command].split()]
+    _, err, seconds = interrupted(words, tmp_path, 2.0, again=between)
+    assert seconds < LIMIT
+    assert "interrupted" in err
+    assert not list(tmp_path.rglob("*.partial*"))
 
 
 @pytest.mark.slow

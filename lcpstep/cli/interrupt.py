@@ -2,7 +2,8 @@
 
 Loops return to Python every fifth of a second (`lcpstep.pace`); there the interrupt is raised and ends them, and the
 command saves what it has. What does not return is the compiler at work, or one long call of a foreign library. These
-let other threads run, and one that watches ends the process where the command does not answer.
+let other threads run, and one that watches ends the process where the command does not answer. A second Ctrl-C ends
+it at once, whatever it is about to save.
 """
 
 from __future__ import annotations
@@ -84,10 +85,25 @@ def ending(main: Callable[[], int]) -> int:
     reader, writer = socket.socketpair()
     writer.setblocking(False)
     signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+    signal.signal(signal.SIGINT, _first)
     threading.Thread(target=_attend, args=(reader, writer), daemon=True).start()
     status = main()
     _over.set()
     return status
+
+
+def _first(number: int, frame: Any) -> None:
+    """The first interrupt is raised, as Python does it; the second finds another answer."""
+    signal.signal(number, _second)
+    raise KeyboardInterrupt
+
+
+def _second(number: int, frame: Any) -> None:
+    """The second ends the process, in the midst of what answers the first."""
+    os.write(2, b"lcpstep: interrupted again: nothing more is saved\n")
+    for draft in list(files.DRAFTS):
+        draft.unlink(missing_ok=True)
+    os._exit(INTERRUPTED)
 
 
 def _raised() -> bool:

@@ -12,7 +12,7 @@ from lcpstep.stepping.pieces.loop cimport Steps
 from lcpstep.stepping.pieces.smooth cimport invert
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport COLLAPSE
-from lcpstep.stepping.step_control cimport Control, stamp
+from lcpstep.stepping.step_control cimport Control, follow_on, stamp
 
 cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, OWN, ROWS, TRIALS
 cdef double EARLY, NEAR

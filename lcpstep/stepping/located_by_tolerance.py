@@ -30,7 +30,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.smooth import invert
     from lcpstep.stepping.pieces.state import Plan
     from lcpstep.stepping.pieces.switches import COLLAPSE
-    from lcpstep.stepping.step_control import stamp
+    from lcpstep.stepping.step_control import follow_on, stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -122,8 +122,7 @@ class Attempts(Control):
             early = trial < TRIALS - 2 and (self.alike or self.saved.closed_now > 0)
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
-        if entire:
-            self.in_time()
+        self.in_time()
         self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
         if not self.full:
             self.weigh(end - start)
@@ -217,9 +216,9 @@ class Attempts(Control):
         self.w.sigma, self.w.end = start, 0.0
 
     def in_time(self) -> None:
-        """Nothing of a step comes after the multiple that it ends at, by rounding."""
-        if self.from_time + self.h > self.to_time:
-            stamp(self.record, self.saved_row, self.saved_event, self.to_time, self.to_time)
+        """Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding."""
+        stamp(self.record, self.saved_row, self.saved_event, self.to_time, self.to_time)
+        follow_on(self.record, self.saved_row)
 
     def led(self, to: Led, code: int) -> None:
         """Where the part that has just been taken led."""

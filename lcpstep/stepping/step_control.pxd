@@ -35,3 +35,4 @@ cdef class Control:
 
 
 cdef void stamp(Record r, Py_ssize_t row, Py_ssize_t event, double late, double t) noexcept nogil
+cdef void follow_on(Record r, Py_ssize_t row) noexcept nogil

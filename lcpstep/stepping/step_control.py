@@ -218,3 +218,11 @@ def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
     for k in range(event, r.event):
         if r.events[k * COLUMNS] >= late:
             r.events[k * COLUMNS] = t
+
+
+def follow_on(r: Record, row: int) -> None:
+    """Rows from this one on are not earlier than the one before, as the sum of two times may be by rounding."""
+    for k in range(row if row > 0 else 1, r.row):
+        before = r.rows[(k - 1) * r.row_size + TIME]
+        if r.rows[k * r.row_size + TIME] < before:
+            r.rows[k * r.row_size + TIME] = before

@@ -9,6 +9,7 @@ import pytest
 from benchmarks.judge.case import judged
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
+from benchmarks.judge.runs import WAYS
 from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
 from tests.judge.open import OPEN
@@ -39,3 +40,15 @@ def test_some_hundred_scenes():
     short = [k for k in range(700) if (d := draw(3, k)).length < 100.0 * d.h and d.contacts < 5]
     assert len(short) > 200
     assert list(judge(short[:200], 3, QUICK, 0.02)) == []
+
+
+GRAVE = {"hang", "not finite", "penetration", "raised", "tolerance missed", "finer tolerance missed"}
+
+
+@pytest.mark.slow
+def test_some_hundred_scenes_by_every_method():
+    """None hangs, leaves the finite numbers, goes through a wall or misses its tolerance by more than ten times."""
+    short = [k for k in range(1000) if (d := draw(221122, k)).length < 100.0 * d.h]
+    assert len(short) > 300
+    found = judge(short[:300], 221122, tuple(WAYS), 0.0)
+    assert [x for x in found if x[2].kind in GRAVE] == []

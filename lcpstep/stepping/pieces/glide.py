@@ -27,10 +27,10 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
     h = plan.h
     A_inverse, C, K = plan.A_inverse[0], m.C[0], m.K[0]
     q, v, f = w.q[0], w.v[0], w.force[0]
-    g, u, G, offset, s = inf, 0.0, 0.0, 0.0, 0.0
+    g, u, bent, G, offset, s = inf, 0.0, 0.0, 0.0, 0.0, 0.0
     contact, moving = w.n_c > 0, moves(m)
     if contact:
-        g, u, G, offset = w.gap[0], w.rate[0], m.G[0], m.offset[0]
+        g, u, bent, G, offset = w.gap[0], w.rate[0], w.half[0], m.G[0], m.offset[0]
         if moving:
             obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
@@ -66,6 +66,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
                 g, u, s = g_next, G * v_next - m.motion_now[1], s_next
             else:
                 g, u = g + h * (u + h * half), u + 2.0 * h * half
+            bent = half
         q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
         k += 1
         if record.is_due(k):
@@ -73,7 +74,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
             keep(w, record, t0 + h * (k - first), 0.0)
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:
-        w.gap[0], w.rate[0] = g, u
+        w.gap[0], w.rate[0], w.half[0] = g, u, bent
         if k > start:
             w.turned[0], w.sigma = -h, 0.0
     w.steps = k

@@ -15,13 +15,16 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import LEAD, TIME, Record
     from lcpstep.kernels.vectors import add, clear, copy, distance, largest
-    from lcpstep.pointers import Doubles, after, max, min
-    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
+    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.stepping.pieces.codes import CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
     from lcpstep.stepping.pieces.joints import accelerate, put, reduce, take, turn
     from lcpstep.stepping.pieces.state import Work
 
+ASTRAY = 1e6  # times what counts as closed: where a closed contact is not held
 
 # --- at one state ---------------------------------------------------------------------------------------------
 
@@ -45,6 +48,18 @@ def put_on_joints(w: Work, t: float, slack: float, q: Doubles) -> None:
     """The position q onto the joints."""
     if not put(w.joints, w.M, t, q, w.v, slack):
         w.joints.failed = PROJECTION_FAILED
+
+
+def meet_both(m: Model, w: Work, t: float, slack: float) -> None:
+    """The position onto the joints; the run cannot go on where closed contacts are not met beside them.
+
+    Past a position in which normals of joints and contacts are parallel there may be none that meets both.
+    """
+    put_on_joints(w, t, slack, w.q)
+    gaps(m, t, w.q, w.v, w.gap_try)
+    for c in range(w.n_c):
+        if w.status[c] == CLOSED and not abs(w.gap_try[c]) <= ASTRAY * slack:
+            w.joints.failed = PROJECTION_FAILED
 
 
 def settle_velocity(w: Work, t: float) -> None:

@@ -32,6 +32,10 @@ cdef (Py_ssize_t, double) first_contact(Plan plan, Work w, double rest, double t
 cdef (Py_ssize_t, double) polish(
     Model m, Plan plan, Work w, Py_ssize_t c, double t, double tau, double rest
 ) noexcept nogil
+cdef void look(Model m, Plan plan, Work w, double t, double tau) noexcept nogil
+cdef double between(
+    Model m, Plan plan, Work w, Py_ssize_t c, double t, double low, double high
+) noexcept nogil
 @cython.locals(wanted=bint)
 cdef Py_ssize_t move(Model m, Plan plan, Work w, Record record, double t, double tau, bint to_end) noexcept nogil
 cdef bint penetrates(Plan plan, Work w) noexcept nogil

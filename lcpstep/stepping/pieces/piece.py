@@ -151,28 +151,56 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
     """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
     if tau == 0.0:
         return c, 0.0
+    low = 0.0
     for _ in range(POLISHING):
-        for i in range(w.n_q):
-            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-        if w.joined:
-            put_on_joints(w, t + tau, plan.slack, w.q_try)
-        gaps(m, t + tau, w.q_try, w.v, w.gap_try)
+        look(m, plan, w, t, tau)
         u = w.rate[c] + 2.0 * tau * w.half[c]
         if abs(w.gap_try[c]) <= 0.125 * plan.slack:
             return c, tau
+        if w.gap_try[c] > 0.0:
+            low = tau
         if u >= 0.0:
             break
         change = -w.gap_try[c] / u
         if tau + change > rest:
-            return NOBODY, rest
+            look(m, plan, w, t, rest)  # a bump narrower than the piece may rise at its end
+            if w.gap_try[c] >= -ON_THE_SURFACE * plan.slack:
+                return NOBODY, rest
+            return c, between(m, plan, w, c, t, tau, rest)
         if tau + change <= 0.0:
             break
         tau += change
         if abs(change) <= EPS * tau:
             return c, tau
+    look(m, plan, w, t, tau)
     if w.gap_try[c] > 0.0:
         return NOBODY, tau
-    return c, tau
+    if low > tau or not (low > 0.0 or w.gap[c] > plan.slack):
+        return c, tau
+    return c, between(m, plan, w, c, t, low, tau)
+
+
+def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
+    """The gaps at tau after the base of the piece, which is at t, into w.gap_try."""
+    for i in range(w.n_q):
+        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+    if w.joined:
+        put_on_joints(w, t + tau, plan.slack, w.q_try)
+    gaps(m, t + tau, w.q_try, w.v, w.gap_try)
+
+
+def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: float) -> float:
+    """Where a gap that is open at `low` and negative at `high` closes between them: by bisection."""
+    while high - low > EPS * high:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        look(m, plan, w, t, middle)
+        if w.gap_try[c] > 0.0:
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:

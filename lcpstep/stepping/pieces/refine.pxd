@@ -33,6 +33,8 @@ cdef Py_ssize_t factor_pressed(Work w, double* W, Py_ssize_t n, bint everybody) 
 cdef bint refine(
     Work w, double* W, double* inverse, bint factored, Py_ssize_t n, Py_ssize_t n_k, bint solved
 ) noexcept nogil
+@cython.locals(i=Py_ssize_t)
+cdef void squeeze(Work w, double* W, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 cdef (double, double) correct(Work w, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 @cython.locals(pressed=bint)
 cdef bint keep_closed(Work w, double* W, double* MG, Py_ssize_t n) noexcept nogil

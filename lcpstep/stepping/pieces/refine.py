@@ -220,9 +220,41 @@ def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: i
         if change <= SETTLED * largest:
             break
     answered = solved or presses(w, W, n)
+    if not answered and 0 < n_k < n:
+        squeeze(w, W, n, n_k)
+        leftover(w, inverse, factored, n)
+        correct(w, n, n_k)
+        leftover(w, inverse, factored, n)
+        answered = presses(w, W, n)
     for k in range(n):
         w.z[k] = max(w.z[k], 0.0)
     return answered
+
+
+def squeeze(w: Work, W: Doubles, n: int, n_k: int) -> None:
+    """Add impulses that move nothing to an answer that pulls, until it presses everywhere, if by next to nothing.
+
+    Bodies without clearance between two walls can be squeezed by any force: y with W y = 0. Each row left out of the
+    factor, for it depends on those in it, gives one.
+    """
+    largest, i = 0.0, 0
+    for k in range(n):
+        largest = max(largest, abs(w.z[k]))
+    for k in range(n):
+        if i < n_k and w.place[i] == k:
+            i += 1
+            continue
+        for j in range(n_k):
+            w.change[j] = -W[w.held[j] * w.n_c + w.chosen[k]]
+        solve_factored(w.problem, n, n_k, w.change)
+        more = max(0.0, -w.z[k])
+        for j in range(n_k):
+            if w.change[j] > PULLS:
+                more = max(more, -w.z[w.place[j]] / w.change[j])
+        more += PULLS * largest
+        for j in range(n_k):
+            w.z[w.place[j]] += more * w.change[j]
+        w.z[k] += more
 
 
 def correct(w: Work, n: int, n_k: int) -> tuple[float, float]:

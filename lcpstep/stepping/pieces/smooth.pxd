@@ -8,7 +8,8 @@ from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.pieces.codes cimport CLOSED, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.jointed cimport (
-    join_acceleration, meet_joints, put_on_joints, reach_joints, reduce_mobility, settle_velocity, take_joints,
+    join_acceleration, meet_both, meet_joints, put_on_joints, reach_joints, reduce_mobility,
+    settle_velocity, take_joints,
 )
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.times cimport within

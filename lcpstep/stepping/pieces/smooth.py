@@ -30,6 +30,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
     from lcpstep.stepping.pieces.jointed import (
         join_acceleration,
+        meet_both,
         meet_joints,
         put_on_joints,
         reach_joints,
@@ -208,6 +209,8 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
             gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
             respond(m, w)
         newton_step(w, w.q)
+    if w.joined:
+        meet_both(m, w, t, plan.slack)
 
 
 def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
