@@ -19,9 +19,8 @@ from lagrangian import (
 )
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.rough_contacts import critical_friction
-from lcpstep import EventDriven, Kind, LcpStepError, Moreau, Status, continued, simulate
+from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
 from lcpstep import energy as energy_balance
-from lcpstep.analysis.variation import factors
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built
 
@@ -331,12 +330,6 @@ def test_the_energy_that_friction_takes_never_comes_back():
         assert len(E.created) == 0
     E = energy_balance(simulate(scenes.sliding_block(), EventDriven()))
     assert abs(E.friction[-1] - 0.5) < 1e-12
-
-
-def test_saltation_matrices_refuse_friction():
-    run = simulate(scenes.sliding_block(), EventDriven(), keep="impacts")
-    with pytest.raises(LcpStepError, match="friction"):
-        factors(run)
 
 
 PROGRAM = """

@@ -134,6 +134,14 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
+    code = take_over(s)
+    if code == DONE:
+        tell(s, record, tally, t)
+    return code
+
+
+def take_over(s: Rubbing) -> int:
+    """Take over the modes decided, and hold their rows."""
     leaning = 0
     for c in range(s.n_c):
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
@@ -141,7 +149,6 @@ def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         leaning += s.mode[c] == LEANS
     if (leaning == 0 or not stand(s)) and not hold_modes(s):
         return PAINLEVE_INCONSISTENT
-    tell(s, record, tally, t)
     return DONE
 
 
