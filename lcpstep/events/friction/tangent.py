@@ -26,7 +26,8 @@ from lagrangian import Coulomb, Scene
 from lcpstep.errors import LcpStepError
 from lcpstep.events.friction import point
 from lcpstep.events.friction.blow import Blow
-from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.friction.lost import lost
 from lcpstep.events.friction.run import start
 from lcpstep.trajectory import Kind, Status, Trajectory
 
@@ -86,12 +87,44 @@ class Walk:
     def factors(self) -> list[Array]:
         """Matrices to be multiplied from the left one by one: flows and saltations in the order of time."""
         piece = self.begin()
-        result = [self.lost(piece.t, piece.x, piece.mode, piece.direction), piece.J]
+        result = [self.lost(piece), piece.J]
         for time in self.times():
             following = self.following(piece, time)
-            result += [self.jump(piece, following), following.J]
+            result += [self.jump(piece, following), self.kept(piece, following), following.J]
             piece = following
         return result
+
+    def until(self, time: float) -> tuple[Array, Array, Array, Array]:
+        """Up to the event at this time: J at fixed time just before it, F at the start, what the event makes of J.
+
+        The last two: derivatives of the state after the event, and of its time, by the state just before it.
+        """
+        piece = self.begin()
+        F_start = np.concatenate([piece.x[self.n :], point.field(self.s, piece.t, piece.x)[self.n :]])
+        J = piece.J @ self.lost(piece)
+        while piece.end < time - SAME * self.scale:
+            following = self.following(piece, piece.end)
+            J = following.J @ self.kept(piece, following) @ self.jump(piece, following) @ J
+            piece = following
+        after, events = self.following(piece, piece.end), self.happened(piece.end)
+        if Kind.ACCUMULATION in set(events.kind) or self.at_corner(piece.end):
+            raise LcpStepError(f"what happens at t = {time:g} s has no guard whose time the state decides")
+        point.hold(self.s, piece.t, piece.x, piece.mode, piece.direction)
+        F = point.field(self.s, piece.end, piece.x_end)
+        H_x, slope = self.guard(piece, events, F)
+        R_x, R_t = self.law(piece, after, events)
+        R = R_x - np.outer(R_x @ F + R_t, H_x) / slope
+        return J, F_start, self.kept(piece, after) @ R, -H_x / slope
+
+    def law(self, before: Piece, after: Piece, events: Any) -> tuple[Array, Array]:
+        """R_x and R_t of the state after the events."""
+        if Kind.IMPACT in set(events.kind):
+            return Blow(self, before, after, events).derivatives()
+        return np.eye(2 * self.n), np.zeros(2 * self.n)
+
+    def at_corner(self, t: float) -> bool:
+        """Whether this is the time of a corner of the scene."""
+        return any(abs(t - c) <= SAME * self.scale for c in self.corners(t, t))
 
     def times(self) -> list[float]:
         """Times of events after the start, each once."""
@@ -186,15 +219,12 @@ class Walk:
     def jump(self, before: Piece, after: Piece) -> Array:
         """D of the events between two pieces."""
         t, events = after.t, self.happened(after.t)
-        kinds, n = set(events.kind), 2 * self.n
-        if Kind.ACCUMULATION in kinds:
-            return self.lost(t, after.x, after.mode, after.direction)
+        if Kind.ACCUMULATION in set(events.kind):
+            return self.lost(after)
         point.hold(self.s, before.t, before.x, before.mode, before.direction)
         F_before = point.field(self.s, t, before.x_end)
-        R_x, R_t = np.eye(n), np.zeros(n)
-        if Kind.IMPACT in kinds:
-            R_x, R_t = Blow(self, before, after, events).derivatives()
-        if any(abs(t - c) <= SAME * self.scale for c in self.corners(t, t)):
+        R_x, R_t = self.law(before, after, events)
+        if self.at_corner(t):
             return R_x  # the time is that of a corner, whatever the state
         H_x, slope = self.guard(before, events, F_before)
         point.hold(self.s, t, after.x, after.mode, after.direction)
@@ -207,6 +237,20 @@ class Walk:
                 f"the event at t = {t:g} s is not transversal: the motion has no derivative there"
             )
         return np.asarray(R_x + np.outer(change, H_x) / slope)
+
+    def lost(self, piece: Piece) -> Array:
+        """What is left of a deviation from the surfaces held from the start of a piece on, (2 n_q, 2 n_q)."""
+        return lost(self.s, self.mu, piece.t, piece.x, piece.mode, piece.direction)
+
+    def kept(self, before: Piece, after: Piece) -> Array:
+        """Puts what lies on surfaces that are new after the events onto them to the last digit."""
+        if all(new <= old for new, old in zip(self.holds(after), self.holds(before), strict=True)):
+            return np.eye(2 * self.n)
+        return self.lost(after)
+
+    def holds(self, piece: Piece) -> list[int]:
+        """0 of an open contact, 1 of a closed one, 2 of one that sticks."""
+        return [0 if m == OPEN else 2 if m == STICKS else 1 for m in piece.mode]
 
     def guard(self, before: Piece, events: Any, F: Array) -> tuple[Array, float]:
         """H_x and H_x F- + H_t of what has triggered the events, under the modes before them."""
@@ -250,38 +294,3 @@ class Walk:
         raise LcpStepError(
             f"a contact closes without speed at t = {events.time[0]:g} s: the motion has no derivative"
         )
-
-    def lost(self, t: float, x: Array, mode: Any, direction: Array) -> Array:
-        """What is left of a deviation from surfaces that are held from here on, (2 n_q, 2 n_q)."""
-        n, n_j, n_c = self.n, self.s.n_j, self.s.n_c
-        D = np.eye(2 * n)
-        closed = [c for c in range(n_c) if mode[c] != OPEN]
-        on = [*range(n_j), *(n_j + c for c in closed)]
-        stuck = [n_j + n_c + c for c in closed if mode[c] == STICKS]
-        if not on:
-            return D
-        point.hold(self.s, t, x, mode, direction)
-        R, MR, _, _ = point.rows(self.s, t, x)
-        C = MR.copy()
-        for c in closed:
-            if mode[c] in (SLIDES, LEANS):
-                C[n_j + c] -= direction[c] * self.mu[c] * MR[n_j + n_c + c]
-        held = [*on, *stuck]
-        D[:n, :n] -= C[on].T @ np.linalg.pinv(R[on] @ C[on].T) @ R[on]
-        back = C[held].T @ np.linalg.pinv(R[held] @ C[held].T)
-        D[n:, n:] -= back @ R[held]
-        D[n:, :n] -= back @ self.turning(t, x, held) @ D[:n, :n]
-        return D
-
-    def turning(self, t: float, x: Array, held: list[int]) -> Array:
-        """Derivative of the velocities of rows by the coordinates, (rows, n_q)."""
-        columns = []
-        for i in range(self.n):
-            d = np.zeros(2 * self.n)
-            d[i] = STEP * max(1.0, abs(x[i]))
-            sides = []
-            for y in (x + d, x - d):
-                R, _, rate, _ = point.rows(self.s, t, y)
-                sides.append((R @ x[self.n :] + rate)[held])
-            columns.append((sides[0] - sides[1]) / (2.0 * d[i]))
-        return np.stack(columns, axis=1)
