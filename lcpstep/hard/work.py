@@ -16,9 +16,11 @@ from lcpstep.diagnostics import energy
 from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.friction.run import start
+from lcpstep.events.friction.smooth import Smooth
 from lcpstep.trajectory import Kind, Trajectory
 
 NODES = 6  # of Gauss' rule
+ROUNDING = 1e-12  # tolerance of the modes at a state
 SLIDING = 1e-9  # of the largest velocity: less than that is none
 
 
@@ -27,7 +29,7 @@ def unbalanced(run: Trajectory, total: Any = None) -> float:
 
     total : (q, v) -> energies (n,) [J] where all forces have a potential; what `lcpstep.energy` says if not given
     """
-    balance, s = energy(run), start(run.scene, run.method)
+    balance, s = energy(run), start(run.scene, Smooth, ROUNDING, ROUNDING)
     struck = run.impacts.time[np.isin(run.impacts.kind, (Kind.IMPACT, Kind.ACCUMULATION))]
     hit = np.isin(run.t[1:], struck)
     energies = balance.total - balance.work + balance.damping if total is None else total(run.q, run.v)

@@ -76,8 +76,7 @@ def begin_modes(s: Rubbing, t: float, y: Doubles, mode: Doubles, direction: Doub
         s.loaded[c] = 1 if s.mode[c] != OPEN else 0
     if not free_motion(s, t, y, s.a_free):
         return False
-    measure_rows(s, t, y)
-    return hold_modes(s)
+    return measure_rows(s, t, y) and hold_modes(s)
 
 
 def field(s: Any, t: float, x: Any) -> Any:
