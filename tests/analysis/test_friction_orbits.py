@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lagrangian.scenes.belts import shaken_multipliers
+from lagrangian.scenes.belts import shaken_multipliers, stick_slip_period
 from lcpstep import EventDriven
 from lcpstep.analysis.fixed_points import periodic_point
 from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
@@ -66,6 +66,15 @@ def test_the_map_from_slip_to_slip_has_the_same_multiplier_and_its_derivative_is
         u = np.array([d[0], d[1], 0.0, -0.45 * np.cos(x[0]) * d[0], 0.0])
         one, two = (P(moved(k, d)) - x for k in (1.0, 2.0))
         assert np.max(np.abs((4.0 * one - two) / 2.0 - J @ u)) < 1e-3 * step
+
+
+@pytest.mark.parametrize("kind", ["SLIP", "STICK_TANGENT"])
+def test_the_stick_slip_orbit_is_dead_beat_and_has_its_period(kind):
+    for belt, mu, mu_s in ((0.2, 0.6, 1.0), (0.5, 0.3, 0.4)):
+        P = EventMap(scenes.stick_slip_belt(belt, mu, mu_s), EventDriven(), kind)
+        found = periodic_point(P, P.entry())
+        assert abs(P.duration(found.points[0]) - stick_slip_period(belt, mu, mu_s)) < 1e-11
+        assert np.max(np.abs(found.multipliers)) < 1e-10
 
 
 def test_the_woodpecker_has_a_stable_orbit_whatever_the_tolerance():

@@ -29,14 +29,11 @@ class Blow:
     """The impact between two pieces of a `tangent.Walk`."""
 
     def __init__(self, walk: Any, before: Any, after: Any, events: Any) -> None:
-        self.s, self.mu, self.n, self.t = walk.s, walk.mu, walk.n, float(after.t)
-        self.lasted = before.end - before.t
+        self.s, self.n, self.t = walk.s, walk.n, float(after.t)
+        self.lasted, self.p = before.end - before.t, np.array(walk.scene.p)
         self.x, self.v_after = before.x_end, after.x[walk.n :]
         contacts: Any = walk.scene.contacts
-        friction = contacts.friction
-        r = np.broadcast_to(np.asarray(contacts.restitution, dtype=float), (self.s.n_c,))
-        given = friction.restitution
-        r_T = r if given is None else np.broadcast_to(np.asarray(given, dtype=float), (self.s.n_c,))
+        self.friction, r = contacts.friction, np.asarray(contacts.restitution, dtype=float)
         strikes = [e for e in events if e.kind == Kind.IMPACT]
         self.active = sorted({int(e.contact) for e in strikes})
         if len(strikes) > len(self.active):
@@ -45,7 +42,7 @@ class Blow:
             )
         # a closed contact keeps its place: only what strikes rebounds
         self.r = np.where(np.asarray(before.mode) == OPEN, r, 0.0)
-        self.r_T, method = r_T, walk.run.method
+        self.r_T, method = self.friction.tangential(r), walk.run.method
         self.noise = SLACK * (method.atol + method.rtol * float(np.max(np.abs(self.v_after))))
         self.sliding = self.directions()
         told, change = self.law(self.t, self.x), np.max(np.abs(self.v_after - self.x[self.n :]))
@@ -59,11 +56,13 @@ class Blow:
         n_j, n_c = self.s.n_j, self.s.n_c
         R, _, rate, _ = point.rows(self.s, self.t, self.x)
         before, after = ((R @ v + rate)[n_j + n_c :] for v in (self.x[self.n :], self.v_after))
-        left = after + self.r_T * before
+        left, mu = after + self.r_T * before, self.mu(self.t, self.x, before)
         size = EDGE * (np.abs(after) + np.abs(before)) + self.noise
-        return {
-            c: -float(np.sign(left[c])) for c in self.active if abs(left[c]) > size[c] or self.mu[c] == 0.0
-        }
+        return {c: -float(np.sign(left[c])) for c in self.active if abs(left[c]) > size[c] or mu[c] == 0.0}
+
+    def mu(self, t: float, x: Array, u: Array) -> Array:
+        """Coefficients at the sliding velocities u before the impact, (n_c,)."""
+        return np.asarray(self.friction.coefficients(t, x[: self.n], u, self.p)[0])
 
     def matrices(self, t: float, x: Array) -> tuple[Array, Array, Array]:
         """K (rows, n_q), M^-1 C^T (n_q, rows), and (2, rows): 1 + r, and the rates of the rows."""
@@ -71,9 +70,9 @@ class Blow:
         R, MR, rate, _ = point.rows(self.s, t, np.ascontiguousarray(x))
         stuck = [c for c in self.active if c not in self.sliding]
         rows = [*range(n_j), *(n_j + c for c in self.active), *(n_j + n_c + c for c in stuck)]
-        C = MR.copy()
+        C, mu = MR.copy(), self.mu(t, x, (R @ x[self.n :] + rate)[n_j + n_c :])
         for c, way in self.sliding.items():
-            C[n_j + c] += way * self.mu[c] * MR[n_j + n_c + c]
+            C[n_j + c] += way * mu[c] * MR[n_j + n_c + c]
         r = np.array([0.0] * n_j + [self.r[c] for c in self.active] + [self.r_T[c] for c in stuck])
         return R[rows], C[rows].T, np.stack([1.0 + r, rate[rows]])
 
@@ -89,10 +88,12 @@ class Blow:
         R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
         K, C, (share, _) = self.matrices(self.t, self.x)
         R_x[n:, n:] -= C @ np.linalg.pinv(K @ C) @ (share[:, None] * K)
-        for i in range(n):
+        for i in range(
+            2 * n if callable(self.friction.mu) else n
+        ):  # linear in v where mu does not depend on it
             d = np.zeros(2 * n)
             d[i] = STEP * max(1.0, abs(self.x[i]))
-            R_x[n:, i] = self.slope(lambda k, d=d: self.law(self.t, self.x + k * d)) / d[i]  # type: ignore[misc]
+            R_x[n:, i] = self.slope(lambda k, d=d: self.law(self.t, self.x + k * d)) / d[i]
         d_t = STEP * max(self.lasted, 1e-3)
         R_t[n:] = self.slope(lambda k: self.law(self.t + k * d_t, self.x)) / d_t
         return R_x, R_t

@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.events.friction import point
-from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import OPEN, STICKS
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # of differences, relative
 
 
-def lost(s: Any, mu: Array, t: float, x: Array, mode: Any, direction: Array) -> Array:
+def lost(s: Any, t: float, x: Array, mode: Any, direction: Array) -> Array:
     """What is left of a deviation from surfaces that are held from here on, (2 n_q, 2 n_q)."""
     n, n_j, n_c = s.n_q, s.n_j, s.n_c
     D = np.eye(2 * n)
@@ -36,9 +36,8 @@ def lost(s: Any, mu: Array, t: float, x: Array, mode: Any, direction: Array) -> 
     point.hold(s, t, x, mode, direction)
     R, MR, _, _ = point.rows(s, t, x)
     C = MR.copy()
-    for c in closed:
-        if mode[c] in (SLIDES, LEANS):
-            C[n_j + c] -= direction[c] * mu[c] * MR[n_j + n_c + c]
+    for c, share in enumerate(point.pulls(s)):
+        C[n_j + c] += share * MR[n_j + n_c + c]
     held = [*on, *stuck]
     D[:n, :n] -= C[on].T @ np.linalg.pinv(R[on] @ C[on].T) @ R[on]
     back = C[held].T @ np.linalg.pinv(R[held] @ C[held].T)

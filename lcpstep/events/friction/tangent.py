@@ -15,20 +15,21 @@ forces that hold them. Source: R. Leine, H. Nijmeijer, Dynamics and Bifurcations
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Coulomb, Scene
 from lcpstep.errors import LcpStepError
 from lcpstep.events.friction import point
 from lcpstep.events.friction.blow import Blow
-from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
+from lcpstep.events.friction.finished import closed_at_once, with_friction
 from lcpstep.events.friction.lost import lost
 from lcpstep.events.friction.run import start
+from lcpstep.events.friction.smooth import Smooth
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -51,26 +52,6 @@ class Piece:
     J: Array
 
 
-def with_friction(scene: Scene) -> Scene:
-    """The scene, with friction of coefficient zero where it has none."""
-    contacts: Any = scene.contacts
-    if contacts is None or contacts.friction is not None:
-        return scene
-    none = Coulomb(0.0, np.zeros((scene.n_c, scene.n_q)))
-    return replace(scene, contacts=replace(contacts, friction=none))
-
-
-def closed_at_once(run: Trajectory) -> Any:
-    """The log, with the ends of chattering where the contact counts as closed: at the event before them."""
-    log, t = run.impacts.copy(), float(run.t[0])
-    for k, event in enumerate(run.impacts):
-        shifted = event.kind == Kind.STICK and k > 0 and run.impacts[k - 1].kind == Kind.ACCUMULATION
-        if event.kind == Kind.ACCUMULATION or shifted:
-            log.time[k] = t
-        t = float(log.time[k])
-    return log
-
-
 class Walk:
     """Along the events of a finished run of `EventDriven` that has kept its states at them."""
 
@@ -78,9 +59,7 @@ class Walk:
         if run.status != Status.DONE:
             raise LcpStepError(f"the motion ended early: {run.message}")
         self.run, self.scene, self.n = run, with_friction(run.scene), run.scene.n_q
-        self.s = start(self.scene, run.method)
-        friction: Any = self.scene.contacts and self.scene.contacts.friction
-        self.mu = np.broadcast_to(np.asarray(friction.mu, dtype=float), (run.scene.n_c,))
+        self.s = start(self.scene, Smooth, run.method.rtol, run.method.atol)
         self.scale = max(float(np.max(np.abs(run.t))), 1e-300)
         self.log = closed_at_once(run)
 
@@ -173,7 +152,7 @@ class Walk:
 
         def rates(time: float, y: Array) -> Array:
             x = np.ascontiguousarray(y[:n])
-            A = point.slopes(self.s, time, x)
+            A = point.slopes(self.s, time, self.beside(time, x, mode, direction))
             return np.concatenate([point.field(self.s, time, x), (A @ y[n:].reshape(n, n)).ravel()])
 
         for a, b in self.between_corners(t, end):
@@ -183,6 +162,21 @@ class Walk:
                 raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
             y = done.y[:, -1]
         return Piece(t, x, end, y[:n].copy(), mode, direction, y[n:].reshape(n, n).copy())
+
+    def beside(self, t: float, x: Array, mode: Any, direction: Array) -> Array:
+        """The state, or one beside it where contacts slide fast enough for differences: coefficients bend at rest."""
+        friction: Any = self.scene.contacts and self.scene.contacts.friction
+        if not callable(friction.mu):
+            return x
+        R, _, rate, _ = point.rows(self.s, t, x)
+        x = x.copy()
+        for c in np.flatnonzero(np.asarray(mode) == SLIDES):
+            T = R[self.s.n_j + self.s.n_c + c]
+            fast = 3.0 * RELATIVE_STEP * max(1.0, float(np.max(np.abs(x)))) * float(np.sum(np.abs(T)))
+            missing = fast - direction[c] * (T @ x[self.n :] + rate[self.s.n_j + self.s.n_c + c])
+            if missing > 0.0:
+                x[self.n :] += direction[c] * missing * T / (T @ T)
+        return np.asarray(x)
 
     def between_corners(self, t: float, end: float) -> list[tuple[float, float]]:
         """The span cut at the corners of the scene."""
@@ -240,7 +234,7 @@ class Walk:
 
     def lost(self, piece: Piece) -> Array:
         """What is left of a deviation from the surfaces held from the start of a piece on, (2 n_q, 2 n_q)."""
-        return lost(self.s, self.mu, piece.t, piece.x, piece.mode, piece.direction)
+        return lost(self.s, piece.t, piece.x, piece.mode, piece.direction)
 
     def kept(self, before: Piece, after: Piece) -> Array:
         """Puts what lies on surfaces that are new after the events onto them to the last digit."""
