@@ -19,6 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import min
     from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
+    from lcpstep.stepping.rubbing.paced import pace
     from lcpstep.stepping.rubbing.strides import Strides
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
@@ -38,8 +39,12 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     if not s.going and not note_base(s, t0):
         return failed(s)
     s.going = False
-    if not s.step(t0, h) or not note_arrival(s, t0, h):
-        return failed(s)
+    code = attempt(s, t0, h)
+    if code != DONE:
+        return code
+    if s.length < h:
+        h = s.length
+        goal = border = s.clock.after(h)
     g = first_event(s, h)
     if g < 0:
         arm(s)
@@ -69,6 +74,14 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     else:
         stop(s, c)
     return DONE
+
+
+def attempt(s: Strides, t: float, h: float) -> int:
+    """A step from t of size h, or shorter where a tolerance asks for it, and guards where it ends; a status."""
+    if s.tolerance > 0.0:
+        return pace(s, t, h)
+    s.length = h
+    return DONE if s.step(t, h) and note_arrival(s, t, h) else failed(s)
 
 
 def failed(s: Strides) -> int:
@@ -115,7 +128,10 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
 
 
 def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
-    """Keep the states asked for before the end t of the step, and its dense output; where impulses are summed to."""
+    """Keep the states asked for before the end t of the step, and its dense output.
+
+    Returned: up to which fraction of the step impulses have been kept.
+    """
     pressed = 0.0
     s.length = tau
     if record.dense_size > 0 or record.wants(t, False):
