@@ -27,11 +27,12 @@ def start(scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *mor
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances."""
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
-    friction = given.friction
+    friction = given and given.friction
+    tangential = np.zeros(scene.n_c) if friction is None else friction.tangential(given.restitution)
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = kind(
-        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution), clock,
+        contacts, joints, tangents, coefficients(scene), tangential, clock,
         scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0

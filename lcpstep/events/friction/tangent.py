@@ -30,6 +30,7 @@ from lcpstep.events.friction.finished import closed_at_once, with_friction
 from lcpstep.events.friction.lost import lost
 from lcpstep.events.friction.run import start
 from lcpstep.events.friction.smooth import Smooth
+from lcpstep.refusals import refused
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -270,10 +271,8 @@ class Walk:
             {int(e.contact) for e in events if e.kind == Kind.IMPACT and before.mode[e.contact] == OPEN}
         )
         if len(struck) > 1:
-            raise LcpStepError(
-                f"contacts {struck} strike together at t = {events.time[0]:g} s: the motion has no derivative there, "
-                "for neighbours meet them one after the other"
-            )
+            when = f"contacts {struck} strike together at t = {events.time[0]:g} s"
+            raise LcpStepError(f"{when}; {refused('together', self.run.scene)}")
         if struck:
             return struck[0], 0
         for event in events:
