@@ -84,6 +84,11 @@ REFUSALS: dict[str, Refusal] = {
         "run", "the derivative of a motion (multipliers, exponents)", "contacts that strike together",
         "neighbours meet them one after the other, in either order: there is no derivative", "an orbit near it",
     ),
+    "endless-together": Refusal(
+        "run", "the derivative of a motion (multipliers, exponents)", "endless impacts of several contacts in turn",
+        "each acts on the next, and what the infinite product of their derivatives comes to is not known",
+        "an orbit near it",
+    ),
 }  # fmt: skip
 
 

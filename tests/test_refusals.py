@@ -10,6 +10,7 @@ from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, LcpStepError, Located, Moreau, simulate
 from lcpstep.analysis.variation import monodromy
 from lcpstep.refusals import REFUSALS, with_table
+from tests.events.test_friction import block
 
 PAGE = Path(__file__).parent.parent / "docs" / "choosing.md"
 EXACT = Located(1e-2, "exact")
@@ -43,6 +44,12 @@ def falls_flat():
     return monodromy(scene, EventDriven(), [0.0, 0.2, 0.0, 0.5, 0.0, 0.0], (0.0, 0.3))
 
 
+def comes_to_rest_in_a_corner():
+    scene = block(61045)
+    x = np.concatenate([scene.q0, scene.v0]) + np.array([0.0, 0.1, 0.0, 0.0, 0.0, 0.3])
+    return monodromy(scene, EventDriven(1e-12, 1e-12), x, (0.0, 0.7))
+
+
 ASKED = {
     "exact-joints": lambda: simulate(scenes.pendulum_stop(form="rod"), EXACT),
     "exact-friction": lambda: simulate(scenes.sliding_block(), EXACT),
@@ -57,6 +64,7 @@ ASKED = {
     "modes-method": lambda: simulate(scenes.bilinear_oscillator(), Moreau(1e-2)),
     "modes-audit": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(audit=True)),
     "together": falls_flat,
+    "endless-together": comes_to_rest_in_a_corner,
 }
 
 

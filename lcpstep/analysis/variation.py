@@ -50,12 +50,8 @@ def factors(run: Trajectory) -> list[Array]:
     LcpStepError   the run ended early, or has events at which its end has no derivative, as simultaneous impacts
     """
     contacts = run.scene.contacts
-    if contacts is not None and (run.scene.n_c > 1 or run.scene.n_j > 0 or contacts.friction is not None):
+    if run.scene.n_j > 0 or contacts is None or run.scene.n_c > 1 or contacts.friction is not None:
         return Walk(run).factors()
-    if run.scene.n_j > 0:
-        raise LcpStepError(
-            f"scene: the derivative of a motion with joints alone, as {run.scene.name!r}, is not known"
-        )
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
     return _Variation(run).factors()

@@ -110,7 +110,7 @@ def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
     """The orbit on the section of entries into a mode, or of events of a contact."""
     if options.range is not None or options.draw or options.prove:
         raise ValueError(
-            "--mode, --event: print the orbit on their section; --range and --draw go without, and --prove too"
+            "--mode, --event: print the orbit on that section; --range and --draw go without it, and --prove too"
         )
     P: SwitchMap | EventMap
     if options.mode is not None:

@@ -167,7 +167,7 @@ class Walk:
     def beside(self, t: float, x: Array, mode: Any, direction: Array) -> Array:
         """The state, or one beside it where contacts slide fast enough for differences: coefficients bend at rest."""
         friction: Any = self.scene.contacts and self.scene.contacts.friction
-        if not callable(friction.mu):
+        if friction is None or not callable(friction.mu):
             return x
         R, _, rate, _ = point.rows(self.s, t, x)
         x = x.copy()
@@ -214,7 +214,11 @@ class Walk:
     def jump(self, before: Piece, after: Piece) -> Array:
         """D of the events between two pieces."""
         t, events = after.t, self.happened(after.t)
-        if Kind.ACCUMULATION in set(events.kind):
+        ended = sorted({int(e.contact) for e in events if e.kind == Kind.ACCUMULATION})
+        if len(ended) > 1:
+            when = f"contacts {ended} come to rest together at t = {t:g} s"
+            raise LcpStepError(f"{when}; {refused('endless-together', self.run.scene)}")
+        if ended:
             return self.lost(after)
         point.hold(self.s, before.t, before.x, before.mode, before.direction)
         F_before = point.field(self.s, t, before.x_end)
