@@ -60,7 +60,7 @@ def main(path: str) -> None:
             axis.loglog(*np.array(shown).T, "o-", label=name)
         axis.set(title=scene.name, xlabel="CPU time [s]", ylabel="error of the positions [m, rad]")
         axis.grid(alpha=0.3)
-    axes[0].legend()
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     figure.savefig(path, dpi=110)
 
 
