@@ -26,9 +26,8 @@ from lagrangian import Scene, checks
 from lcpstep.described import Describer
 from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import file_path, replacing
-from lcpstep.model import require
 from lcpstep.simulation import Method, simulate
-from lcpstep.stepping.located import Located
+from lcpstep.stepping.located import Located, require_exact
 from lcpstep.trajectory import Kind, Status
 
 ENDING = ".fmu"
@@ -150,8 +149,8 @@ def fmu(scene: Scene, path: str | Path, method: Method | None = None) -> Path:
         raise LcpStepError('export.fmu needs pythonfmu3: pip install "lcpstep[fmu]"') from error
     start, end = scene.t_span
     method = Located((end - start) / 1000.0) if method is None else method
-    if isinstance(method, Located):
-        require(scene, "Located", joints=True, friction=False)
+    if isinstance(method, Located) and method.order == "exact":
+        require_exact(scene)
     name = re.sub(r"\W", "_", path.stem)
     motion = base64.b64encode(pickle.dumps(Motion(scene, method))).decode()
     title = f"{scene.name} by {method!r}".replace("\\", "/").replace('"', "'").replace("\n", " ")

@@ -36,14 +36,6 @@ ABSENT = 0  # in place of a callback that the scene does not have
 TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tangents stand for normals
 
 
-def require(scene: Scene, method: str, *, joints: bool, friction: bool) -> None:
-    """Refuse a scene with features that the method does not treat, rather than leave them out."""
-    if scene.n_j > 0 and not joints:
-        raise LcpStepError(f"scene: {method} does not treat joints, and {scene.name!r} has {scene.n_j}")
-    if scene.contacts is not None and scene.contacts.friction is not None and not friction:
-        raise LcpStepError(f"scene: {method} does not treat friction, and {scene.name!r} has it")
-
-
 def dense(name: str, matrix: Any) -> Array:
     """An array of its own from a dense or a sparse matrix; LcpStepError for one that is too large for that."""
     if not hasattr(matrix, "toarray"):

@@ -13,6 +13,7 @@ from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
 from lcpstep.recording import Keep, Kept
+from lcpstep.refusals import refused
 from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
@@ -108,9 +109,9 @@ def simulate(
     forget()
     if isinstance(scene, HybridScene):
         if not hasattr(method, "run_hybrid"):
-            raise LcpStepError(f"method: a system with modes is run by lcpstep.EventDriven, got {method!r}")
+            raise refused("modes-method", scene)
         if getattr(method, "audit", False):
-            raise LcpStepError("method: runs of systems with modes are not audited; expected audit=False")
+            raise refused("modes-audit", scene)
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
         if fault() is not None:
             from lcpstep.model import hybrid_culprit

@@ -88,3 +88,13 @@ def test_functions_of_ones_own_go_along(tmp_path, monkeypatch):
     got = stepped(file, 2.0)
     q, _ = simulate(scene, Located(5e-3)).at(got[:, 0])
     assert got[:, 1] == pytest.approx(q[:, 0], abs=1e-12)
+
+
+def test_a_unit_moves_by_friction():
+    from lcpstep.export import Motion
+
+    scene = scenes.coulomb_oscillator()
+    motion = Motion(scene, Located(1e-3))
+    motion.go_to(19.0)
+    assert motion.value("q0") == pytest.approx(-0.05, abs=1e-5)
+    assert motion.value("v0") == 0.0

@@ -10,7 +10,7 @@ from lagrangian.scenes.beads import (
     inelastic_collapse,
     newtons_cradle,
 )
-from lagrangian.scenes.belts import mass_on_belt, mass_on_shaken_belt
+from lagrangian.scenes.belts import mass_on_belt, mass_on_shaken_belt, stick_slip_belt
 from lagrangian.scenes.bouncing_ball import bouncing_ball, dyadic_ball, elastic_ball
 from lagrangian.scenes.bowl import bowl
 from lagrangian.scenes.cam_follower import cam_follower
@@ -172,6 +172,11 @@ CATALOGUE: dict[str, Entry] = {
         hazard="turns of the sliding fall inside a step",
         answer="Den Hartog's motion without a stop, and its multipliers, in closed form",
     ),
+    "stick-slip-belt": Entry(
+        stick_slip_belt,
+        hazard="let go late or caught early: with two coefficients the force jumps as the mass begins to slip",
+        answer="period 2 a/belt + pi + 2 atan(belt/a), a = mu_s - mu; dead-beat, for it slips at one place",
+    ),
     "superball": Entry(
         superball,
         hazard="the tangent has no restitution, or friction acts with the force of a step and not as an impulse",
@@ -260,6 +265,6 @@ __all__ = [
     "elastic_ball", "elastic_chain", "elastic_gas", "falling_gas", "falling_rod", "galperin", "grazing",
     "heavy_on_light", "hybrid_abs", "impact_oscillator", "inelastic_collapse", "jumping_table", "kane_pendulum",
     "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block", "slider_crank",
-    "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack", "stick_slip_oscillator",
-    "sticking_oscillator", "superball", "woodpecker",
+    "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack", "stick_slip_belt",
+    "stick_slip_oscillator", "sticking_oscillator", "superball", "woodpecker",
 ]  # fmt: skip

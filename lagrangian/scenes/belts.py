@@ -74,7 +74,54 @@ def mass_on_belt(
     parameters = {
         "belt": belt, "mu": mu, "amplitude": amplitude, "omega": omega, "x0": x0, "v0": v0, "phase": phase
     }  # fmt: skip
-    return _scene("mass-on-belt", parameters, [belt, amplitude, omega, phase], mu, (x0, v0), t_end, exact)
+    return _scene(
+        "mass-on-belt", parameters, [belt, amplitude, omega, phase], coulomb(mu), (x0, v0), t_end, exact
+    )
+
+
+def falling(t: float, q: Any, u: Any, p: Any, out: Any) -> None:
+    """Stribeck's coefficient of the sliding velocity u: p[5] at rest, falling to p[4] over p[6] m/s."""
+    out[0] = p[4] + (p[5] - p[4]) * math.exp(-abs(u[0]) / p[6])
+
+
+@checked
+def stick_slip_belt(
+    belt: float = 0.2,
+    mu: float = 0.6,
+    mu_s: float = 1.0,
+    decay: float = 0.0,
+    amplitude: float = 0.0,
+    omega: float = 0.7,
+    x0: float = 0.0,
+    t_end: float = 40.0,
+) -> Scene:
+    """Mass of 1 kg on a spring of 1 N/m that a belt takes along, pressed on it with 1 N: it sticks and slips.
+
+    Static friction is above the kinetic one: carried to x = mu_s, it slips round to 2 mu - mu_s. With a = mu_s - mu
+    the period is 2 a/belt + pi + 2 atan(belt/a) if the belt runs evenly. With a `decay` [m/s] the coefficient falls
+    from mu_s to mu with the sliding velocity, as mu + (mu_s - mu) exp(-|u|/decay) (Stribeck), and the slip is one
+    equation of second order. The belt may sway as that of `mass_on_belt`.
+    """
+    for name, value in (("mu", mu), ("omega", omega), ("belt", belt)):
+        checks.positive(name, value)
+    checks.number("mu_s", mu_s, least=mu)
+    checks.number("decay", decay, least=0.0)
+    checks.number("amplitude", amplitude, least=0.0)
+    checks.number("x0", x0, least=-mu_s, most=mu_s)
+    known = decay == 0.0 and amplitude == 0.0
+    exact = even_belt(x0, belt, belt, mu_s, mu) if known else None
+    parameters = {
+        "belt": belt, "mu": mu, "mu_s": mu_s, "decay": decay, "amplitude": amplitude, "omega": omega, "x0": x0
+    }  # fmt: skip
+    p = [belt, amplitude, omega, 0.0, mu, mu_s, decay]
+    friction = Coulomb(falling if decay > 0.0 else mu, along, slip=backwards, mu_s=mu_s)
+    return _scene("stick-slip-belt", parameters, p, friction, (x0, belt), t_end, exact)
+
+
+def stick_slip_period(belt: float, mu: float, mu_s: float) -> float:
+    """Period of the motion on an even belt [s]."""
+    a = mu_s - mu
+    return 2.0 * a / belt + math.pi + 2.0 * math.atan2(belt, a)
 
 
 @checked
@@ -99,7 +146,8 @@ def mass_on_shaken_belt(
 
     parameters = {"mu": mu, "amplitude": amplitude, "omega": omega}
     start = float(x(np.zeros(1))[0]), float(v(np.zeros(1))[0])
-    return _scene("mass-on-shaken-belt", parameters, [0.0, amplitude, omega, phase], mu, start, t_end, exact)
+    p = [0.0, amplitude, omega, phase]
+    return _scene("mass-on-shaken-belt", parameters, p, coulomb(mu), start, t_end, exact)
 
 
 def shaken_arc(mu: float, omega: float) -> tuple[Callable[[Array], Array], ...]:
@@ -188,6 +236,11 @@ def even_belt(x: float, v: float, belt: float, static: float, kinetic: float) ->
     return motion
 
 
+def coulomb(mu: float) -> Coulomb:
+    """Friction with one coefficient, against the belt."""
+    return Coulomb(mu, along, slip=backwards)
+
+
 def _with_height(x: Array, v: Array) -> tuple[Array, Array]:
     return np.stack([x, 0.0 * x], axis=1), np.stack([v, 0.0 * v], axis=1)
 
@@ -196,15 +249,15 @@ def _scene(
     name: str,
     parameters: dict[str, float],
     p: list[float],
-    mu: float,
+    friction: Coulomb,
     start: tuple[float, float],
     t_end: float,
     exact: Motion | None,
 ) -> Scene:
-    _, amplitude, omega, _ = p
+    amplitude, omega = p[1:3]
     return Scene(
         system=LinearSystem(M=np.eye(2), K=np.diag([1.0, 0.0]), force=Harmonic(constant=[0.0, -1.0])),
-        contacts=LinearContacts(G=[[0.0, 1.0]], restitution=0.0, friction=Coulomb(mu, along, slip=backwards)),
+        contacts=LinearContacts(G=[[0.0, 1.0]], restitution=0.0, friction=friction),
         q0=[start[0], 0.0],
         v0=[start[1], 0.0],
         t_span=(0.0, t_end),

@@ -22,7 +22,7 @@ from lcpstep.accuracy.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.simulation import Method, simulate
-from lcpstep.stepping.located import Located, require_linear
+from lcpstep.stepping.located import Located, require_exact
 from lcpstep.trajectory import IMPACT_DTYPE, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -157,7 +157,7 @@ def independent(motion: Trajectory) -> Iterator[Method]:
         return
     span, steps = float(motion.t[-1] - motion.t[0]), max(motion.counts.steps, 1)
     try:
-        require_linear(motion.scene)
+        require_exact(motion.scene)
         yield Located(span / steps, "exact")
     except LcpStepError:
         pass  # order 4 takes what is not linear

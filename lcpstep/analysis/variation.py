@@ -21,6 +21,7 @@ from lagrangian import Scene, checks
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.events.friction.tangent import Walk
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
@@ -46,15 +47,11 @@ def factors(run: Trajectory) -> list[Array]:
 
     Raises
     ------
-    LcpStepError   the run ended early, or a scene has more than one contact, or friction
+    LcpStepError   the run ended early, or has events at which its end has no derivative, as simultaneous impacts
     """
-    if run.scene.n_c > 1:
-        raise LcpStepError(
-            f"scene: saltation matrices take one contact, {run.scene.name!r} has {run.scene.n_c}"
-        )
     contacts = run.scene.contacts
-    if contacts is not None and contacts.friction is not None:
-        raise LcpStepError(f"scene: saltation matrices do not treat friction, and {run.scene.name!r} has it")
+    if run.scene.n_j > 0 or contacts is None or run.scene.n_c > 1 or contacts.friction is not None:
+        return Walk(run).factors()
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
     return _Variation(run).factors()

@@ -65,7 +65,7 @@ def run_attractor(options: argparse.Namespace) -> int:
     scene, method = study_scene(options), method_of(options)
     names = files(options, "attractors")
     number = checks.count("--starts", options.starts)
-    starts = outside(scene, random_starts(box(options), number, options.seed), options.phase)
+    starts = outside(scene, random_starts(box(options, scene), number, options.seed), options.phase)
 
     longest = min(LONGEST, options.window // 2) if options.longest is None else options.longest
     window = max(options.window, 2 * longest)
@@ -118,14 +118,20 @@ def _exponent(r: dict[str, Any]) -> str:
     return f"{r['lyapunov']:9.4g} +- {r['lyapunov_error']:.2g}"
 
 
-def box(options: argparse.Namespace) -> list[list[float]]:
-    """Lowest and highest states of the random starts."""
-    if options.box:
-        q_min, q_max, v_min, v_max = options.box
-        return [[q_min, v_min], [q_max, v_max]]
-    if options.scene != "cam-follower":
+def box(options: argparse.Namespace, scene: Any) -> list[list[float]]:
+    """Lowest and highest states of the random starts; of several coordinates the others begin as the scene does."""
+    if not options.box and options.scene != "cam-follower":
         raise ValueError("--box: expected QMIN QMAX VMIN VMAX, the states to start from")
-    return [list(x) for x in CAM_BOX]
+    q_min, q_max, v_min, v_max = options.box or (x for pair in zip(*CAM_BOX, strict=True) for x in pair)
+    ends = [(q_min, v_min), (q_max, v_max)]
+    if isinstance(scene, HybridScene) or scene.n_q == 1:
+        return [list(end) for end in ends]
+    states = []
+    for q, v in ends:
+        x = np.concatenate([scene.q0, scene.v0]).astype(float)
+        x[0], x[scene.n_q] = q, v
+        states.append(x.tolist())
+    return states
 
 
 def _row(method: str, a: Any) -> dict[str, Any]:

@@ -133,10 +133,12 @@ def _print_counts(data: Any) -> None:
 
 def _diagram(options: argparse.Namespace, make: Any, values: Any, method: Method, out: Path) -> Any:
     """The diagram by one method, its unfinished parts in `out`."""
+    random = options.start == "random"
+    states = box(options, make(**{options.parameter: float(values[0])})) if random else None
     with parts_bar(f"{options.parameter} {values[0]:g} .. {values[-1]:g}") as progress:
         return bifurcation(
             make, options.parameter, values, method=method, start=options.start, runs=options.runs,
-            seed=options.seed, box=box(options) if options.start == "random" else None, drop=options.drop,
+            seed=options.seed, box=states, drop=options.drop,
             keep=options.keep, phase=options.phase, most=options.most, jobs=options.jobs, out=out, progress=progress,
         )  # fmt: skip
 

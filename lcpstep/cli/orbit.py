@@ -25,7 +25,8 @@ from lcpstep.cli import interrupt, proofs
 from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, parameters_of, save_figure
 from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
 from lcpstep.errors import UnknownName
-from lcpstep.maps import SwitchMap, iterate
+from lcpstep.maps import EventMap, SwitchMap, iterate
+from lcpstep.maps.event import KINDS
 from lcpstep.plot import orbits as pictures
 from lcpstep.plot.words import method_words, title_of
 
@@ -47,6 +48,17 @@ def add(commands: Any) -> None:
         metavar="NAME",
         help="a mode of the scene: the orbit from one entry into it to the next, driven or not",
     )
+    p.add_argument(
+        "--event",
+        metavar="KIND",
+        type=str.upper,
+        help=f"the orbit from one event of this kind to the next, driven or not: {', '.join(KINDS).lower()}",
+    )
+    p.add_argument("--contact", type=int, default=0, help="contact whose events --event looks at (0)")
+    p.add_argument(
+        "--cyclic", type=int, nargs="+", default=[], metavar="N",
+        help="coordinates, counted from 0, that the equations do not know of: left out of the points of --event",
+    )  # fmt: skip
     p.add_argument("--guess", type=float, nargs="+", metavar="X", help="state (q, v) on the section")
     p.add_argument("--transient", type=int, default=500, help="periods to settle without a guess (500)")
     p.add_argument("--parameter", default="rpm", help="parameter of the branch (rpm)")
@@ -69,7 +81,7 @@ def run_orbit(options: argparse.Namespace) -> int:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
-    if options.mode is not None:
+    if options.mode is not None or options.event is not None:
         return _run_returns(options, scene, method)
     names = files(options, "branch") if options.range is not None else None
     drawn = options.out / "orbit.png"
@@ -95,18 +107,26 @@ def run_orbit(options: argparse.Namespace) -> int:
 
 
 def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
-    """The orbit of a scene with modes on the section of entries into one of them."""
+    """The orbit on the section of entries into a mode, or of events of a contact."""
     if options.range is not None or options.draw or options.prove:
         raise ValueError(
-            "--mode: prints the orbit on the entries into a mode; --range and --draw go without it, and --prove too"
+            "--mode, --event: print the orbit on that section; --range and --draw go without it, and --prove too"
         )
-    P = SwitchMap(scene, method, options.mode)
+    P: SwitchMap | EventMap
+    if options.mode is not None:
+        P, where = SwitchMap(scene, method, options.mode), f"entering {options.mode}"
+    else:
+        P = EventMap(scene, method, options.event, options.contact, tuple(options.cyclic))
+        where = f"{options.event} of contact {options.contact}"
     x = P.entry() if options.guess is None else options.guess
     found = periodic_point(P, iterate(P, x, options.transient)[-1], options.periods)
     period = sum(P.duration(y) for y in found.points)
     print(f"{'stable' if found.stable else 'unstable'}; period {period:.12g}, residual {found.residual:.2g}")
+    if isinstance(P, EventMap) and options.cyclic:
+        moved = sum(P.advance(y) for y in found.points)
+        print(f"coordinates left out move on by {np.atleast_1d(moved).tolist()}")
     state = "phase [rad] and state" if P.driven else "state"
-    print(f"{state} on entering {options.mode}: " + "; ".join(str(y.tolist()) for y in found.points))
+    print(f"{state} on {where}: " + "; ".join(str(y.tolist()) for y in found.points))
     print("multipliers: " + ", ".join(f"{m:.10g} (modulus {abs(m):.10g})" for m in found.multipliers))
     return DONE
 

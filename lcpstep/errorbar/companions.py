@@ -24,7 +24,7 @@ from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
 from lcpstep.faults import forget
 from lcpstep.recording import Kept
-from lcpstep.stepping.located import Located, require_linear
+from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Trajectory
 
@@ -55,7 +55,7 @@ def companions(run: Trajectory) -> Iterator[tuple[Companion, ...]]:
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
     step = float(run.t[-1] - run.t[0]) / max(run.counts.steps, 1)
     try:
-        require_linear(scene)
+        require_exact(scene)
         yield (Companion(Located(step, "exact")),)
     except LcpStepError:
         pass

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene, scenes
-from lagrangian.scenes.belts import shaken_arc
+from lagrangian.scenes.belts import shaken_arc, stick_slip_period
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.slider_crank import energy
 from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
@@ -83,6 +83,42 @@ def carried(solve: Solver) -> float:
     scene = scenes.mass_on_belt()
     run = solve(scene, keep=np.linspace(0.5, 3.0, 50))  # carried from 0.25 s to 3.2 s
     return float(np.max(np.abs(run.v[:, 0] - 0.2)))
+
+
+@check("stick-slip-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10)
+def sticks_and_slips(solve: Solver) -> float:
+    return state_error(solve, scenes.stick_slip_belt())
+
+
+@check("stick-slip-belt", "period of the orbit", period=TURN, event_driven=1e-11)
+def orbit_period(solve: Solver) -> float:
+    slips = times(solve(scenes.stick_slip_belt()), Kind.SLIP)
+    return float(np.max(np.abs(np.diff(slips) - stick_slip_period(0.2, 0.6, 1.0))))
+
+
+@check(
+    "stick-slip-belt", "period, Stribeck's coefficient, against a quadrature", period=TURN, event_driven=1e-10
+)
+def stribeck_period(solve: Solver) -> float:
+    slips = times(solve(scenes.stick_slip_belt(decay=0.3)), Kind.SLIP)
+    return float(np.max(np.abs(np.diff(slips) - slip_and_ride(0.2, 0.6, 1.0, 0.3))))
+
+
+def slip_and_ride(belt: float, mu: float, mu_s: float, decay: float) -> float:
+    """Period on an even belt by Stribeck's coefficient: the slip integrated on its own, and the ride back."""
+    from scipy.integrate import solve_ivp
+
+    def rates(_: float, y: Any) -> list[float]:
+        friction = mu + (mu_s - mu) * math.exp(-abs(belt - y[1]) / decay)
+        return [y[1], friction - y[0]]
+
+    def caught(t: float, y: Any) -> float:
+        return float(y[1] - belt) if t > 0.5 else -1.0  # not the slip itself
+
+    caught.terminal = True  # type: ignore[attr-defined]
+    start = [mu_s * (1.0 + 1e-15), belt]
+    done = solve_ivp(rates, (0.0, 20.0), start, method="DOP853", rtol=1e-13, atol=1e-14, events=caught)
+    return float(done.t_events[0][0] + (mu_s - done.y_events[0][0][0]) / belt)
 
 
 @check(
@@ -203,6 +239,7 @@ def momentum(solve: Solver) -> Found:
 BALANCED = {
     "coulomb-oscillator": scenes.coulomb_oscillator,
     "mass-on-belt": scenes.mass_on_belt,
+    "stick-slip-belt": scenes.stick_slip_belt,
     "mass-on-shaken-belt": scenes.mass_on_shaken_belt,
     "slipping-wheel": scenes.slipping_wheel,
     "sliding-block": scenes.sliding_block,

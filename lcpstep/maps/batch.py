@@ -232,6 +232,8 @@ def _one_period(scene: Scene, method: Method, task: Task, x: Array, i: int, k: i
         return x, int(run.status)
     if k >= 0:
         log = run.impacts[run.impacts.kind == Kind.IMPACT]
+        faint = np.abs(log.before) <= ROUNDING * max(1.0, float(np.max(np.abs(x))))
+        log = log[~(faint & (log.time <= task.t_start))]  # a contact closed at the section is no impact
         later = run.impacts[run.impacts.time > task.t_start]  # a contact closed at the section is no landing
         shown = log[: task.impacts.shape[2]]
         task.impacts[i, k, : len(shown)] = np.stack([shown.time, shown.before, shown.after], axis=1)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
-from lcpstep.errors import LcpStepError
+from lcpstep.refusals import refused
 from lcpstep.stepping.steps import check_steps
 
 if TYPE_CHECKING:
@@ -78,46 +78,33 @@ class Located:
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
             if self.order == "exact":
-                raise ValueError(
-                    'tolerance: order="exact" makes no error that steps could control; expected None'
-                )
+                raise ValueError(str(refused("exact-tolerance")))
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        from lcpstep.model import require
-
         check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
-        if scene.contacts is not None and scene.contacts.friction is not None:
-            return self.run_with_friction(scene, kept, progress)
-        variant = "a tolerance" if self.tolerance is not None else f"order={self.order!r}"
-        joints = self.order == 2 and self.tolerance is None
-        require(scene, f"Located with {variant}", joints=joints, friction=False)
+        friction = scene.contacts is not None and scene.contacts.friction is not None
         if self.order == "exact":
-            require_linear(scene)
+            require_exact(scene)
+        elif friction or (scene.n_j > 0 and (self.order == 4 or self.tolerance is not None)):
+            from lcpstep.stepping.rubbing.run import RubbingRun
+
+            return RubbingRun(self, scene, kept).finish(progress)
         from lcpstep.stepping.pieces.run import LocatedRun
 
         return LocatedRun(self, scene, kept).finish(progress)
 
-    def run_with_friction(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
-        """The motion of a scene with friction."""
-        from lcpstep.model import require
 
-        if self.order == "exact":
-            require(scene, "Located with order='exact'", joints=True, friction=False)
-        from lcpstep.stepping.rubbing.run import RubbingRun
-
-        return RubbingRun(self, scene, kept).finish(progress)
-
-
-def require_linear(scene: Scene) -> None:
+def require_exact(scene: Scene) -> None:
     """Refuse a scene whose motion between impacts is not known in closed form."""
     s, c = scene.system, scene.contacts
+    if scene.n_j > 0:
+        raise refused("exact-joints", scene)
+    if c is not None and c.friction is not None:
+        raise refused("exact-friction", scene)
     if not (isinstance(s, LinearSystem) and isinstance(s.force, Harmonic)):
-        reason = "a LinearSystem whose force is constant or Harmonic"
-    elif not (c is None or isinstance(c, LinearContacts)):
-        reason = "LinearContacts"
-    elif scene.n_q > 1 and (s.frame is not None or (c is not None and c.motion is not None)):
-        reason = "one coordinate where the frame or an obstacle moves"
-    else:
-        return
-    raise LcpStepError(f'scene: Located(order="exact") expects {reason}; take order=4 for {scene.name!r}')
+        raise refused("exact-forces", scene)
+    if not (c is None or isinstance(c, LinearContacts)):
+        raise refused("exact-curved", scene)
+    if scene.n_q > 1 and (s.frame is not None or (c is not None and c.motion is not None)):
+        raise refused("exact-moving", scene)

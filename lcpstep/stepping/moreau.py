@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lagrangian import LinearContacts, LinearSystem, Scene, checks
-from lcpstep.errors import LcpStepError
+from lcpstep.refusals import refused
 from lcpstep.stepping.steps import check_steps
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Moreau:
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
             if self.lcp != "lemke":
-                raise LcpStepError(f'tolerance: steps are adapted with lcp="lemke" only, got {self.lcp!r}')
+                raise refused("solver-tolerance")
 
     def beyond_contacts(self, scene: Scene) -> bool:
         """Whether the scene's steps have more in them than frictionless contacts."""
@@ -76,17 +76,12 @@ class Moreau:
         """The motion of a scene; see `lcpstep.simulate`."""
         check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
         if self.lcp != "lemke" and self.beyond_contacts(scene):
-            raise LcpStepError(
-                f'lcp: joints, friction and projected=True take "lemke", which needs no symmetric matrix and is '
-                f"compiled with the loop; got {self.lcp!r} for {scene.name!r}"
-            )
+            raise refused("solver-beyond-contacts", scene)
         if is_sparse(scene) and not self.beyond_contacts(scene):
             from lcpstep.stepping import sparse
 
             if self.tolerance is not None:
-                raise LcpStepError(
-                    f"tolerance: scenes with sparse matrices take steps of one size; expected None for {scene.name!r}"
-                )
+                raise refused("sparse-tolerance", scene)
             return sparse.SparseRun(self, scene, kept).finish(progress)
         from lcpstep.stepping.moreau_run import MoreauRun
 

@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.errors import LcpStepError
 from lcpstep.kernels.layout import LEAD, LENGTH, MODE, TIME
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
+from lcpstep.refusals import refused
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
@@ -46,9 +46,7 @@ class SparseRun(StepRun):
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         if method.lcp not in SOLVERS:
-            raise LcpStepError(
-                f"lcp: scenes with sparse matrices have a solver of their own and take no {method.lcp!r}"
-            )
+            raise refused("sparse-solver", scene)
         n_q, n_c = scene.n_q, scene.n_c
         recorder = Recorder(n_q, n_c, kept, max(1, BUFFER // (LEAD + 2 * n_q + n_c)))
         super().__init__(method, scene, kept, recorder, LOOKS)

@@ -19,9 +19,8 @@ from lagrangian import (
 )
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.rough_contacts import critical_friction
-from lcpstep import EventDriven, Kind, LcpStepError, Moreau, Status, continued, simulate
+from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
 from lcpstep import energy as energy_balance
-from lcpstep.analysis.variation import factors
 from tests.processes import python
 from tests.uncompiled import copy_without_what_is_built
 
@@ -54,6 +53,7 @@ def at_end(scene, *methods):
         scenes.slope_landing(slope=0.9, mu=0.3),
         scenes.mass_on_belt(x0=-2.5, v0=0.9, belt=0.5, mu=0.1, t_end=20.0),
         scenes.mass_on_shaken_belt(),
+        scenes.stick_slip_belt(belt=0.5),
         scenes.superball(),
         scenes.superball(v0=3.0, mu=0.1),
     ],
@@ -129,6 +129,33 @@ def test_a_block_on_a_shaken_table_slides_to_where_its_phases_say():
             break
     assert abs(run.q[-1, 0] - x) < 1e-11
     assert abs(x + 6.283e-5) < 1e-8
+
+
+EDGE_LOADS = [
+    (1, 0.3),
+    (1, 0.5),
+    (2, 0.3),
+]  # of two feet with mu_s > mu it is not determined when they give way
+
+
+@pytest.mark.parametrize(("feet", "mu_s"), EDGE_LOADS)
+@pytest.mark.parametrize("grows", [True, False])
+def test_a_force_that_begins_at_the_edge_of_the_cone_slides_only_if_it_grows(feet, mu_s, grows):
+    """x'' = F(t) with F(0) = mu_s N exactly: nothing moves under mu_s cos t, under mu_s (1 + sin t) it slides."""
+    rows = [[0.0, 1.0, 0.0]] if feet == 1 else [[0.0, 1.0, 1.0], [0.0, 1.0, -1.0]]
+    constant, along = [mu_s if grows else 0.0, -1.0, 0.0], [mu_s, 0.0, 0.0]
+    force = (
+        Harmonic(constant, sine=along, omega=1.0) if grows else Harmonic(constant, cosine=along, omega=1.0)
+    )
+    scene = Scene(
+        system=LinearSystem(np.eye(3), force=force),
+        contacts=LinearContacts(rows, friction=Coulomb(0.3, [[1.0, 0.0, 0.0]] * feet, mu_s=mu_s)),
+        q0=[0.0] * 3, v0=[0.0] * 3, t_span=(0.0, 1.5),
+    )  # fmt: skip
+    run = simulate(scene, EventDriven())
+    x = 0.5 * (mu_s - 0.3) * 1.5**2 + mu_s * (1.5 - math.sin(1.5)) if grows else 0.0
+    assert abs(run.q[-1, 0] - x) < 1e-9
+    assert grows or np.all(run.v == 0.0)
 
 
 # --- impacts
@@ -331,12 +358,6 @@ def test_the_energy_that_friction_takes_never_comes_back():
         assert len(E.created) == 0
     E = energy_balance(simulate(scenes.sliding_block(), EventDriven()))
     assert abs(E.friction[-1] - 0.5) < 1e-12
-
-
-def test_saltation_matrices_refuse_friction():
-    run = simulate(scenes.sliding_block(), EventDriven(), keep="impacts")
-    with pytest.raises(LcpStepError, match="friction"):
-        factors(run)
 
 
 PROGRAM = """

@@ -240,7 +240,7 @@ def test_what_works_with_dense_matrices_says_so():
     large = Scene(system, np.ones(3000), np.zeros(3000), (0.0, 1.0), contacts)
     with pytest.raises(LcpStepError, match="M: this method works with dense matrices"):
         simulate(large, EventDriven())
-    with pytest.raises(LcpStepError, match="solver of their own and take no 'qp'"):
+    with pytest.raises(LcpStepError, match="lcp: Moreau with sparse matrices does not treat another solver"):
         simulate(column(10), Moreau(1e-3, lcp="qp"))
 
 

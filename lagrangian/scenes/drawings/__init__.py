@@ -84,6 +84,7 @@ MAKERS: dict[str, Callable[[Any, Any], Drawing]] = {
     "rocking-block": lambda s, p: partial(rocking, b=p["b"], h=p["h"]),
     "coulomb-oscillator": lambda s, p: partial(on_belt, size=abs(p["x0"]) or 1.0, contacts=(0,)),
     "mass-on-belt": lambda s, p: partial(on_swaying, p=s.p, size=1.0),
+    "stick-slip-belt": lambda s, p: partial(on_swaying, p=s.p, size=max(1.0, p["mu_s"])),
     "mass-on-shaken-belt": lambda s, p: partial(on_swaying, p=s.p, size=1.0),
     "superball": lambda s, p: partial(
         wheel, radius=p["radius"], reach=abs(p["v0"]) * s.t_span[1] + p["radius"]

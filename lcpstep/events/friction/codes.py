@@ -9,3 +9,4 @@ from lcpstep.trajectory import Kind
 OPEN, STICKS, SLIDES, LEANS = range(4)
 BEGIN, MOVE, JUMP, DECIDE, OBEY = range(5)  # what comes next
 IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
+RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10

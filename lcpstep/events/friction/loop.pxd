@@ -1,9 +1,9 @@
-from lcpstep.events.friction.equations cimport gap_size, measure
+from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.guards cimport begin_guards
-from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still
+from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still, touching
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey
-from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs

@@ -16,12 +16,12 @@ from lcpstep.events.friction.codes import BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import gap_size, measure
+    from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.guards import begin_guards
-    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still
+    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still, touching
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, obey
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import abs
@@ -82,12 +82,12 @@ def go_on(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
 
 
 def begin(s: Rubbing) -> int:
-    """The state at the start of the span, where gaps that are zero to rounding are closed."""
+    """The state at the start of the span, where gaps that are zero to rounding or the tolerance are closed."""
     s.clock.find_corners(s.clock.t0)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     for c in range(s.n_c):
-        s.touches[c] = 1 if s.gap[s.n_j + c] <= NOISE * gap_size(s, c) else 0
+        s.touches[c] = 1 if s.gap[s.n_j + c] <= touching(s, c) else 0
     forget_terms(s)
     s.next = JUMP
     return DONE

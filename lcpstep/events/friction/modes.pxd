@@ -21,8 +21,11 @@ cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
-@cython.locals(leaning=Py_ssize_t)
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(leaning=Py_ssize_t)
+cdef Py_ssize_t take_over(Rubbing s) noexcept nogil
+@cython.locals(stuck=Py_ssize_t, held=Py_ssize_t)
+cdef void stand_alone(Rubbing s) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil

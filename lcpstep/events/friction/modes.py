@@ -150,15 +150,44 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
+    code = take_over(s)
+    if code == DONE:
+        tell(s, record, tally, t)
+    return code
+
+
+def take_over(s: Rubbing) -> int:
+    """Take over the modes decided, and hold their rows."""
     leaning = 0
     for c in range(s.n_c):
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
         s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
         leaning += s.mode[c] == LEANS
-    if (leaning == 0 or not stand(s)) and not hold_modes(s):
-        return PAINLEVE_INCONSISTENT
-    tell(s, record, tally, t)
-    return DONE
+    if leaning > 0 and stand(s):
+        return DONE
+    if leaning > 0:
+        stand_alone(s)
+    return DONE if hold_modes(s) else PAINLEVE_INCONSISTENT
+
+
+def stand_alone(s: Rubbing) -> None:
+    """At the edge of the cone, with none that sticks to lean on: they stick until their forces leave it.
+
+    Of those that share a direction one sticks, and the others lean on it.
+    """
+    stuck = 0
+    for c in range(s.n_c):
+        stuck += s.mode[c] == STICKS
+    if stuck > 0:
+        return
+    for c in range(s.n_c):
+        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
+    hold_modes(s)
+    for c in range(s.n_c):
+        held = 0
+        for m in range(s.n_held):
+            held += s.held[m] == s.n_j + s.n_c + c
+        s.mode[c] = LEANS if s.mode[c] == STICKS and held == 0 else s.mode[c]
 
 
 def stand(s: Rubbing) -> bool:

@@ -11,17 +11,19 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.events.friction.codes import OPEN
+from lcpstep.events.friction.codes import OPEN, RELATIVE_STEP, SLIDES
+from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.events.friction.equations import free_motion, measure, measure_rows
     from lcpstep.events.friction.guards import look
-    from lcpstep.events.friction.held import hold_modes, list_multipliers, right_hand_side
+    from lcpstep.events.friction.held import hold_modes, list_multipliers, pull, right_hand_side
+    from lcpstep.events.friction.impact import find_free
+    from lcpstep.events.friction.modes import decide, take_over
     from lcpstep.events.friction.state import GUARDS, Rubbing
+    from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, after, max, whole
-
-RELATIVE_STEP = 7.4e-5  # of differences of fourth order: eps^(1/5)/10
 
 
 def modes(s: Any) -> tuple[Any, Any]:
@@ -36,6 +38,26 @@ def read_modes(s: Rubbing, mode: Doubles, direction: Doubles) -> None:
     """`modes`, into these."""
     for c in range(s.n_c):
         mode[c], direction[c] = s.mode[c], s.direction[c]
+
+
+def settle(s: Any, t: float, x: Any, closed: Any) -> int:
+    """Find and hold the modes of the contacts that are closed at the state x = (q, v); a status."""
+    kinds = np.array(closed, dtype=float)
+    return find_modes(s, t, doubles(x), doubles(kinds))
+
+
+def find_modes(s: Rubbing, t: float, y: Doubles, closed: Doubles) -> int:
+    """`settle`, of kernels' arrays."""
+    s.clock.find_corners(t)
+    copy(s.y, y, 2 * s.n_q)
+    for c in range(s.n_c):
+        s.mode[c] = SLIDES if closed[c] > 0.0 else OPEN
+        s.touches[c] = 1 if closed[c] > 0.0 else 0
+    if not measure(s, t, s.y):
+        return NOT_FINITE
+    find_free(s)
+    code = decide(s)
+    return take_over(s) if code == DONE else code
 
 
 def hold(s: Any, t: float, x: Any, mode: Any, direction: Any) -> bool:
@@ -112,6 +134,19 @@ def write_forces(s: Rubbing, t: float, y: Doubles, dy: Doubles, out: Doubles) ->
     list_multipliers(s)
     for i in range(s.n_r):
         out[i] = s.multiplier[i]
+
+
+def pulls(s: Any) -> Any:
+    """Friction that comes with each normal force under the modes held, (n_c,): -s mu of a contact that slides."""
+    out = np.zeros(s.n_c)
+    write_pulls(s, doubles(out))
+    return out
+
+
+def write_pulls(s: Rubbing, out: Doubles) -> None:
+    """`pulls`, into out."""
+    for c in range(s.n_c):
+        out[c] = pull(s, s.n_j + c)
 
 
 def rows(s: Any, t: float, x: Any) -> Any:

@@ -32,12 +32,14 @@ def start(
     """
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
-    friction = given.friction
+    friction = given and given.friction
+    tangential = np.zeros(scene.n_c) if friction is None else friction.tangential(given.restitution)
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
     s = kind(
-        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
-        friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
+        contacts, joints, tangents, coefficients(scene), tangential,
+        friction is not None and friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol,
+        *quadrature(), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan

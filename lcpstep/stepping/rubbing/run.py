@@ -1,8 +1,9 @@
-"""A run of `Located` of a scene with friction."""
+"""A run of `Located` of a scene with friction, and of one with joints at order 4 or by a tolerance."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,6 +45,13 @@ class RubbingRun(FrictionRun):
         )
         system.next_step = FIRST * (scene.t_span[1] - scene.t_span[0])
         return system
+
+    def trajectory(self, code: int) -> Any:
+        """Everything computed so far; of a scene without friction no impulses of it."""
+        run, contacts = super().trajectory(code), self.scene.contacts
+        if contacts is not None and contacts.friction is not None:
+            return run
+        return replace(run, friction_impulse=np.zeros((len(run.t), 0)))
 
     @property
     def ahead(self) -> np.ndarray:

@@ -1,0 +1,87 @@
+"""One list of what is refused: every line of it is raised in its words, and the table of the docs is made from it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, LcpStepError, Located, Moreau, simulate
+from lcpstep.analysis.variation import monodromy
+from lcpstep.refusals import REFUSALS, with_table
+from tests.events.test_friction import block
+
+PAGE = Path(__file__).parent.parent / "docs" / "choosing.md"
+EXACT = Located(1e-2, "exact")
+
+
+def sparse(**more):
+    """Two masses whose matrices are sparse."""
+    return Scene(
+        system=LinearSystem(scipy.sparse.eye_array(2, format="csr")), contacts=LinearContacts([[1.0, 0.0]]),
+        q0=[1.0, 1.0], v0=[0.0, 0.0], t_span=(0.0, 1.0), **more,
+    )  # fmt: skip
+
+
+def moving(t, q, v, p, out):
+    out[0, 0] = out[0, 1] = out[0, 2] = 0.0
+
+
+def two_with_a_moving_wall():
+    return Scene(
+        system=LinearSystem(np.eye(2)), contacts=LinearContacts([[1.0, 0.0]], motion=moving), q0=[1.0, 1.0],
+        v0=[0.0, 0.0], t_span=(0.0, 1.0),
+    )  # fmt: skip
+
+
+def falls_flat():
+    scene = Scene(
+        system=LinearSystem(np.eye(3), force=[0.0, -9.81, 0.0]),
+        contacts=LinearContacts([[0, 1, 0.3], [0, 1, -0.3]], friction=Coulomb(0.3, [[1, 0, 0.4]] * 2)),
+        q0=[0.0, 0.2, 0.0], v0=[0.5, 0.0, 0.0], t_span=(0.0, 0.3),
+    )  # fmt: skip
+    return monodromy(scene, EventDriven(), [0.0, 0.2, 0.0, 0.5, 0.0, 0.0], (0.0, 0.3))
+
+
+def comes_to_rest_in_a_corner():
+    scene = block(61045)
+    x = np.concatenate([scene.q0, scene.v0]) + np.array([0.0, 0.1, 0.0, 0.0, 0.0, 0.3])
+    return monodromy(scene, EventDriven(1e-12, 1e-12), x, (0.0, 0.7))
+
+
+ASKED = {
+    "exact-joints": lambda: simulate(scenes.pendulum_stop(form="rod"), EXACT),
+    "exact-friction": lambda: simulate(scenes.sliding_block(), EXACT),
+    "exact-forces": lambda: simulate(scenes.pendulum_stop(), EXACT),
+    "exact-curved": lambda: simulate(scenes.bowl(), EXACT),
+    "exact-moving": lambda: simulate(two_with_a_moving_wall(), EXACT),
+    "exact-tolerance": lambda: Located(1e-2, "exact", tolerance=1e-6),
+    "solver-beyond-contacts": lambda: simulate(scenes.sliding_block(), Moreau(1e-2, lcp="pgs")),
+    "solver-tolerance": lambda: Moreau(1e-2, lcp="pgs", tolerance=1e-3),
+    "sparse-tolerance": lambda: simulate(sparse(), Moreau(1e-2, tolerance=1e-3)),
+    "sparse-solver": lambda: simulate(sparse(), Moreau(1e-2, lcp="pgs")),
+    "modes-method": lambda: simulate(scenes.bilinear_oscillator(), Moreau(1e-2)),
+    "modes-audit": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(audit=True)),
+    "together": falls_flat,
+    "endless-together": comes_to_rest_in_a_corner,
+}
+
+
+@pytest.mark.parametrize("key", ASKED)
+def test_what_is_refused_is_raised_in_the_words_of_the_list(key):
+    with pytest.raises((LcpStepError, ValueError)) as error:
+        ASKED[key]()
+    said, line = str(error.value), REFUSALS[key]
+    for word in (line.argument + ": ", line.method, line.feature, line.reason, line.instead):
+        assert word in said
+
+
+def test_every_line_of_the_list_is_asked_for():
+    assert set(ASKED) | {"modes-contacts"} == set(REFUSALS)  # a HybridScene has no place for contacts
+
+
+def test_the_table_of_the_docs_is_that_of_the_list():
+    page = PAGE.read_text()
+    assert with_table(page) == page, "run: python -m lcpstep.refusals docs/choosing.md"
+    assert page.count("does not treat") >= 1
