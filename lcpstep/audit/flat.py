@@ -64,20 +64,6 @@ class Flat:
             gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
         )
 
-    def far(self, c: int, w: Windows, starts: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Which windows of contact c, in groups that begin at `starts`, are clear by their places alone."""
-        motion: Any = self.motion
-        y = np.matmul(motion.B[w.k], self.G[c])
-        error = np.sum(np.abs(self.G[c])) * np.max(self.error[0]) + self.error[1] * np.max(np.abs(y))
-        slack = error + ROUNDING * (np.max(motion.largest) * np.sum(np.abs(self.G[c])) + abs(self.offset[c]))
-        lowest = np.minimum.reduceat(y.min(axis=1), starts) + self.offset[c] - slack
-        if self.obstacle.moves:
-            ends = np.append(starts[1:], len(w.a)) - 1
-            whole = w.a[starts], w.b[ends]
-            s, _ = self.obstacle.bounds(np.full(len(starts), c), *whole, rough=True)
-            lowest = lowest - s.place.hi
-        return np.repeat(lowest > 0.0, np.diff(np.append(starts, len(w.a))))
-
     def pressed(self, w: Windows, *, rough: bool) -> Seen:
         """Of one closed contact: what presses it, as if that were the gap, -(G y'' - sigma'') on the obstacle."""
         assert isinstance(self.motion, Oscillation)

@@ -143,14 +143,17 @@ class Oscillation:
     absolute = True
 
     def __init__(self, o: Any, t: Array, y: Array, w: Array) -> None:
-        self.o, self.t = o, t
-        steady, rate = self.steady(t[:-1])
-        self.z, self.dz = y - steady, w - rate
+        self.o, self.t, self.y, self.w = o, t, y, w
+
+    def remainder(self, k: Any) -> tuple[Array, Array]:
+        """The motion less the steady oscillation at the start of the pieces k, and its velocity."""
+        steady, rate = self.steady(self.t[k])
+        return self.y[k] - steady, self.w[k] - rate
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G y in the pieces k."""
         steady = math.hypot(self.o.X, self.o.Y)
-        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.z[k]) + steady))
+        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.y[k]) + 2.0 * steady))
 
     def steady(self, t: Array) -> tuple[Array, Array]:
         """The steady oscillation and its velocity."""
@@ -163,7 +166,7 @@ class Oscillation:
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G y for a number G (n, 1) of every window, and its values at a and b."""
         tau = Interval(a - self.t[k], b - self.t[k])
-        free, at_a, at_b = self.free(self.z[k], self.dz[k], tau)
+        free, at_a, at_b = self.free(*self.remainder(k), tau)
         if self.o.Omega != 0.0 and (self.o.X != 0.0 or self.o.Y != 0.0):
             at_a, at_b = at_a + self.steady(a)[0], at_b + self.steady(b)[0]
             free = Bounds(*[x + y for x, y in zip(free, self.forced(Interval(a, b)), strict=True)])

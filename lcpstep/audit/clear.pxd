@@ -1,0 +1,50 @@
+cimport cython
+from libc.math cimport floor
+from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.kernels.function cimport Function
+from lcpstep.pointers cimport abs, after, inf, max, min, whole
+
+cdef Py_ssize_t DEEPEST, MOST
+cdef double SLACK
+
+
+@cython.final
+cdef class Cells:
+    cdef object arrays, bounds
+    cdef readonly bint given, rough, whole_rough
+    cdef readonly Py_ssize_t n, n_c
+    cdef double period, per
+    cdef double* ends
+    cdef double* lo
+    cdef double* hi
+    cdef unsigned char* branched
+    cdef double* whole_top
+    cdef double* whole_low
+    cdef double* whole_high
+    cdef readonly double top, low, high
+    cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
+    cdef Py_ssize_t cell(self, double t) noexcept nogil
+
+
+cdef class Gap:
+    cdef Cells cells
+    cdef Function motion, frame
+    cdef object kept, stack
+    cdef double* q
+    cdef double* v
+    cdef double* moving
+    cdef double* G
+    cdef double* times
+    cdef double* places
+    cdef double* gaps
+    cdef double* bends
+    cdef double place, bend, fourth, error
+    cdef void at(self, double tau) noexcept nogil
+    cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
+
+@cython.locals(least=double)
+cdef bint open_between(
+    double g_a, double g_b, double h, double low, double high, bint first, bint last, double error
+) noexcept nogil
+@cython.locals(good=bint, begins=bint, ends=bint)
+cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b, bint first, bint last) noexcept nogil

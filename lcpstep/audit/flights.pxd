@@ -1,0 +1,30 @@
+cimport cython
+from libc.math cimport hypot, sqrt
+from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.audit.clear cimport Cells, Gap, clear, open_between
+from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
+from lcpstep.pointers cimport abs, after, max
+
+cdef double SLACK, ROUNDING
+
+
+@cython.final
+cdef class Swing(Gap):
+    cdef Flight s
+    cdef readonly bint swings, known
+    cdef double forced, height
+    cdef double size(self, double z, double w) noexcept nogil
+
+@cython.locals(whole=bint, first=bint, last=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
+cpdef object clear_flights(
+    Swing g, object t, object q, object y, object w, object obstacle, object touched, object skipped,
+    object cuts, object found
+)
+cdef bint at_once(
+    Swing g, Flight o, double h, double* q, double* x, double w, double s, double s_b,
+    bint first, bint last, bint whole
+) noexcept nogil
+cdef bint closely(
+    Swing g, Flight s, double t, double t_b, double y, double w, bint first, bint last, double* cuts, Py_ssize_t i,
+    Py_ssize_t n_cuts
+) noexcept nogil
