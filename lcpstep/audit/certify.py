@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.audit.first import look
+from lcpstep.audit.limits import AT_EVENT, BESIDE, ERRORS, NEGLIGIBLE
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.result import Audit, Found, Window
 from lcpstep.audit.sampled import sampled
@@ -22,9 +23,6 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 PORTION = 1 << 15  # windows at a time
 SMALLEST = 1e-10  # of the scale of times: windows are not halved any more
-AT_EVENT = 1e-7  # of it: what is so near to an event of the run is part of it
-BESIDE, ERRORS = 1e-3, 3.0  # so is what is near, where the gap is above minus so many errors
-NEGLIGIBLE = 1e-9  # of the largest gap: no error that is larger counts as one
 MOST = 16  # windows that one becomes, at most, on average
 LEAST = 20_000  # windows that any portion may become
 CLOSER = 10  # halvings of the window of an event that is to be taken
@@ -49,13 +47,12 @@ def audit(run: Trajectory) -> Audit:
         return Audit(1.0, 0, 0, ())
     p, tally = Pieces(run), Tally()
     h = np.diff(p.t)
-    scale = min(run.scene.period, p.t[-1] - p.t[0])
     clear = look(p)
-    tally.certified = float(np.sum(h @ clear))
+    tally.certified = float(np.sum(np.where(clear, h[:, None], 0.0)))
     k, c = np.nonzero(~clear & (h > 0.0)[:, None])
     for first in range(0, len(k), PORTION):
         part = slice(first, first + PORTION)
-        examine(p, divided(p, k[part], c[part]), scale, tally)
+        examine(p, divided(p, k[part], c[part]), tally)
     whole = run.scene.n_c * (p.t[-1] - p.t[0])
     flights, bad = counted(p, tally)
     windows = tuple(sorted(reported(tally), key=lambda x: (x.start, x.contact)))
@@ -97,7 +94,7 @@ def divided(p: Pieces, rows: NDArray[np.intp], c: NDArray[np.intp]) -> Windows:
     return Windows(k, c, start, end, is_first & touched[k, c], is_last & touched[k + 1, c], p.closed[k, c])
 
 
-def examine(p: Pieces, w: Windows, scale: float, tally: Tally) -> None:
+def examine(p: Pieces, w: Windows, tally: Tally) -> None:
     """All windows, those of closed contacts apart."""
     unknown = p.unknown[w.k]
     if np.any(unknown):
@@ -109,15 +106,15 @@ def examine(p: Pieces, w: Windows, scale: float, tally: Tally) -> None:
         if p.certain:
             tally.certified += float(np.sum(closed.b - closed.a))
         elif hasattr(p.problem, "pressed") and p.motion.absolute:
-            halve(p, closed, scale, tally)
+            halve(p, closed, tally)
         else:
             tally.windows.append((closed, np.zeros(len(closed.a)), FORCE, False))
     flying = w.chosen(~w.closed)
     if len(flying.a):
-        halve(p, flying, scale, tally)
+        halve(p, flying, tally)
 
 
-def halve(p: Pieces, w: Windows, scale: float, tally: Tally) -> None:
+def halve(p: Pieces, w: Windows, tally: Tally) -> None:
     """Windows, which are halved until they are certified or too small or too many."""
     most, rough = MOST * len(w.a) + LEAST, True
     looked = 0
@@ -137,25 +134,25 @@ def halve(p: Pieces, w: Windows, scale: float, tally: Tally) -> None:
         good, lower = (s.gap >= -s.error, s.gap) if np.all(w.closed) else judged(w, s)
         wrong = ((s.at_b < -s.error) & ~w.last) | ((s.at_a < -s.error) & ~w.first)
         h = w.b - w.a
-        good |= at_event(p, w, scale, lower > -ERRORS * small)
+        good |= at_event(p, w, lower > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))
         for i in np.flatnonzero(wrong):
             inside = float(w.a[i] if s.at_a[i] < -s.error[i] and not w.first[i] else w.b[i])
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
-        end = left & ((h < SMALLEST * scale) | (looked > most))
+        end = left & ((h < SMALLEST * p.scale) | (looked > most))
         if np.any(end):
             why = TOO_MANY if looked > most else NARROW
             tally.windows.append((w.chosen(end), lower[end], why, False))
         w = w.chosen(left & ~end).halved()
 
 
-def at_event(p: Pieces, w: Windows, scale: float, shallow: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def at_event(p: Pieces, w: Windows, shallow: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Which windows belong to an event of the run: at once by time, and a while where the gap is as good as zero."""
     before = np.where(p.touched[w.k, w.c] | w.first, w.b - p.t[w.k], np.inf)
     after = np.where(p.touched[w.k + 1, w.c] | w.last, p.t[w.k + 1] - w.a, np.inf)
     apart = np.minimum(before, after)
-    return np.asarray((apart < AT_EVENT * scale) | (shallow & (apart < BESIDE * scale)))
+    return np.asarray((apart < AT_EVENT * p.scale) | (shallow & (apart < BESIDE * p.scale)))
 
 
 def look_at_samples(p: Pieces, w: Windows, tally: Tally) -> None:

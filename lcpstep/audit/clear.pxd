@@ -5,7 +5,7 @@ from lcpstep.kernels.function cimport Function
 from lcpstep.pointers cimport abs, after, inf, max, min, whole
 
 cdef Py_ssize_t DEEPEST, MOST
-cdef double SLACK
+cdef double SLACK, ERRORS
 
 
 @cython.final
@@ -38,7 +38,8 @@ cdef class Gap:
     cdef double* places
     cdef double* gaps
     cdef double* bends
-    cdef double place, bend, fourth, error
+    cdef double place, bend, fourth, length, error, small, moment, near, negligible
+    cdef bint first, last
     cdef void at(self, double tau) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
 
@@ -46,5 +47,10 @@ cdef class Gap:
 cdef bint open_between(
     double g_a, double g_b, double h, double low, double high, bint first, bint last, double error
 ) noexcept nogil
-@cython.locals(good=bint, begins=bint, ends=bint)
-cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b, bint first, bint last) noexcept nogil
+cdef bint shallow(Gap g, double g_a, double g_b, double h, double high) noexcept nogil
+cdef bint beside(Gap g, double a, double b, double time) noexcept nogil
+@cython.locals(good=bint, begins=bint, ends=bint, first=bint, last=bint)
+cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b) noexcept nogil
+cdef bint between_corners(
+    Gap g, Py_ssize_t c, double t0, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts
+) noexcept nogil

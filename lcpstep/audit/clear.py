@@ -2,10 +2,10 @@
 
     gap = place(t) - sigma(t),   place = offset + G y
 
-Values at the two ends and bounds of the acceleration in between give a bound of the gap: under gap'' <= A it lies above
-its chord less A tau (h - tau) / 2. That of `place` is known at both ends, and is between them as far from its chord as
-its own second derivative allows (`fourth`); that of sigma is bounded in cells (`obstacle.Table`). Windows in which that
-does not suffice are halved, a few times; what is left is for `windows.judged`.
+Values at the two ends and bounds of the acceleration in between give a bound of the gap: under gap'' <= A it lies
+above its chord less A tau (h - tau) / 2. That of `place` is known at both ends, and is between them as far from its
+chord as its own second derivative allows (`fourth`); that of sigma is bounded in cells (`obstacle.Table`). Windows in
+which that does not suffice are halved, a few times; what is left is for `windows.judged`.
 
 Bounds are wider than they were computed by SLACK of the numbers that they are made of: a few hundred roundings.
 """
@@ -17,14 +17,17 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.audit.limits import ERRORS
+
 if not cython.compiled:
     from math import floor
 
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.kernels.function import Function
-    from lcpstep.pointers import abs, after, inf, max, min, whole
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 DEEPEST, MOST = 10, 64  # halvings of a window in a row, and windows that one may become
+
 SLACK = 1e-13  # of the numbers that a bound is made of
 
 
@@ -104,17 +107,23 @@ class Gap:
     """The gap of one contact during one piece of the motion, at the time tau after its start.
 
     place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
-    fourth          bound of |G y''''| in the piece;  error : of the gap
+    fourth          bound of |G y''''| in the piece
+    length, first, last     of the piece, and whether it begins and ends with an event of the run
+    error, small    of the gap; a gap below the second is as good as zero
 
     Parameters
     ----------
     cells : Cells
     motion, frame : Function   s, s', s'' of every contact, and c, c', c'' (absent unless y is absolute)
     G : (n_c,)   of the frame
-    q, v : state that they are handed
+    state : (q, v)   that they are handed
+    limits : (moment, near, negligible)
+        how long an event lasts, and how long where the gap is as good as zero; an error that is larger does not count
     """
 
-    def __init__(self, cells: Cells, motion: Function, frame: Function, G: Any, state: Any) -> None:
+    def __init__(
+        self, cells: Cells, motion: Function, frame: Function, G: Any, state: Any, limits: Any
+    ) -> None:
         self.cells, self.motion, self.frame = cells, motion, frame
         self.kept = np.array(state[0]), np.array(state[1]), np.zeros(3 * (cells.n_c + 1)), np.array(G)
         self.q, self.v = doubles(self.kept[0]), doubles(self.kept[1])
@@ -122,7 +131,9 @@ class Gap:
         self.stack = np.zeros((4, DEEPEST + 2))
         self.times, self.places = doubles(self.stack[0]), doubles(self.stack[1])
         self.gaps, self.bends = doubles(self.stack[2]), doubles(self.stack[3])
-        self.place = self.bend = self.fourth = self.error = 0.0
+        self.place = self.bend = self.fourth = self.error = self.small = self.length = 0.0
+        self.first = self.last = False
+        self.moment, self.near, self.negligible = limits
 
     def at(self, tau: float) -> None:
         """Ask for the motion: self.place, self.bend."""
@@ -162,8 +173,25 @@ def open_between(
     return not 0.0 < x < 1.0 or g_a + (g_b - g_a) * x - bent * x * (1.0 - x) > error
 
 
-def clear(g: Gap, c: int, t0: float, a: float, b: float, first: bool, last: bool) -> bool:
-    """Whether the gap of contact c stays open between a and b after t0; between no corners of the obstacle."""
+def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float) -> bool:
+    """Whether a gap beside an event is as good as zero where it falls below: by its chord, as in `open_between`."""
+    if high - high != 0.0:
+        return False
+    bent, lowest = 0.5 * max(high, 0.0) * h * h, min(g_a, g_b)
+    if bent > abs(g_b - g_a):
+        x = 0.5 - 0.5 * (g_b - g_a) / bent
+        lowest = g_a + (g_b - g_a) * x - bent * x * (1.0 - x)
+    return lowest - g.error > -ERRORS * g.small
+
+
+def beside(g: Gap, a: float, b: float, time: float) -> bool:
+    """Whether a window is as near as that to an event at an end of the piece."""
+    return (g.first and b < time) or (g.last and g.length - a < time)
+
+
+def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
+    """Whether the gap of contact c stays open between a and b after t0, which no corner of the obstacle parts."""
+    first, last = g.first and a == 0.0, g.last and b == g.length
     g.at(a)
     tau, place, bend = a, g.place, g.bend
     gap = 0.0 if first else place - g.sigma(c, t0 + a)
@@ -178,13 +206,15 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float, first: bool, last: bool
         margin = 0.125 * g.fourth * h * h + SLACK * (abs(bend) + abs(g.bends[k]))
         high, low = max(bend, g.bends[k]) + margin, min(bend, g.bends[k]) - margin
         g.cells.find(c, t0 + tau, t0 + g.times[k])
-        begins, ends = first and tau == a, last and k == 0
         good = min(place, g.places[k]) - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error
         if not (good or g.cells.rough):
-            good = open_between(
-                gap, g.gaps[k], h, low - g.cells.high, high - g.cells.low, begins, ends, g.error
-            )
-        if good:
+            low -= g.cells.high
+            high -= g.cells.low
+            begins, ends = first and tau == a, last and k == 0
+            good = open_between(gap, g.gaps[k], h, low, high, begins, ends, g.error)
+            if not good and beside(g, tau, g.times[k], g.near):
+                good = shallow(g, gap, g.gaps[k], h, high)
+        if good or beside(g, tau, g.times[k], g.moment):
             tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
             n = k
         elif n > DEEPEST or looked > MOST:
@@ -195,4 +225,21 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float, first: bool, last: bool
             g.places[n], g.bends[n] = g.place, g.bend
             g.gaps[n] = g.place - g.sigma(c, t0 + g.times[n])
             n += 1
+    return True
+
+
+def between_corners(g: Gap, c: int, t0: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
+    """Whether the gap of contact c stays open in a piece that begins at t0, between one corner and the next.
+
+    i : the first of the cuts after t0
+    """
+    a = 0.0
+    while a < g.length:
+        b = g.length
+        if i < n_cuts and cuts[i] - t0 < b:
+            b = cuts[i] - t0
+            i += 1
+        if not clear(g, c, t0, a, b):
+            return False
+        a = b
     return True

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.flights import Swing, clear_flights
+from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE
 from lcpstep.audit.motion import Oscillation
 from lcpstep.events.flight.run import flight_of
 
@@ -27,7 +28,9 @@ def by_flights(p: Any, problem: Flat, found: Any) -> None:
     """Flights in closed form."""
     m, motion, state = p.m, p.motion, problem.obstacle.state
     cells = problem.obstacle.cells(len(found))
-    gap = Swing(cells, m.motion, m.frame, state, flight_of(p.scene, m, motion.o, p.run.dense.given))
+    gap = Swing(
+        cells, m.motion, m.frame, state, limits(p), flight_of(p.scene, m, motion.o, p.run.dense.given)
+    )
     if not gap.known:
         return
     obstacle = np.zeros((len(p.t), 1, 3))
@@ -37,3 +40,8 @@ def by_flights(p: Any, problem: Flat, found: Any) -> None:
     skipped = p.unknown | p.closed[:, 0]
     clear_flights(gap, p.t, p.run.q, motion.y, motion.w, obstacle, p.touched.view(np.uint8),
                   skipped.view(np.uint8), cuts, found)  # fmt: skip
+
+
+def limits(p: Any) -> tuple[float, float, float]:
+    """How long events last, and what is negligible, see `clear.Gap`."""
+    return AT_EVENT * p.scale, BESIDE * p.scale, NEGLIGIBLE * p.largest

@@ -1,9 +1,9 @@
 cimport cython
 from libc.math cimport hypot, sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport Cells, Gap, clear, open_between
+from lcpstep.audit.clear cimport Cells, Gap, between_corners, open_between
 from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.pointers cimport abs, after, max, min
 
 cdef double SLACK, ROUNDING
 
@@ -15,16 +15,12 @@ cdef class Swing(Gap):
     cdef double forced, height
     cdef double size(self, double z, double w) noexcept nogil
 
-@cython.locals(whole=bint, first=bint, last=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
+@cython.locals(whole=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
 cpdef object clear_flights(
     Swing g, object t, object q, object y, object w, object obstacle, object touched, object skipped,
     object cuts, object found
 )
 cdef bint at_once(
-    Swing g, Flight o, double h, double* q, double* x, double w, double s, double s_b,
-    bint first, bint last, bint whole
+    Swing g, Flight o, double* q, double* x, double w, double s, double s_b, bint whole
 ) noexcept nogil
-cdef bint closely(
-    Swing g, Flight s, double t, double t_b, double y, double w, bint first, bint last, double* cuts, Py_ssize_t i,
-    Py_ssize_t n_cuts
-) noexcept nogil
+cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil

@@ -16,9 +16,9 @@ if not cython.compiled:
     from math import hypot, sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import Cells, Gap, clear, open_between
+    from lcpstep.audit.clear import Cells, Gap, between_corners, open_between
     from lcpstep.events.flight.motion import Flight, absolute, leave_from
-    from lcpstep.pointers import Doubles, abs, after, max
+    from lcpstep.pointers import Doubles, abs, after, max, min
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
@@ -29,11 +29,11 @@ class Swing(Gap):
 
     Parameters
     ----------
-    cells, motion, frame, state : see `Gap`;  s : Flight
+    cells, motion, frame, state, limits : see `Gap`;  s : Flight
     """
 
-    def __init__(self, cells: Cells, motion: Any, frame: Any, state: Any, s: Flight) -> None:
-        Gap.__init__(self, cells, motion, frame, [s.G], state)
+    def __init__(self, cells: Cells, motion: Any, frame: Any, state: Any, limits: Any, s: Flight) -> None:
+        Gap.__init__(self, cells, motion, frame, [s.G], state, limits)
         self.s = s
         self.swings = s.w2 > s.delta * s.delta and s.delta >= 0.0
         self.known = self.swings or (s.w2 == 0.0 and s.delta == 0.0)
@@ -74,24 +74,22 @@ def clear_flights(
             while i < n_cuts and corner[i] <= times[k]:
                 i += 1
             whole = i == n_cuts or corner[i] >= times[k + 1]
-            first, last = touch[k] != 0, touch[k + 1] != 0
+            g.first, g.last, g.length = touch[k] != 0, touch[k + 1] != 0, times[k + 1] - times[k]
             good = at_once(
-                g, g.s, times[k + 1] - times[k], after(places, k), after(position, k), speed[k], s[3 * k], s[3 * k + 3],
-                first, last, whole,
-            )  # fmt: skip
+                g, g.s, after(places, k), after(position, k), speed[k], s[3 * k], s[3 * k + 3], whole
+            )
             if not good:
-                good = closely(
-                    g, g.s, times[k], times[k + 1], position[k], speed[k], first, last, corner, i, n_cuts
-                )
+                leave(g, g.s, times[k], position[k], speed[k])
+                good = between_corners(g, 0, times[k], corner, i, n_cuts)
             out[k] = 1 if good else 0
 
 
-def at_once(
-    g: Swing, o: Flight, h: float, q: Doubles, x: Doubles, w: float, s: float, s_b: float,
-    first: bool, last: bool, whole: bool,
-) -> bool:  # fmt: skip
-    """Whether a piece of length h is certified by the state at its start and the place at its end alone."""
-    y, y_b = x[0], x[1]
+def at_once(g: Swing, o: Flight, q: Doubles, x: Doubles, w: float, s: float, s_b: float, whole: bool) -> bool:
+    """Whether a piece is certified by the state at its start and the place at its end alone.
+
+    q, x : relative and absolute places at both;  s, s_b : of the obstacle;  whole : whether no corner lies within
+    """
+    y, y_b, h = x[0], x[1], g.length
     if g.swings:
         size = g.size(abs(y - g.height) + g.forced, abs(w) + abs(o.Omega) * g.forced)
         bend, middle = o.w2 * size, 0.0
@@ -99,46 +97,25 @@ def at_once(
         size, bend, middle = abs(y) + abs(w) * h + 0.5 * abs(o.f0) * h * h, 0.0, o.G * o.f0
     bend = (1.0 + SLACK) * abs(o.G) * (bend + o.Omega * o.Omega * g.forced)
     low, high = middle - bend, middle + bend
-    g.error = ROUNDING * (
-        abs(o.G) * (size + g.forced + abs(g.height)) + abs(o.offset) + max(abs(s), abs(s_b)) + abs(o.G * q[0])
-    )
-    place = o.offset + o.G * (y if o.G * y < o.G * y_b else y_b)
+    size += g.forced + abs(g.height) + abs(q[0])
+    g.error = ROUNDING * (abs(o.G) * size + abs(o.offset) + max(abs(s), abs(s_b)))
+    g.small = min(g.error, g.negligible)
+    place = o.offset + (o.G * y if o.G * y < o.G * y_b else o.G * y_b)
     if place - 0.125 * max(high, 0.0) * h * h - g.cells.whole_top[0] > g.error:
         return True
+    g_a, g_b = o.offset + o.G * q[0] - s, o.offset + o.G * q[1] - s_b
+    g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
     if g.cells.whole_rough or not whole:
         return False
-    g_a, g_b = o.offset + o.G * q[0] - s, o.offset + o.G * q[1] - s_b
-    return open_between(
-        g_a, g_b, h, low - g.cells.whole_high[0], high - g.cells.whole_low[0], first, last, g.error
-    )
+    low -= g.cells.whole_high[0]
+    high -= g.cells.whole_low[0]
+    return open_between(g_a, g_b, h, low, high, g.first, g.last, g.error)
 
 
-def closely(
-    g: Swing,
-    s: Flight,
-    t: float,
-    t_b: float,
-    y: float,
-    w: float,
-    first: bool,
-    last: bool,
-    cuts: Any,
-    i: int,
-    n_cuts: int,
-) -> bool:
-    """Whether a piece from t to t_b is certified by its motion, from one corner of the obstacle to the next."""
+def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
+    """The motion from this absolute state on, and how large its fourth derivative can be."""
     leave_from(s, t, y, w)
-    size, w4, Omega2 = 0.0, s.w2 * s.w2, s.Omega * s.Omega
+    size, Omega2 = 0.0, s.Omega * s.Omega
     if g.swings:
         size = g.size(s.z0 - g.height, s.dz0)
-    g.fourth = (1.0 + SLACK) * abs(s.G) * (size * w4 + g.forced * Omega2 * Omega2)
-    a, end = 0.0, t_b - t
-    while a < end:
-        b = end
-        if i < n_cuts and cuts[i] < t_b:
-            b = cuts[i] - t
-            i += 1
-        if not clear(g, 0, t, a, b, first and a == 0.0, last and b == end):
-            return False
-        a = b
-    return True
+    g.fourth = (1.0 + SLACK) * abs(s.G) * (size * s.w2 * s.w2 + g.forced * Omega2 * Omega2)

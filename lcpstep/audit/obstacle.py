@@ -24,7 +24,7 @@ from lcpstep.turns.source import OURS
 
 Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
-LEAST_CELLS, CELLS, MOST_CELLS = 64, 2048, 1 << 16
+LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
 
@@ -109,11 +109,13 @@ class Obstacle:
                 hi += np.maximum(*scaled)
 
     def _table(self, windows: int) -> Table:
+        """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
         start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
-        n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows, LEAST_CELLS))
+        n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows // 16, LEAST_CELLS))
         ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
         ends = ends[(ends >= start) & (ends <= end)]
-        return Table(ends, *self._direct(ends[:-1], ends[1:]))
+        lo, hi, branched = self._direct(ends[:-1], ends[1:])
+        return Table(ends, lo, hi, branched & np.any(hi[..., 1] > lo[..., 1], axis=1))
 
 
 class Table:

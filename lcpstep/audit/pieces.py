@@ -41,6 +41,7 @@ class Pieces:
     closed    (m, n_c)   which contacts are closed in a piece
     unknown   (m,)   pieces of which the motion is not known: an impact lies within
     touched   (m + 1, n_c)   at which times a contact is at zero by what the run says
+    scale     of times: the period, or the span
     largest   of all gaps, of some of the states
     certain   whether the forces of closed contacts are constant, so that the run has judged them for good
     """
@@ -64,6 +65,7 @@ class Pieces:
         some = slice(None, None, max(1, len(run.t) // LOOKS))
         states = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
         self.largest = float(np.max(np.abs(extremes(self.m, *states))))
+        self.scale = min(self.scene.period, self.t[-1] - self.t[0])
         self.touched = np.zeros((len(self.t), self.scene.n_c), dtype=bool)
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
         log = (np.array(run.impacts[x], dtype=float) for x in ("time", "contact", "kind"))
