@@ -38,7 +38,7 @@ cdef class Gap:
     cdef double* places
     cdef double* gaps
     cdef double* bends
-    cdef double place, bend, fourth, length, error, small, moment, near, negligible
+    cdef double place, bend, fourth, loose, length, error, small, moment, near, negligible
     cdef bint first, last
     cdef void at(self, double tau) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil

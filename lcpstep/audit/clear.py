@@ -107,7 +107,7 @@ class Gap:
     """The gap of one contact during one piece of the motion, at the time tau after its start.
 
     place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
-    fourth          bound of |G y''''| in the piece
+    fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
     error, small    of the gap; a gap below the second is as good as zero
 
@@ -131,7 +131,7 @@ class Gap:
         self.stack = np.zeros((4, DEEPEST + 2))
         self.times, self.places = doubles(self.stack[0]), doubles(self.stack[1])
         self.gaps, self.bends = doubles(self.stack[2]), doubles(self.stack[3])
-        self.place = self.bend = self.fourth = self.error = self.small = self.length = 0.0
+        self.place = self.bend = self.fourth = self.loose = self.error = self.small = self.length = 0.0
         self.first = self.last = False
         self.moment, self.near, self.negligible = limits
 
@@ -203,7 +203,7 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
         looked += 1
         k = n - 1
         h = g.times[k] - tau
-        margin = 0.125 * g.fourth * h * h + SLACK * (abs(bend) + abs(g.bends[k]))
+        margin = 0.125 * g.fourth * h * h + g.loose + SLACK * (abs(bend) + abs(g.bends[k]))
         high, low = max(bend, g.bends[k]) + margin, min(bend, g.bends[k]) - margin
         g.cells.find(c, t0 + tau, t0 + g.times[k])
         good = min(place, g.places[k]) - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error

@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.audit.curves import Curve, clear_curves
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.flights import Swing, clear_flights
 from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE
 from lcpstep.audit.motion import Oscillation
+from lcpstep.audit.obstacle import Obstacle
 from lcpstep.events.flight.run import flight_of
+from lcpstep.kernels.function import Function
 
 NEVER = np.zeros(0)
 
@@ -19,27 +22,45 @@ NEVER = np.zeros(0)
 def look(p: Any) -> NDArray[np.bool_]:
     """Which pieces of which contacts are certified, (m, n_c), none of them closed; p: `pieces.Pieces`."""
     found = np.zeros((len(p.t) - 1, p.scene.n_c), dtype=np.uint8)
-    if isinstance(p.problem, Flat) and isinstance(p.motion, Oscillation):
-        by_flights(p, p.problem, found)
+    if isinstance(p.problem, Flat):
+        by = by_flights if isinstance(p.motion, Oscillation) else by_curves
+        by(p, p.problem.obstacle, found)
     return found.view(np.bool_)
 
 
-def by_flights(p: Any, problem: Flat, found: Any) -> None:
+def by_flights(p: Any, o: Obstacle, found: Any) -> None:
     """Flights in closed form."""
-    m, motion, state = p.m, p.motion, problem.obstacle.state
-    cells = problem.obstacle.cells(len(found))
-    gap = Swing(
-        cells, m.motion, m.frame, state, limits(p), flight_of(p.scene, m, motion.o, p.run.dense.given)
-    )
-    if not gap.known:
-        return
-    obstacle = np.zeros((len(p.t), 1, 3))
-    if m.motion.given:
-        m.motion.sample(p.t, state[0], state[1], obstacle)
-    cuts = p.cuts if problem.obstacle.moves else NEVER
-    skipped = p.unknown | p.closed[:, 0]
-    clear_flights(gap, p.t, p.run.q, motion.y, motion.w, obstacle, p.touched.view(np.uint8),
-                  skipped.view(np.uint8), cuts, found)  # fmt: skip
+    m, motion = p.m, p.motion
+    flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
+    gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
+    if gap.known:
+        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, sampled(o, p.t), *marks(p, o), found)
+
+
+def by_curves(p: Any, o: Obstacle, found: Any) -> None:
+    """Polynomials between kept states."""
+    m, motion = p.m, p.motion
+    absolute, relative = p.problem.error
+    absolute = np.ascontiguousarray(absolute) if np.ndim(absolute) else np.full((1, p.scene.n_q), absolute)
+    none = Function(0, np.zeros(0), 1, 1, (1, 3))
+    gap = Curve(o.cells(len(found)), m.motion, none, o.state, limits(p), motion.degree)
+    G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
+    B = np.ascontiguousarray(motion.B)
+    clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, *marks(p, o), found)
+
+
+def sampled(o: Obstacle, t: Any) -> Any:
+    """What the contacts meet at every kept state, (m + 1, n_c, 3)."""
+    out = np.zeros((len(t), o.n_c, 3))
+    if o.m.motion.given:
+        o.m.motion.sample(t, o.state[0], o.state[1], out)
+    return out
+
+
+def marks(p: Any, o: Obstacle) -> tuple[Any, ...]:
+    """Events of the run, pieces that are left out, and corners."""
+    skipped = p.closed | p.unknown[:, None]
+    return p.touched.view(np.uint8), skipped.view(np.uint8), p.cuts if o.moves else NEVER
 
 
 def limits(p: Any) -> tuple[float, float, float]:

@@ -60,7 +60,6 @@ class Polynomials:
 
     def __init__(self, t: Array, B: Array) -> None:
         self.t, self.B, self.degree = t, B, B.shape[1] - 1
-        self.largest = np.max(np.abs(B), axis=1)
 
     def windows(self, k: Any, a: Array, b: Array) -> Array:
         """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""
@@ -72,7 +71,7 @@ class Polynomials:
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""
-        return np.asarray(np.sum(np.abs(G) * self.largest[k], axis=1))
+        return np.asarray(np.sum(np.abs(G) * np.max(np.abs(self.B[k]), axis=1), axis=1))
 
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
