@@ -25,3 +25,5 @@ cpdef object clear_curves(
 )
 cdef double along(Curve g, double* B, double* G, Py_ssize_t n_q, double offset) noexcept nogil
 cdef bint at_once(Curve g, Py_ssize_t c, double size, double s, double s_b, bint whole) noexcept nogil
+@cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, k=Py_ssize_t, x=double)
+cpdef object interpolate(object t, object q, object v, object inner, object begin, object inverse, object B)

@@ -149,3 +149,32 @@ def at_once(g: Curve, c: int, size: float, s: float, s_b: float, whole: bool) ->
     low -= g.cells.whole_high[c] + g.loose
     high += g.loose - g.cells.whole_low[c]
     return open_between(g_a, g_b, g.length, low, high, g.first, g.last, g.error)
+
+
+def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B: Any) -> None:
+    """Coefficients B (m, k + 3, n_q) through states t, q, v (m + 1, ..) and k inner positions: see `motion.through`.
+
+    begin : (k + 1, 2)   what the first two coefficients are worth at the places of the others' conditions
+    inverse : (k + 1, k + 1)   from what is left there to the other coefficients
+    """
+    n, n_q, k = len(B), q.shape[1], inner.shape[1]
+    times, places, speeds, within = doubles(t), doubles(q), doubles(v), doubles(inner)
+    first, back, out = doubles(begin), doubles(inverse), doubles(B)
+    space = np.zeros(k + 1)
+    rest = doubles(space)
+    with cython.nogil:
+        for i in range(n):
+            share = (times[i + 1] - times[i]) / (k + 2)
+            for j in range(n_q):
+                coefficients = after(out, i * (k + 3) * n_q + j)
+                start = places[i * n_q + j]
+                second = start + share * speeds[i * n_q + j]
+                coefficients[0], coefficients[n_q] = start, second
+                for r in range(k + 1):
+                    x = within[(i * k + r) * n_q + j] if r < k else places[(i + 1) * n_q + j]
+                    rest[r] = x - (first[2 * r] * start + first[2 * r + 1] * second)
+                for r in range(k + 1):
+                    x = 0.0
+                    for p in range(k + 1):
+                        x += back[r * (k + 1) + p] * rest[p]
+                    coefficients[(r + 2) * n_q] = x

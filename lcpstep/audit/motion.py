@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.audit.curves import interpolate
 from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
@@ -122,13 +123,11 @@ def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
     k = inner.shape[1]
     degree = k + 2
     shares = np.arange(1, k + 2) / (k + 1)
-    # the first two coefficients are q and q + h v / degree
-    first, second = q[:-1], q[:-1] + np.diff(t)[:, None] * v[:-1] / degree
     M = basis(shares, degree)
-    known = M[:, 0, None] * first[:, None] + M[:, 1, None] * second[:, None]
-    values = np.concatenate([inner, q[1:, None]], axis=1) - known
-    rest = np.matmul(np.linalg.inv(M[:, 2:]), values)
-    return Polynomials(t, np.concatenate([first[:, None], second[:, None], rest], axis=1))
+    B = np.empty((len(inner), degree + 1, q.shape[1]))
+    states = (np.ascontiguousarray(x) for x in (t, q, v, inner))
+    interpolate(*states, np.ascontiguousarray(M[:, :2]), np.linalg.inv(M[:, 2:]), B)
+    return Polynomials(t, B)
 
 
 class Oscillation:

@@ -11,7 +11,7 @@ from lagrangian import Contacts
 from lcpstep.audit import motion
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.flat import Flat
-from lcpstep.audit.logged import mark
+from lcpstep.audit.logged import close, mark
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
@@ -58,18 +58,20 @@ class Pieces:
             self.problem: Any = Curved(self.scene, self.m, self.motion, error)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error)
+        log = [np.array(run.impacts[x], dtype=float) for x in ("time", "contact", "kind", "after")]
+        t = np.ascontiguousarray(self.t)
         if mode is not None:
             self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
         else:
-            self.closed = closed_by_log(run, self.t) | closed_from_the_start(run, self.t)
+            self.closed = closed_from_the_start(run, t)
+            close(t, *log, self.closed.view(np.uint8))
         some = slice(None, None, max(1, len(run.t) // LOOKS))
         states = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
         self.largest = float(np.max(np.abs(extremes(self.m, *states))))
         self.scale = min(self.scene.period, self.t[-1] - self.t[0])
         self.touched = np.zeros((len(self.t), self.scene.n_c), dtype=bool)
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
-        log = (np.array(run.impacts[x], dtype=float) for x in ("time", "contact", "kind"))
-        mark(np.ascontiguousarray(self.t), *log, self.touched.view(np.uint8), self.unknown.view(np.uint8))
+        mark(t, *log[:3], self.touched.view(np.uint8), self.unknown.view(np.uint8))
         if np.any(self.closed):
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
@@ -125,34 +127,11 @@ def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:
     return np.unique((turn[:, None] + np.append(0.0, stops)).ravel())
 
 
-def closed_by_log(run: Trajectory, t: Array) -> Mask:
-    """Which contacts are closed in the pieces between times t, by the log of the run, (m, n_c)."""
-    middle = 0.5 * (t[1:] + t[:-1])
-    closed = np.zeros((len(middle), run.scene.n_c), dtype=bool)
-    log = run.impacts
-    for c in np.unique(log.contact):
-        own = log[(log.contact == c) & (log.kind <= Kind.RELEASE)]
-        since, last = np.inf, run.t[0]
-        for time, kind, later in zip(own.time, own.kind, own.after, strict=True):
-            if kind == Kind.ACCUMULATION:
-                since = min(since, last)
-            elif kind == Kind.STICK:
-                since = min(since, time)
-            elif kind == Kind.RELEASE or (later > 0.0 and since < np.inf):
-                _fill(closed[:, c], middle, since, time)
-                since = np.inf
-            if kind == Kind.IMPACT:
-                last = time
-        _fill(closed[:, c], middle, since, np.inf)
-    return closed
-
-
 def closed_from_the_start(run: Trajectory, t: Array) -> Mask:
     """Which contacts start closed and stay so up to their first event, without a line in the log, (m, n_c)."""
     closed = np.zeros((len(t) - 1, run.scene.n_c), dtype=bool)
-    looks = [float(t[0]), float(t[np.searchsorted(t, t[0], side="right")])]
-    q, v = run.at(np.array(looks))
-    g = np.array([run.scene.gap(x, q[k], v[k])[0] for k, x in enumerate(looks)])
+    looks = [0, int(np.searchsorted(t, t[0], side="right"))]
+    g = np.array([run.scene.gap(t[k], run.q[k], run.v[k])[0] for k in looks])
     size = max(1.0, float(np.max(np.abs(run.q))))
     for c in np.flatnonzero(np.all(np.abs(g) <= CLOSED_GAP * size, axis=0)):
         own = run.impacts[run.impacts.contact == c]
