@@ -21,7 +21,7 @@ cdef class Cells:
     cdef double* whole_top
     cdef double* whole_low
     cdef double* whole_high
-    cdef readonly double top, low, high
+    cdef readonly double bottom, top, slow, low, high
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
     cdef Py_ssize_t cell(self, double t) noexcept nogil
 

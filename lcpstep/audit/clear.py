@@ -34,8 +34,8 @@ SLACK = 1e-13  # of the numbers that a bound is made of
 class Cells:
     """Bounds of what flat contacts meet, in cells of time: see `obstacle.Table`.
 
-    top             the highest place found for the window last asked for
-    low, high       its acceleration
+    bottom, top     the lowest and highest place found for the window last asked for
+    slow            its lowest speed;  low, high : its acceleration
     rough           whether it need not have one
     whole_top, whole_low, whole_high, whole_rough   the same of all times
 
@@ -63,7 +63,7 @@ class Cells:
         self.whole_top = doubles(self.bounds)
         self.whole_low, self.whole_high = after(self.whole_top, n_c), after(self.whole_top, 2 * n_c)
         self.whole_rough = bool(np.any(self.arrays[3]))
-        self.top = self.low = self.high = 0.0
+        self.bottom = self.top = self.slow = self.low = self.high = 0.0
         self.rough = False
 
     def find(self, c: int, a: float, b: float) -> None:
@@ -77,6 +77,7 @@ class Cells:
         n, ends = self.n, self.ends
         if b - a > (1.0 + SLACK) * (ends[n] - ends[0]):
             self.top, self.low, self.high = self.whole_top[c], self.whole_low[c], self.whole_high[c]
+            self.bottom = self.slow = -inf
             self.rough = True
             return
         i, j = self.cell(a), self.cell(b)
@@ -88,7 +89,11 @@ class Cells:
             size *= 2
         k = j - size + 1
         first, second = (level * n + i) * self.n_c + c, (level * n + k) * self.n_c + c
-        self.top = max(self.hi[3 * first], self.hi[3 * second])
+        self.bottom, self.top = (
+            min(self.lo[3 * first], self.lo[3 * second]),
+            max(self.hi[3 * first], self.hi[3 * second]),
+        )
+        self.slow = min(self.lo[3 * first + 1], self.lo[3 * second + 1])
         self.low = min(self.lo[3 * first + 2], self.lo[3 * second + 2])
         self.high = max(self.hi[3 * first + 2], self.hi[3 * second + 2])
         self.rough = self.branched[level * n + i] != 0 or self.branched[level * n + k] != 0

@@ -27,3 +27,5 @@ cdef double along(Curve g, double* B, double* G, Py_ssize_t n_q, double offset) 
 cdef bint at_once(Curve g, Py_ssize_t c, double size, double s, double s_b, bint whole) noexcept nogil
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, k=Py_ssize_t, x=double)
 cpdef object interpolate(object t, object q, object v, object inner, object begin, object inverse, object B)
+@cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, width=Py_ssize_t, k=Py_ssize_t)
+cpdef object hulls(object B, Py_ssize_t group, object lo, object hi)

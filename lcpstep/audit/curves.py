@@ -178,3 +178,15 @@ def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B:
                     for p in range(k + 1):
                         x += back[r * (k + 1) + p] * rest[p]
                     coefficients[(r + 2) * n_q] = x
+
+
+def hulls(B: Any, group: int, lo: Any, hi: Any) -> None:
+    """The smallest and largest coefficients of groups of pieces, (groups, n_q): bounds of the motion there."""
+    n, width, n_q = len(B), B.shape[1], B.shape[2]
+    control, low, high = doubles(B), doubles(lo), doubles(hi)
+    with cython.nogil:
+        for i in range(n * width):
+            k = i // (group * width) * n_q
+            for j in range(n_q):
+                x = control[i * n_q + j]
+                low[k + j], high[k + j] = min(low[k + j], x), max(high[k + j], x)

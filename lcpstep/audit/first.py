@@ -7,24 +7,28 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.audit.curves import Curve, clear_curves
+from lcpstep.audit.curved import Curved
+from lcpstep.audit.curves import Curve, clear_curves, hulls
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.flights import Swing, clear_flights
-from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE
+from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE, PRESSED, UNKNOWN
 from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.obstacle import Obstacle
 from lcpstep.events.flight.run import flight_of
 from lcpstep.kernels.function import Function
 
 NEVER = np.zeros(0)
+GROUPS, FEW = (64, 8), 32  # pieces that are looked at together; so many groups are worth it
 
 
 def look(p: Any) -> NDArray[np.bool_]:
-    """Which pieces of which contacts are certified, (m, n_c), none of them closed; p: `pieces.Pieces`."""
+    """Which pieces of which contacts are certified, (m, n_c); p: `pieces.Pieces`."""
     found = np.zeros((len(p.t) - 1, p.scene.n_c), dtype=np.uint8)
     if isinstance(p.problem, Flat):
         by = by_flights if isinstance(p.motion, Oscillation) else by_curves
         by(p, p.problem.obstacle, found)
+    elif p.problem.bound is None:
+        by_groups(p, p.problem, found)
     return found.view(np.bool_)
 
 
@@ -49,6 +53,25 @@ def by_curves(p: Any, o: Obstacle, found: Any) -> None:
     clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, *marks(p, o), found)
 
 
+def by_groups(p: Any, problem: Curved, found: Any) -> None:
+    """Gaps of any form that are clear by their places alone, first those of many pieces together."""
+    B, left = np.ascontiguousarray(p.motion.B), ~(p.closed | p.unknown[:, None])
+    for group in GROUPS:
+        first = np.arange(0, len(B), group)
+        asked = np.logical_or.reduceat(left & (found == 0), first).any(axis=1)
+        if group > 1 and len(first) < FEW:
+            continue
+        lo, hi = np.full((len(first), B.shape[2]), np.inf), np.full((len(first), B.shape[2]), -np.inf)
+        hulls(B, group, lo, hi)
+        end = np.minimum(first + group, len(B))
+        error = np.maximum.reduceat(np.broadcast_to(problem.error[0], (len(B), B.shape[2])), first)
+        error = error + problem.error[1] * np.maximum(np.abs(lo), np.abs(hi))
+        lowest = problem.lowest(p.t[first][asked], p.t[end][asked], (lo - error)[asked], (hi + error)[asked])
+        clear = np.zeros((len(first), found.shape[1]), dtype=bool)
+        clear[asked] = lowest > 0.0
+        found |= np.repeat(clear, end - first, axis=0) & left
+
+
 def sampled(o: Obstacle, t: Any) -> Any:
     """What the contacts meet at every kept state, (m + 1, n_c, 3)."""
     out = np.zeros((len(t), o.n_c, 3))
@@ -58,9 +81,9 @@ def sampled(o: Obstacle, t: Any) -> Any:
 
 
 def marks(p: Any, o: Obstacle) -> tuple[Any, ...]:
-    """Events of the run, pieces that are left out, and corners."""
-    skipped = p.closed | p.unknown[:, None]
-    return p.touched.view(np.uint8), skipped.view(np.uint8), p.cuts if o.moves else NEVER
+    """Events of the run, what kind pieces are of, see `flights`, and corners."""
+    kind = np.where(p.unknown[:, None], UNKNOWN, PRESSED * p.closed.view(np.uint8)).astype(np.uint8)
+    return p.touched.view(np.uint8), kind, p.cuts if o.moves else NEVER
 
 
 def limits(p: Any) -> tuple[float, float, float]:

@@ -1,11 +1,12 @@
 cimport cython
-from libc.math cimport hypot, sqrt
+from libc.math cimport cos, hypot, sin, sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport Cells, Gap, between_corners, open_between
+from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, open_between
 from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
 from lcpstep.pointers cimport abs, after, max, min
 
-cdef double SLACK, ROUNDING
+cdef double SLACK, ROUNDING, PRESSING, ERRORS
+cdef Py_ssize_t UNKNOWN, PRESSED
 
 
 @cython.final
@@ -17,10 +18,13 @@ cdef class Swing(Gap):
 
 @cython.locals(whole=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
 cpdef object clear_flights(
-    Swing g, object t, object q, object y, object w, object obstacle, object touched, object skipped,
+    Swing g, object t, object q, object y, object w, object obstacle, object touched, object kind,
     object cuts, object found
 )
 cdef bint at_once(
     Swing g, Flight o, double* q, double* x, double w, double s, double s_b, bint whole
 ) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
+@cython.locals(good=bint)
+cdef bint pressed(Swing g, Flight s, double t0) noexcept nogil
+cdef double driven(Flight s, double t) noexcept nogil

@@ -12,15 +12,18 @@ from typing import Any
 
 import cython
 
+from lcpstep.audit.limits import ERRORS, PRESSED, UNKNOWN
+
 if not cython.compiled:
-    from math import hypot, sqrt
+    from math import cos, hypot, sin, sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import Cells, Gap, between_corners, open_between
+    from lcpstep.audit.clear import DEEPEST, MOST, Cells, Gap, beside, between_corners, open_between
     from lcpstep.events.flight.motion import Flight, absolute, leave_from
     from lcpstep.pointers import Doubles, abs, after, max, min
 
 SLACK = 1e-13  # of the numbers that a bound is made of
+PRESSING = 1e-14  # of the accelerations
 ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
 
 
@@ -52,29 +55,33 @@ class Swing(Gap):
 
 
 def clear_flights(
-    g: Swing, t: Any, q: Any, y: Any, w: Any, obstacle: Any, touched: Any, skipped: Any, cuts: Any, found: Any
+    g: Swing, t: Any, q: Any, y: Any, w: Any, obstacle: Any, touched: Any, kind: Any, cuts: Any, found: Any
 ) -> None:
     """Which pieces are certified, (m,), into `found`; called from Python.
 
     Parameters
     ----------
     t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones;  obstacle : (m + 1, 3)   s, s' and s'' there
-    touched : (m + 1,) uint8   whether an event of the run lies there;  skipped : (m,) uint8
+    touched : (m + 1,) uint8   whether an event of the run lies there
+    kind : (m,) uint8   of the pieces: 0, or PRESSED for a closed contact, or UNKNOWN, which are left out
     cuts : (k,)   times at which the obstacle may have a corner
     """
     n, n_cuts = len(found), len(cuts)
     times, places, position, speed = doubles(t), doubles(q), doubles(y), doubles(w)
     s, corner = doubles(obstacle), doubles(cuts)
-    touch, left, out = small_numbers(touched), small_numbers(skipped), small_numbers(found)
+    touch, left, out = small_numbers(touched), small_numbers(kind), small_numbers(found)
     with cython.nogil:
         i = 0
         for k in range(n):
-            if left[k] != 0 or not times[k + 1] > times[k]:
+            if left[k] == UNKNOWN or not times[k + 1] > times[k]:
                 continue
             while i < n_cuts and corner[i] <= times[k]:
                 i += 1
             whole = i == n_cuts or corner[i] >= times[k + 1]
             g.first, g.last, g.length = touch[k] != 0, touch[k + 1] != 0, times[k + 1] - times[k]
+            if left[k] == PRESSED:
+                out[k] = 1 if whole and pressed(g, g.s, times[k]) else 0
+                continue
             good = at_once(
                 g, g.s, after(places, k), after(position, k), speed[k], s[3 * k], s[3 * k + 3], whole
             )
@@ -119,3 +126,39 @@ def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
     if g.swings:
         size = g.size(s.z0 - g.height, s.dz0)
     g.fourth = (1.0 + SLACK) * abs(s.G) * (size * s.w2 * s.w2 + g.forced * Omega2 * Omega2)
+
+
+def pressed(g: Swing, s: Flight, t0: float) -> bool:
+    """Whether a closed contact is pressed all the time: without force the gap would accelerate by rounding at most.
+
+    alpha = G (f0 + F(t)) + w2 (offset - sigma) - 2 delta sigma' - sigma''
+    """
+    constant = s.G * s.f0 + s.w2 * s.offset
+    forced = abs(s.G) * (abs(s.fc) + abs(s.fs))
+    tau, n, looked = 0.0, 1, 0
+    force, g.times[0], g.bends[0] = driven(s, t0), g.length, driven(s, t0 + g.length)
+    while n > 0:
+        looked += 1
+        k = n - 1
+        h = g.times[k] - tau
+        g.cells.find(0, t0 + tau, t0 + g.times[k])
+        alpha = constant + max(force, g.bends[k]) + 0.125 * s.Omega * s.Omega * forced * h * h
+        alpha -= s.w2 * g.cells.bottom + 2.0 * s.delta * g.cells.slow + g.cells.low
+        error = PRESSING * (abs(constant) + forced + abs(s.w2 * g.cells.top) + abs(g.cells.low))
+        small = min(error, g.negligible)
+        good = alpha <= error or (alpha < ERRORS * small and beside(g, tau, g.times[k], g.near))
+        if (good and not g.cells.rough) or beside(g, tau, g.times[k], g.moment):
+            tau, force = g.times[k], g.bends[k]
+            n = k
+        elif n > DEEPEST or looked > MOST:
+            return False
+        else:
+            g.times[n] = 0.5 * (tau + g.times[k])
+            g.bends[n] = driven(s, t0 + g.times[n])
+            n += 1
+    return True
+
+
+def driven(s: Flight, t: float) -> float:
+    """G F(t)."""
+    return s.G * (s.fc * cos(s.Omega * t) + s.fs * sin(s.Omega * t)) if s.Omega != 0.0 else 0.0
