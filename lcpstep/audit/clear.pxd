@@ -13,7 +13,8 @@ cdef class Cells:
     cdef object arrays, bounds
     cdef readonly bint given, rough, whole_rough
     cdef readonly Py_ssize_t n, n_c
-    cdef double period, per
+    cdef readonly double period
+    cdef double per
     cdef double* ends
     cdef double* lo
     cdef double* hi
