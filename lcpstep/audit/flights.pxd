@@ -21,9 +21,11 @@ cpdef object clear_flights(
     Swing g, object t, object q, object y, object w, object obstacle, object touched, object kind,
     object cuts, object found
 )
+@cython.locals(bent=bint)
 cdef bint at_once(
-    Swing g, Flight o, double* q, double* x, double w, double s, double s_b, bint whole
+    Swing g, Flight o, double t, double* q, double* x, double* w, double s, double s_b, bint whole
 ) noexcept nogil
+cdef double equation(Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)
 cdef bint pressed(Swing g, Flight s, double t0) noexcept nogil

@@ -83,25 +83,29 @@ def clear_flights(
                 out[k] = 1 if whole and pressed(g, g.s, times[k]) else 0
                 continue
             good = at_once(
-                g, g.s, after(places, k), after(position, k), speed[k], s[3 * k], s[3 * k + 3], whole
-            )
+                g, g.s, times[k], after(places, k), after(position, k), after(speed, k),
+                s[3 * k], s[3 * k + 3], whole,
+            )  # fmt: skip
             if not good:
                 leave(g, g.s, times[k], position[k], speed[k])
                 good = between_corners(g, 0, times[k], corner, i, n_cuts)
             out[k] = 1 if good else 0
 
 
-def at_once(g: Swing, o: Flight, q: Doubles, x: Doubles, w: float, s: float, s_b: float, whole: bool) -> bool:
-    """Whether a piece is certified by the state at its start and the place at its end alone.
+def at_once(
+    g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, s: float, s_b: float, whole: bool
+) -> bool:
+    """Whether a piece from t on is certified by the states at its ends and the equation of motion.
 
-    q, x : relative and absolute places at both;  s, s_b : of the obstacle;  whole : whether no corner lies within
+    q, x : relative and absolute places;  w : velocities, after an event;  s, s_b : of the obstacle
+    whole : whether no corner lies within
     """
-    y, y_b, h = x[0], x[1], g.length
+    y, y_b, h, amplitude = x[0], x[1], g.length, 0.0
     if g.swings:
-        size = g.size(abs(y - g.height) + g.forced, abs(w) + abs(o.Omega) * g.forced)
+        size = amplitude = g.size(abs(y - g.height) + g.forced, abs(w[0]) + abs(o.Omega) * g.forced)
         bend, middle = o.w2 * size, 0.0
     else:
-        size, bend, middle = abs(y) + abs(w) * h + 0.5 * abs(o.f0) * h * h, 0.0, o.G * o.f0
+        size, bend, middle = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h, 0.0, o.G * o.f0
     bend = (1.0 + SLACK) * abs(o.G) * (bend + o.Omega * o.Omega * g.forced)
     low, high = middle - bend, middle + bend
     size += g.forced + abs(g.height) + abs(q[0])
@@ -110,13 +114,27 @@ def at_once(g: Swing, o: Flight, q: Doubles, x: Doubles, w: float, s: float, s_b
     place = o.offset + (o.G * y if o.G * y < o.G * y_b else o.G * y_b)
     if place - 0.125 * max(high, 0.0) * h * h - g.cells.whole_top[0] > g.error:
         return True
+    g.cells.find(0, t, t + h)
+    if place - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error:
+        return True
     g_a, g_b = o.offset + o.G * q[0] - s, o.offset + o.G * q[1] - s_b
     g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
-    if g.cells.whole_rough or not whole:
+    if g.cells.rough or not whole:
         return False
-    low -= g.cells.whole_high[0]
-    high -= g.cells.whole_low[0]
-    return open_between(g_a, g_b, h, low, high, g.first, g.last, g.error)
+    bent = open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
+    if bent or not g.swings or (g.last and o.delta != 0.0):
+        return bent
+    a, b = equation(o, t, y, w[0]), equation(o, t + h, y_b, w[1])
+    Omega2 = o.Omega * o.Omega
+    fourth = abs(o.G) * (amplitude * o.w2 * o.w2 + g.forced * Omega2 * Omega2)
+    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * bend
+    low, high = min(a, b) - margin, max(a, b) + margin
+    return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
+
+
+def equation(o: Flight, t: float, y: float, w: float) -> float:
+    """G y'' of a state."""
+    return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + driven(o, t)
 
 
 def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
