@@ -180,7 +180,7 @@ def _warn_of_fast_gaps(run: Trajectory) -> None:
     """A warning where a gap turns fast with the place, and the method looks for events at times."""
     if getattr(run.method, "audit", True) or not isinstance(run.scene.contacts, Contacts):
         return
-    from lcpstep.turns.along import fast_gap
+    from lcpstep.fast_gaps import fast_gap
     from lcpstep.turns.stops import FastTurn
 
     words = fast_gap(run)

@@ -38,7 +38,8 @@ def by_flights(p: Any, o: Obstacle, found: Any) -> None:
     flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
     gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
     if gap.known:
-        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, sampled(o, p.t), *marks(p, o), found)
+        touched, kind, cuts = marks(p, o)
+        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, sampled(o, p.t), touched, kind, cuts, found)
 
 
 def by_curves(p: Any, o: Obstacle, found: Any) -> None:
@@ -50,7 +51,8 @@ def by_curves(p: Any, o: Obstacle, found: Any) -> None:
     gap = Curve(o.cells(len(found)), m.motion, none, o.state, limits(p), motion.degree)
     G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
     B = np.ascontiguousarray(motion.B)
-    clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, *marks(p, o), found)
+    touched, kind, cuts = marks(p, o)
+    clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, touched, kind, cuts, found)
 
 
 def by_groups(p: Any, problem: Curved, found: Any) -> None:
@@ -80,7 +82,7 @@ def sampled(o: Obstacle, t: Any) -> Any:
     return out
 
 
-def marks(p: Any, o: Obstacle) -> tuple[Any, ...]:
+def marks(p: Any, o: Obstacle) -> tuple[Any, Any, Any]:
     """Events of the run, what kind pieces are of, see `flights`, and corners."""
     kind = np.where(p.unknown[:, None], UNKNOWN, PRESSED * p.closed.view(np.uint8)).astype(np.uint8)
     return p.touched.view(np.uint8), kind, p.cuts if o.moves else NEVER

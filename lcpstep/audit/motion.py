@@ -125,8 +125,8 @@ def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
     shares = np.arange(1, k + 2) / (k + 1)
     M = basis(shares, degree)
     B = np.empty((len(inner), degree + 1, q.shape[1]))
-    states = (np.ascontiguousarray(x) for x in (t, q, v, inner))
-    interpolate(*states, np.ascontiguousarray(M[:, :2]), np.linalg.inv(M[:, 2:]), B)
+    t, q, v, inner, begin = (np.ascontiguousarray(x) for x in (t, q, v, inner, M[:, :2]))
+    interpolate(t, q, v, inner, begin, np.linalg.inv(M[:, 2:]), B)
     return Polynomials(t, B)
 
 

@@ -58,20 +58,22 @@ class Pieces:
             self.problem: Any = Curved(self.scene, self.m, self.motion, error)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error)
-        log = [np.array(run.impacts[x], dtype=float) for x in ("time", "contact", "kind", "after")]
+        names = "time", "contact", "kind", "after"
+        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
         t = np.ascontiguousarray(self.t)
         if mode is not None:
             self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
         else:
             self.closed = closed_from_the_start(run, t)
-            close(t, *log, self.closed.view(np.uint8))
+            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
         some = slice(None, None, max(1, len(run.t) // LOOKS))
-        states = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
-        self.largest = float(np.max(np.abs(extremes(self.m, *states))))
+        when, q, v = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
+        self.largest = float(np.max(np.abs(extremes(self.m, when, q, v))))
         self.scale = min(self.scene.period, self.t[-1] - self.t[0])
         self.touched = np.zeros((len(self.t), self.scene.n_c), dtype=bool)
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
-        mark(t, *log[:3], self.touched.view(np.uint8), self.unknown.view(np.uint8))
+        touched, unknown = (x.view(np.uint8) for x in (self.touched, self.unknown))
+        mark(t, time, contact, kind, touched, unknown)
         if np.any(self.closed):
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
