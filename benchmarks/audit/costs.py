@@ -12,7 +12,7 @@ from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
 from lcpstep.errors import LcpStepError
 
-REPEATS = 5
+REPEATS = 3
 # spans that are long enough for what a run costs beside its steps not to count
 SPANS = {
     "elastic-ball": 3e3, "impact-oscillator": 2e4, "chaotic-oscillator": 2e4, "sticking-oscillator": 2e4,
@@ -20,7 +20,7 @@ SPANS = {
     "double-pendulum": 200.0, "pendulum-stop": 200.0, "rocking-block": None, "elastic-chain": 50.0, "bowl": 50.0,
 }  # fmt: skip
 METHODS = [EventDriven(), Located(1e-3), Located(1e-3, order=4), Located(1e-3, order="exact")]
-FEWER = 0.1  # of the span: steps take longer
+FEWER = 0.02  # of the span: steps take longer
 
 
 def best(f: Callable[[], Any]) -> tuple[float, Any]:
