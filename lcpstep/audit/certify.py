@@ -18,6 +18,7 @@ from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.result import Audit, Found, Window
 from lcpstep.audit.sampled import sampled
 from lcpstep.audit.windows import Windows, joined, judged
+from lcpstep.intervals import NotEnclosed
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -65,13 +66,12 @@ def audit(run: Trajectory) -> Audit:
 def closer(p: Pieces, x: Found) -> Found:
     """The same event, with its window halved towards where the gap falls to zero."""
     k = min(int(np.searchsorted(p.t, x.start, side="right")) - 1, len(p.t) - 2)
-    a, b, no = x.start, x.time, np.zeros(1, dtype=bool)
+    a, b = x.start, x.time
     if not p.t[k] <= a < b <= p.t[k + 1] or p.closed[k, x.contact]:
         return x
     for _ in range(CLOSER):
         middle = 0.5 * (a + b)
-        w = Windows(np.array([k]), np.array([x.contact]), np.array([a]), np.array([middle]), no, no, no)
-        if p.problem.seen(w, rough=False).at_b[0] > 0.0:
+        if p.problem.looked(np.array([k]), np.array([x.contact]), np.array([middle]))[0][0] > 0.0:
             a = middle
         else:
             b = middle
@@ -105,7 +105,7 @@ def examine(p: Pieces, w: Windows, tally: Tally) -> None:
     if len(closed.a):
         if p.certain:
             tally.certified += float(np.sum(closed.b - closed.a))
-        elif hasattr(p.problem, "pressed") and p.motion.absolute:
+        elif hasattr(p.problem, "pressed") and p.motion.absolute and not p.problem.why:
             halve(p, closed, tally)
         else:
             tally.windows.append((closed, np.zeros(len(closed.a)), FORCE, False))
@@ -120,7 +120,10 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
     looked = 0
     while len(w.a):
         looked += len(w.a)
-        s = p.problem.seen(w, rough=rough)
+        try:
+            s = p.problem.seen(w, rough=rough)
+        except NotEnclosed as why:
+            p.problem.why = str(why)
         if p.problem.why:
             look_at_samples(p, w, tally)
             return

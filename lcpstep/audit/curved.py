@@ -116,6 +116,13 @@ class Curved:
             smooth = np.zeros(len(rows), dtype=bool)
         return Interval(gap.lo[rows, w.c], gap.hi[rows, w.c]), (G.lo, G.hi), rate, curve, smooth
 
+    def looked(self, k: Any, c: Any, t: Array) -> tuple[Array, float]:
+        """Gaps of contacts c at times in the pieces k, and how far they may be off."""
+        q = self.motion.windows(k, t, t)[:, 0]
+        return self.values(t, q, c), float(
+            np.max(self.error[0]) + self.error[1] * np.max(np.abs(q), initial=1.0)
+        )
+
     def values(self, t: Array, q: Array, c: Any) -> Array:
         """Gaps of contacts c at times and positions."""
         every = states.gaps_at(self.m, np.ascontiguousarray(t), np.ascontiguousarray(q))

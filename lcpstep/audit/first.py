@@ -15,6 +15,7 @@ from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE, PRESSED, UNKNOWN
 from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.obstacle import Obstacle
 from lcpstep.events.flight.run import flight_of
+from lcpstep.intervals import NotEnclosed
 from lcpstep.kernels.function import Function
 
 NEVER = np.zeros(0)
@@ -26,7 +27,10 @@ def look(p: Any) -> NDArray[np.bool_]:
     found = np.zeros((len(p.t) - 1, p.scene.n_c), dtype=np.uint8)
     if isinstance(p.problem, Flat):
         by = by_flights if isinstance(p.motion, Oscillation) else by_curves
-        by(p, p.problem.obstacle, found)
+        try:
+            by(p, p.problem.obstacle, found)
+        except NotEnclosed as why:
+            p.problem.why = str(why)
     elif p.problem.bound is None:
         by_groups(p, p.problem, found)
     return found.view(np.bool_)

@@ -79,6 +79,10 @@ class Polynomials:
         x = np.matmul(self.windows(k, a, b), G[:, :, None])[:, :, 0]
         return derivatives(x, b - a), x[:, 0], x[:, -1]
 
+    def place(self, G: Array, k: Any, t: Array) -> Array:
+        """G q at times in the pieces k."""
+        return np.asarray(np.sum(self.windows(k, t, t)[:, 0] * G, axis=1))
+
     def boxes(self, k: Any, a: Array, b: Array) -> tuple[list[Bounds], Array, Array]:
         """Bounds of every coordinate, and the states at a and b, (n, n_q)."""
         x = self.windows(k, a, b)
@@ -170,6 +174,10 @@ class Oscillation:
             free = Bounds(*[x + y for x, y in zip(free, self.forced(Interval(a, b)), strict=True)])
         g = G[:, 0]
         return Bounds(*[x * Interval(g, g) for x in free]), g * at_a, g * at_b
+
+    def place(self, G: Array, k: Any, t: Array) -> Array:
+        """G y at times in the pieces k."""
+        return self.along(G, k, t, t)[1]
 
     def forced(self, t: Interval) -> Bounds:
         """Bounds of the steady oscillation."""
