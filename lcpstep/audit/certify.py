@@ -122,8 +122,8 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
         looked += len(w.a)
         try:
             s = p.problem.seen(w, rough=rough)
-        except NotEnclosed as why:
-            p.problem.why = str(why)
+        except NotEnclosed as error:
+            p.problem.why = str(error)
         if p.problem.why:
             look_at_samples(p, w, tally)
             return
