@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 
-from lagrangian import HybridScene, Scene
+from lagrangian import Contacts, HybridScene, Scene
 from lagrangian.relations import check_derivatives
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
@@ -131,6 +132,7 @@ def simulate(
 
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)
+    _warn_of_fast_gaps(run)
     doubt = too_deep(run)
     run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
     return _with_error(run, kept, seconds) if error else run
@@ -173,6 +175,18 @@ def _compare_derivatives(run: Trajectory) -> None:
         check_derivatives(run.scene, ((float(run.t[k]), run.q[k], run.v[k]) for k in places), run=True)
     except ValueError as error:
         raise SimulationError(str(error), run) from error
+
+
+def _warn_of_fast_gaps(run: Trajectory) -> None:
+    """A warning where a gap turns fast with the place, and the method looks for events at times."""
+    if getattr(run.method, "audit", True) or not isinstance(run.scene.contacts, Contacts):
+        return
+    from lcpstep.fast_gaps import fast_gap
+    from lcpstep.turns.stops import FastTurn
+
+    words = fast_gap(run)
+    if words:
+        warnings.warn(f"{run.scene.name!r}: {words}", FastTurn, stacklevel=3)
 
 
 def _raised(run: Any, message: str) -> SimulationError:

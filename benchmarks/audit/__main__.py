@@ -1,4 +1,7 @@
-"""Run random cases with and without the audit: `python -m benchmarks.audit --cases 10000 --seed 1`."""
+"""Random cases with and without the audit: `python -m benchmarks.audit --cases 10000 --seed 1`.
+
+In portions: `--cases 500 --seed 1`, `--seed 2`, ... are different cases.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,8 @@ def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> Non
         answer = audit(plain)
     if met and not struck(plain):
         found["missed without looks"] += 1
-        found["of these not reported"] += not answer.missed and not answer.windows
+        found["of these reported"] += bool(answer.missed or answer.windows)
+        found["of these unreported"] += not answer.missed and not answer.windows
     if not met and answer.missed:
         found["reported, but none"] += 1
     own = simulate(case.scene, method)
@@ -44,6 +48,11 @@ def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> Non
     found["struck, but none"] += not met and struck(audited)
     found["flights"] += audited.audit.flights
     found["certified"] += audited.audit.certified
+
+
+def told(found: Counter[str]) -> str:
+    """The counts in words."""
+    return ", ".join(f"{key} {n}" for key, n in found.items() if n)
 
 
 def main() -> None:
@@ -64,7 +73,10 @@ def main() -> None:
             continue
         judge(case, method, counts.setdefault((kind, type(method).__name__), Counter()))
     for (kind, name), found in counts.items():
-        print(f"{kind}, {name}: " + ", ".join(f"{key} {n}" for key, n in found.items() if n))
+        print(f"{kind}, {name}: {told(found)}")
+    for name in sorted({name for _, name in counts}):
+        total = sum((found for (_, own), found in counts.items() if own == name), Counter())
+        print(f"ALL, {name}: {told(total)}")
     print(f"{time.process_time() - start:.0f} CPU s")
 
 

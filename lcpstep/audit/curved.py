@@ -80,6 +80,17 @@ class Curved:
             gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
         )
 
+    def lowest(self, a: Array, b: Array, lo: Array, hi: Array) -> Array:
+        """Lower bounds (n, n_c) of all gaps over windows [a, b] and boxes of the state (n, n_q); -inf: none."""
+        q = [Interval(x, y) for x, y in zip(lo.T, hi.T, strict=True)]
+        v = [Interval(np.full(len(a), -np.inf), np.full(len(a), np.inf))] * self.n_q
+        try:
+            found = enclose(self.contacts.gap, Interval(a, b), q, v, self.p, (self.n_c,))
+        except NotEnclosed:  # smaller windows may pass
+            return np.full((len(a), self.n_c), -np.inf)
+        size = np.maximum(np.abs(lo), np.abs(hi)).max(axis=1)
+        return np.asarray(found.lo - ROUNDING * (size[:, None] + np.abs(found.hi)))
+
     def enclosed(self, w: Windows, q: list[Interval], boxes: list[Bounds]) -> Any:
         """Gap, Jacobian, rate and acceleration, and where the last is one, by the callbacks on intervals."""
         c, t, v = self.contacts, Interval(w.a, w.b), [x.speed for x in boxes]
@@ -104,6 +115,13 @@ class Curved:
         else:
             smooth = np.zeros(len(rows), dtype=bool)
         return Interval(gap.lo[rows, w.c], gap.hi[rows, w.c]), (G.lo, G.hi), rate, curve, smooth
+
+    def looked(self, k: Any, c: Any, t: Array) -> tuple[Array, float]:
+        """Gaps of contacts c at times in the pieces k, and how far they may be off."""
+        q = self.motion.windows(k, t, t)[:, 0]
+        return self.values(t, q, c), float(
+            np.max(self.error[0]) + self.error[1] * np.max(np.abs(q), initial=1.0)
+        )
 
     def values(self, t: Array, q: Array, c: Any) -> Array:
         """Gaps of contacts c at times and positions."""

@@ -26,18 +26,19 @@ def own(error: Any, k: Any) -> Any:
 class Flat:
     """Flat contacts and a computed motion.
 
+    why   what moves cannot be evaluated on intervals, or ""
+
     Parameters
     ----------
     scene : Scene;  m : Model;  motion : Oscillation or Polynomials
     error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
     """
 
-    why = ""  # nothing is known from samples alone
-
     def __init__(
         self, scene: Scene, m: Model, motion: Oscillation | Polynomials, cuts: Array, error: tuple[Any, float]
     ) -> None:
         self.G, self.offset, self.motion, self.error = m.arrays["G"], m.arrays["offset"], motion, error
+        self.why = ""
         self.obstacle = Obstacle(scene, m, motion.absolute, cuts)
         self.linear = m
 
@@ -64,19 +65,15 @@ class Flat:
             gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
         )
 
-    def far(self, c: int, w: Windows, starts: NDArray[np.intp]) -> NDArray[np.bool_]:
-        """Which windows of contact c, in groups that begin at `starts`, are clear by their places alone."""
-        motion: Any = self.motion
-        y = np.matmul(motion.B[w.k], self.G[c])
-        error = np.sum(np.abs(self.G[c])) * np.max(self.error[0]) + self.error[1] * np.max(np.abs(y))
-        slack = error + ROUNDING * (np.max(motion.largest) * np.sum(np.abs(self.G[c])) + abs(self.offset[c]))
-        lowest = np.minimum.reduceat(y.min(axis=1), starts) + self.offset[c] - slack
+    def looked(self, k: Any, c: Any, t: Array) -> tuple[Array, float]:
+        """Gaps of contacts c at times in the pieces k, and how far they may be off."""
+        G = self.G[c]
+        g = self.motion.place(G, k, t) + self.offset[c]
         if self.obstacle.moves:
-            ends = np.append(starts[1:], len(w.a)) - 1
-            whole = w.a[starts], w.b[ends]
-            s, _ = self.obstacle.bounds(np.full(len(starts), c), *whole, rough=True)
-            lowest = lowest - s.place.hi
-        return np.repeat(lowest > 0.0, np.diff(np.append(starts, len(w.a))))
+            g = g - self.obstacle.values(c, t)
+        size = np.max(self.motion.size(G, k) + np.abs(self.offset[c]), initial=0.0)
+        absolute = np.max(np.sum(np.abs(G) * own(self.error[0], k), axis=1), initial=0.0)
+        return g, float(absolute + (self.error[1] + ROUNDING) * size)
 
     def pressed(self, w: Windows, *, rough: bool) -> Seen:
         """Of one closed contact: what presses it, as if that were the gap, -(G y'' - sigma'') on the obstacle."""

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.audit.curves import interpolate
 from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
@@ -60,7 +61,6 @@ class Polynomials:
 
     def __init__(self, t: Array, B: Array) -> None:
         self.t, self.B, self.degree = t, B, B.shape[1] - 1
-        self.largest = np.max(np.abs(B), axis=1)
 
     def windows(self, k: Any, a: Array, b: Array) -> Array:
         """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""
@@ -72,12 +72,16 @@ class Polynomials:
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""
-        return np.asarray(np.sum(np.abs(G) * self.largest[k], axis=1))
+        return np.asarray(np.sum(np.abs(G) * np.max(np.abs(self.B[k]), axis=1), axis=1))
 
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
         x = np.matmul(self.windows(k, a, b), G[:, :, None])[:, :, 0]
         return derivatives(x, b - a), x[:, 0], x[:, -1]
+
+    def place(self, G: Array, k: Any, t: Array) -> Array:
+        """G q at times in the pieces k."""
+        return np.asarray(np.sum(self.windows(k, t, t)[:, 0] * G, axis=1))
 
     def boxes(self, k: Any, a: Array, b: Array) -> tuple[list[Bounds], Array, Array]:
         """Bounds of every coordinate, and the states at a and b, (n, n_q)."""
@@ -123,13 +127,11 @@ def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
     k = inner.shape[1]
     degree = k + 2
     shares = np.arange(1, k + 2) / (k + 1)
-    # the first two coefficients are q and q + h v / degree
-    first, second = q[:-1], q[:-1] + np.diff(t)[:, None] * v[:-1] / degree
     M = basis(shares, degree)
-    known = M[:, 0, None] * first[:, None] + M[:, 1, None] * second[:, None]
-    values = np.concatenate([inner, q[1:, None]], axis=1) - known
-    rest = np.matmul(np.linalg.inv(M[:, 2:]), values)
-    return Polynomials(t, np.concatenate([first[:, None], second[:, None], rest], axis=1))
+    B = np.empty((len(inner), degree + 1, q.shape[1]))
+    t, q, v, inner, begin = (np.ascontiguousarray(x) for x in (t, q, v, inner, M[:, :2]))
+    interpolate(t, q, v, inner, begin, np.linalg.inv(M[:, 2:]), B)
+    return Polynomials(t, B)
 
 
 class Oscillation:
@@ -143,14 +145,17 @@ class Oscillation:
     absolute = True
 
     def __init__(self, o: Any, t: Array, y: Array, w: Array) -> None:
-        self.o, self.t = o, t
-        steady, rate = self.steady(t[:-1])
-        self.z, self.dz = y - steady, w - rate
+        self.o, self.t, self.y, self.w = o, t, y, w
+
+    def remainder(self, k: Any) -> tuple[Array, Array]:
+        """The motion less the steady oscillation at the start of the pieces k, and its velocity."""
+        steady, rate = self.steady(self.t[k])
+        return self.y[k] - steady, self.w[k] - rate
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G y in the pieces k."""
         steady = math.hypot(self.o.X, self.o.Y)
-        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.z[k]) + steady))
+        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.y[k]) + 2.0 * steady))
 
     def steady(self, t: Array) -> tuple[Array, Array]:
         """The steady oscillation and its velocity."""
@@ -163,12 +168,16 @@ class Oscillation:
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G y for a number G (n, 1) of every window, and its values at a and b."""
         tau = Interval(a - self.t[k], b - self.t[k])
-        free, at_a, at_b = self.free(self.z[k], self.dz[k], tau)
+        free, at_a, at_b = self.free(*self.remainder(k), tau)
         if self.o.Omega != 0.0 and (self.o.X != 0.0 or self.o.Y != 0.0):
             at_a, at_b = at_a + self.steady(a)[0], at_b + self.steady(b)[0]
             free = Bounds(*[x + y for x, y in zip(free, self.forced(Interval(a, b)), strict=True)])
         g = G[:, 0]
         return Bounds(*[x * Interval(g, g) for x in free]), g * at_a, g * at_b
+
+    def place(self, G: Array, k: Any, t: Array) -> Array:
+        """G y at times in the pieces k."""
+        return self.along(G, k, t, t)[1]
 
     def forced(self, t: Interval) -> Bounds:
         """Bounds of the steady oscillation."""

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.audit.clear import Cells
 from lcpstep.audit.motion import Bounds
 from lcpstep.intervals import Interval, enclose
 from lcpstep.intervals.callbacks import plain
@@ -23,7 +24,7 @@ from lcpstep.turns.source import OURS
 
 Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
-CELLS, MOST_CELLS = 2048, 1 << 16
+LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
 
@@ -70,13 +71,17 @@ class Obstacle:
             turn = np.floor((0.5 * (a + b)) / self.period) * self.period
             a, b = a - turn, b - turn
         wide = WIDER * np.maximum(np.abs(a), np.abs(b)) if not self.cuts.size else 0.0
-        if rough and len(a) > MANY:
-            if self.table is None:
-                self.table = self._table(len(a))
+        if rough and self.table is not None and len(a) > MANY:
             return self.table.bounds(c, a, b)
         lo, hi, branched = self._direct(a - wide, b + wide)
         rows = np.arange(len(a))
         return _bounds(lo[rows, c], hi[rows, c]), branched
+
+    def cells(self, windows: int) -> Cells:
+        """The same for kernels, in cells that are fine enough for so many windows of the span."""
+        if self.moves and self.table is None:
+            self.table = self._table(windows)
+        return Cells(self.table, self.n_c, self.period)
 
     def _direct(self, a: Array, b: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Bounds for every contact, (n, n_c, 3)."""
@@ -104,11 +109,13 @@ class Obstacle:
                 hi += np.maximum(*scaled)
 
     def _table(self, windows: int) -> Table:
+        """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
         start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
-        n = CELLS if math.isfinite(self.period) else min(MOST_CELLS, 4 * windows)
+        n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows // 16, LEAST_CELLS))
         ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
         ends = ends[(ends >= start) & (ends <= end)]
-        return Table(ends, *self._direct(ends[:-1], ends[1:]))
+        lo, hi, branched = self._direct(ends[:-1], ends[1:])
+        return Table(ends, lo, hi, branched & np.any(hi[..., 1] > lo[..., 1], axis=1))
 
 
 class Table:

@@ -11,13 +11,14 @@ from lagrangian import Contacts
 from lcpstep.audit import motion
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.flat import Flat
-from lcpstep.audit.windows import Windows
+from lcpstep.audit.logged import close, mark
 from lcpstep.events import EventDriven
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
 from lcpstep.events.general.run import Moved
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.states import extremes
 from lcpstep.model import model
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.trajectory import Kind, Trajectory
@@ -25,10 +26,10 @@ from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+LOOKS = 1000  # states that the largest gap is taken from
 INNER = 3  # positions within a step that is known by running it again
 TOLERANCES = 10.0  # within which an event-driven run is: docs/accuracy.md
 ROUNDING = 1e-13  # of positions in closed form
-GROUP = 16  # windows that are looked at together first
 CLOSED_GAP = 1e-12  # of the positions: a gap that is closed at the start
 
 
@@ -40,6 +41,9 @@ class Pieces:
     cuts      times at which windows end
     closed    (m, n_c)   which contacts are closed in a piece
     unknown   (m,)   pieces of which the motion is not known: an impact lies within
+    touched   (m + 1, n_c)   at which times a contact is at zero by what the run says
+    scale     of times: the period, or the span
+    largest   of all gaps, of some of the states
     certain   whether the forces of closed contacts are constant, so that the run has judged them for good
     """
 
@@ -55,29 +59,25 @@ class Pieces:
             self.problem: Any = Curved(self.scene, self.m, self.motion, error)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error)
+        names = "time", "contact", "kind", "after"
+        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        t = np.ascontiguousarray(self.t)
         if mode is not None:
             self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
         else:
-            self.closed = closed_by_log(run, self.t) | closed_from_the_start(run, self.t)
-        struck = run.impacts.time[run.impacts.kind == Kind.IMPACT]
-        after, before = (np.searchsorted(self.t, struck, side=side) for side in ("left", "right"))
+            self.closed = closed_from_the_start(run, t)
+            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
+        some = slice(None, None, max(1, len(run.t) // LOOKS))
+        when, q, v = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
+        self.largest = float(np.max(np.abs(extremes(self.m, when, q, v))))
+        self.scale = min(self.scene.period, self.t[-1] - self.t[0])
+        self.touched = np.zeros((len(self.t), self.scene.n_c), dtype=bool)
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
-        self.unknown[np.clip(after[after == before] - 1, 0, len(self.t) - 2)] = True
-
-    def far(self, w: Windows) -> Mask:
-        """Windows of flights that are certified because groups of them stay above all that the obstacle reaches."""
-        far = np.zeros(len(w.a), dtype=bool)
-        if (
-            not isinstance(self.motion, motion.Polynomials)
-            or not isinstance(self.problem, Flat)
-            or self.certain
-        ):
-            return far
-        for c in range(self.scene.n_c):
-            own = np.flatnonzero((w.c == c) & ~w.closed & ~self.unknown[w.k])
-            if len(own) >= 2 * GROUP:
-                far[own] = self.problem.far(c, w.chosen(own), np.arange(0, len(own), GROUP))
-        return far
+        touched, unknown = (x.view(np.uint8) for x in (self.touched, self.unknown))
+        mark(t, time, contact, kind, touched, unknown)
+        if np.any(self.closed):
+            self.touched[1:] |= self.closed
+            self.touched[:-1] |= self.closed
 
 
 def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[Any, float]]:
@@ -86,10 +86,10 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     method = run.method
     if isinstance(dense, Flights):
         s = dense.s
-        y, w = s.q[:-1, 0].copy(), s.v[:-1, 0].copy()
+        y, w = s.q[:, 0], s.v[:, 0]
         if m.frame.given:
             c = np.zeros((len(y), 1, 3))
-            m.frame.sample(np.ascontiguousarray(s.t[:-1]), np.zeros(1), np.zeros(1), c)
+            m.frame.sample(np.ascontiguousarray(s.t), np.zeros(1), np.zeros(1), c)
             y, w = y + c[:, 0, 0], w + c[:, 0, 1]
         return motion.Oscillation(oscillator_of(m), s.t, y, w), s.t, s.mode[:-1], (0.0, ROUNDING)
     if isinstance(dense, Moved):
@@ -137,34 +137,11 @@ def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:
     return np.unique((turn[:, None] + np.append(0.0, stops)).ravel())
 
 
-def closed_by_log(run: Trajectory, t: Array) -> Mask:
-    """Which contacts are closed in the pieces between times t, by the log of the run, (m, n_c)."""
-    middle = 0.5 * (t[1:] + t[:-1])
-    closed = np.zeros((len(middle), run.scene.n_c), dtype=bool)
-    log = run.impacts
-    for c in np.unique(log.contact):
-        own = log[(log.contact == c) & (log.kind <= Kind.RELEASE)]
-        since, last = np.inf, run.t[0]
-        for time, kind, later in zip(own.time, own.kind, own.after, strict=True):
-            if kind == Kind.ACCUMULATION:
-                since = min(since, last)
-            elif kind == Kind.STICK:
-                since = min(since, time)
-            elif kind == Kind.RELEASE or (later > 0.0 and since < np.inf):
-                _fill(closed[:, c], middle, since, time)
-                since = np.inf
-            if kind == Kind.IMPACT:
-                last = time
-        _fill(closed[:, c], middle, since, np.inf)
-    return closed
-
-
 def closed_from_the_start(run: Trajectory, t: Array) -> Mask:
     """Which contacts start closed and stay so up to their first event, without a line in the log, (m, n_c)."""
     closed = np.zeros((len(t) - 1, run.scene.n_c), dtype=bool)
-    looks = [float(t[0]), float(t[np.searchsorted(t, t[0], side="right")])]
-    q, v = run.at(np.array(looks))
-    g = np.array([run.scene.gap(x, q[k], v[k])[0] for k, x in enumerate(looks)])
+    looks = [0, int(np.searchsorted(t, t[0], side="right"))]
+    g = np.array([run.scene.gap(t[k], run.q[k], run.v[k])[0] for k in looks])
     size = max(1.0, float(np.max(np.abs(run.q))))
     for c in np.flatnonzero(np.all(np.abs(g) <= CLOSED_GAP * size, axis=0)):
         own = run.impacts[run.impacts.contact == c]

@@ -30,12 +30,11 @@ def sampled(problem: Any, w: Windows) -> tuple[Array, list[Found]]:
         share = np.linspace(0.0, 1.0, LOOKS)
         t = w.a[:, None] + (w.b - w.a)[:, None] * share
         k, c = np.repeat(w.k, LOOKS), np.repeat(w.c, LOOKS)
-        q = problem.motion.windows(k, t.ravel(), t.ravel())[:, 0]
-        g = problem.values(t.ravel(), q, c).reshape(t.shape)
+        looks, error = problem.looked(k, c, t.ravel())
+        g = looks.reshape(t.shape)
         inner = g.copy()
         inner[w.first, 0], inner[w.last, -1] = np.inf, np.inf
         np.minimum.at(least, owner, inner.min(axis=1))
-        error = np.max(problem.error[0]) + problem.error[1] * np.max(np.abs(q), initial=1.0)
         for i in np.flatnonzero(np.any(inner < -error, axis=1)):
             if owner[i] not in missed:
                 j = int(np.argmax(inner[i] < -error))

@@ -123,6 +123,27 @@ def test_what_intervals_cannot_pass_is_sampled_and_said():
     assert window.gap > 0.0
 
 
+def points(t, q, v, p, out):
+    """Heights at every 5 ms, and straight lines between them, with one burr."""
+    k = min(int(200.0 * t), 1999)
+    x = 200.0 * t - k
+    out[0, 0], out[0, 1], out[0, 2] = p[k] + x * (p[k + 1] - p[k]), 200.0 * (p[k + 1] - p[k]), 0.0
+
+
+@pytest.mark.filterwarnings("ignore::lcpstep.turns.FastTurn")
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
+@pytest.mark.parametrize("height", [0.0, 2.5])
+def test_a_table_of_points_is_sampled_and_said(method, height):
+    heights = 0.02 * np.sin(np.linspace(0.0, 20.0, 2001))
+    heights[1003] = height
+    scene = oscillator(points, heights, 0.3)
+    m = simulate(scene, replace(method, audit=True))
+    assert (abs(m.impacts.time[0] - 5.015) < 0.006) if height else (len(m.impacts) == 0)
+    assert "sampled: points (test_audit.py, line" in str(m.audit)
+    assert m.audit.windows[0].sampled
+    assert not m.audit.missed
+
+
 def test_bounds_that_the_user_declares_certify_it():
     scene = over_a_bump(0.0, 1.0, gap=by_table, lipschitz=40.0)
     answer = simulate(scene, EventDriven(audit=True)).audit

@@ -1,0 +1,57 @@
+cimport cython
+from libc.math cimport floor
+from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.kernels.function cimport Function
+from lcpstep.pointers cimport abs, after, inf, max, min, whole
+
+cdef Py_ssize_t DEEPEST, MOST
+cdef double SLACK, ERRORS
+
+
+@cython.final
+cdef class Cells:
+    cdef object arrays, bounds
+    cdef readonly bint given, rough, whole_rough
+    cdef readonly Py_ssize_t n, n_c
+    cdef readonly double period
+    cdef double per
+    cdef double* ends
+    cdef double* lo
+    cdef double* hi
+    cdef unsigned char* branched
+    cdef double* whole_top
+    cdef double* whole_low
+    cdef double* whole_high
+    cdef readonly double bottom, top, slow, low, high
+    cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
+    cdef Py_ssize_t cell(self, double t) noexcept nogil
+
+
+cdef class Gap:
+    cdef Cells cells
+    cdef Function motion, frame
+    cdef object kept, stack
+    cdef double* q
+    cdef double* v
+    cdef double* moving
+    cdef double* G
+    cdef double* times
+    cdef double* places
+    cdef double* gaps
+    cdef double* bends
+    cdef double place, bend, fourth, loose, length, error, small, moment, near, negligible
+    cdef bint first, last
+    cdef void at(self, double tau) noexcept nogil
+    cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
+
+@cython.locals(least=double)
+cdef bint open_between(
+    double g_a, double g_b, double h, double low, double high, bint first, bint last, double error
+) noexcept nogil
+cdef bint shallow(Gap g, double g_a, double g_b, double h, double high) noexcept nogil
+cdef bint beside(Gap g, double a, double b, double time) noexcept nogil
+@cython.locals(good=bint, begins=bint, ends=bint, first=bint, last=bint)
+cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b) noexcept nogil
+cdef bint between_corners(
+    Gap g, Py_ssize_t c, double t0, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts
+) noexcept nogil

@@ -1,0 +1,250 @@
+"""Whether a gap stays open over a window of time, as kernels: the certificate that most flights need.
+
+    gap = place(t) - sigma(t),   place = offset + G y
+
+Values at the two ends and bounds of the acceleration in between give a bound of the gap: under gap'' <= A it lies
+above its chord less A tau (h - tau) / 2. That of `place` is known at both ends, and is between them as far from its
+chord as its own second derivative allows (`fourth`); that of sigma is bounded in cells (`obstacle.Table`). Windows in
+which that does not suffice are halved, a few times; what is left is for `windows.judged`.
+
+Bounds are wider than they were computed by SLACK of the numbers that they are made of: a few hundred roundings.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+from lcpstep.audit.limits import ERRORS
+
+if not cython.compiled:
+    from math import floor
+
+    from lcpstep.arrays import doubles, small_numbers
+    from lcpstep.kernels.function import Function
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
+
+DEEPEST, MOST = 10, 64  # halvings of a window in a row, and windows that one may become
+
+SLACK = 1e-13  # of the numbers that a bound is made of
+
+
+class Cells:
+    """Bounds of what flat contacts meet, in cells of time: see `obstacle.Table`.
+
+    bottom, top     the lowest and highest place found for the window last asked for
+    slow            its lowest speed;  low, high : its acceleration
+    rough           whether it need not have one
+    whole_top, whole_low, whole_high, whole_rough   the same of all times
+
+    Parameters
+    ----------
+    table : obstacle.Table, or None where nothing moves;  n_c : contacts;  period : of the table, or infinite
+    """
+
+    def __init__(self, table: Any, n_c: int, period: float) -> None:
+        self.given, self.n_c, self.period = table is not None, n_c, period
+        nothing = np.zeros((1, 1, n_c, 3))
+        self.arrays = (
+            (np.ascontiguousarray(table.ends), table.lo, table.hi, table.branched.astype(np.uint8))
+            if self.given
+            else (np.array([-inf, inf]), nothing, nothing, np.zeros((1, 1), dtype=np.uint8))
+        )
+        self.n = len(self.arrays[0]) - 1
+        self.ends, self.lo = doubles(self.arrays[0]), doubles(self.arrays[1])
+        self.hi, self.branched = doubles(self.arrays[2]), small_numbers(self.arrays[3])
+        self.per = self.n / (self.arrays[0][-1] - self.arrays[0][0]) if self.given else 0.0
+        self.bounds = np.concatenate(
+            [self.arrays[2][0, ..., 0].max(axis=0), self.arrays[1][0, ..., 2].min(axis=0),
+             self.arrays[2][0, ..., 2].max(axis=0)]
+        )  # fmt: skip
+        self.whole_top = doubles(self.bounds)
+        self.whole_low, self.whole_high = after(self.whole_top, n_c), after(self.whole_top, 2 * n_c)
+        self.whole_rough = bool(np.any(self.arrays[3]))
+        self.bottom = self.top = self.slow = self.low = self.high = 0.0
+        self.rough = False
+
+    def find(self, c: int, a: float, b: float) -> None:
+        """Bounds over the window [a, b] for contact c."""
+        if not self.given:
+            return
+        if self.period < inf:
+            turn = floor(0.5 * (a + b) / self.period) * self.period
+            a -= turn
+            b -= turn
+        n, ends = self.n, self.ends
+        if b - a > (1.0 + SLACK) * (ends[n] - ends[0]):
+            self.top, self.low, self.high = self.whole_top[c], self.whole_low[c], self.whole_high[c]
+            self.bottom = self.slow = -inf
+            self.rough = True
+            return
+        i, j = self.cell(a), self.cell(b)
+        if j > i and ends[j] >= b:
+            j -= 1
+        level, size = 0, 1
+        while 2 * size <= j - i + 1:
+            level += 1
+            size *= 2
+        k = j - size + 1
+        first, second = (level * n + i) * self.n_c + c, (level * n + k) * self.n_c + c
+        self.bottom, self.top = (
+            min(self.lo[3 * first], self.lo[3 * second]),
+            max(self.hi[3 * first], self.hi[3 * second]),
+        )
+        self.slow = min(self.lo[3 * first + 1], self.lo[3 * second + 1])
+        self.low = min(self.lo[3 * first + 2], self.lo[3 * second + 2])
+        self.high = max(self.hi[3 * first + 2], self.hi[3 * second + 2])
+        self.rough = self.branched[level * n + i] != 0 or self.branched[level * n + k] != 0
+
+    def cell(self, t: float) -> int:
+        """The cell in which a time lies, or the next one to it."""
+        i = whole(min(max((t - self.ends[0]) * self.per, 0.0), self.n - 1.0))
+        while i < self.n - 1 and self.ends[i + 1] <= t:
+            i += 1
+        while i > 0 and self.ends[i] > t:
+            i -= 1
+        return i
+
+
+class Gap:
+    """The gap of one contact during one piece of the motion, at the time tau after its start.
+
+    place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
+    fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
+    length, first, last     of the piece, and whether it begins and ends with an event of the run
+    error, small    of the gap; a gap below the second is as good as zero
+
+    Parameters
+    ----------
+    cells : Cells
+    motion, frame : Function   s, s', s'' of every contact, and c, c', c'' (absent unless y is absolute)
+    G : (n_c,)   of the frame
+    state : (q, v)   that they are handed
+    limits : (moment, near, negligible)
+        how long an event lasts, and how long where the gap is as good as zero; an error that is larger does not count
+    """
+
+    def __init__(
+        self, cells: Cells, motion: Function, frame: Function, G: Any, state: Any, limits: Any
+    ) -> None:
+        self.cells, self.motion, self.frame = cells, motion, frame
+        self.kept = np.array(state[0]), np.array(state[1]), np.zeros(3 * (cells.n_c + 1)), np.array(G)
+        self.q, self.v = doubles(self.kept[0]), doubles(self.kept[1])
+        self.moving, self.G = doubles(self.kept[2]), doubles(self.kept[3])
+        self.stack = np.zeros((4, DEEPEST + 2))
+        self.times, self.places = doubles(self.stack[0]), doubles(self.stack[1])
+        self.gaps, self.bends = doubles(self.stack[2]), doubles(self.stack[3])
+        self.place = self.bend = self.fourth = self.loose = self.error = self.small = self.length = 0.0
+        self.first = self.last = False
+        self.moment, self.near, self.negligible = limits
+
+    def at(self, tau: float) -> None:
+        """Ask for the motion: self.place, self.bend."""
+
+    def sigma(self, c: int, t: float) -> float:
+        """What contact c meets at a time."""
+        total = 0.0
+        if self.motion.given:
+            self.motion.fill(t, self.q, self.v, self.moving)
+            total += self.moving[3 * c]
+        if self.frame.given:
+            self.frame.fill(t, self.q, self.v, self.moving)
+            total += self.G[c] * self.moving[0]
+        return total
+
+
+def open_between(
+    g_a: float, g_b: float, h: float, low: float, high: float, first: bool, last: bool, error: float
+) -> bool:
+    """Whether a gap stays open in a window of length h, with these values at its ends and bounds of its acceleration.
+
+    first, last : whether it is zero there by an event of the run, so that only the open window counts
+    """
+    if not (high - high == 0.0 and low - low == 0.0):
+        return False
+    if first and last:
+        return high <= 0.0 and low < 0.0
+    bent = 0.5 * max(high, 0.0) * h * h
+    if first:
+        return g_b - bent > error
+    if last:
+        return g_a - bent > error
+    least = min(g_a, g_b)
+    if not least > error or least - 0.25 * bent > error:
+        return least > error
+    x = 0.5 - 0.5 * (g_b - g_a) / bent
+    return not 0.0 < x < 1.0 or g_a + (g_b - g_a) * x - bent * x * (1.0 - x) > error
+
+
+def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float) -> bool:
+    """Whether a gap beside an event is as good as zero where it falls below: by its chord, as in `open_between`."""
+    if high - high != 0.0:
+        return False
+    bent, lowest = 0.5 * max(high, 0.0) * h * h, min(g_a, g_b)
+    if bent > abs(g_b - g_a):
+        x = 0.5 - 0.5 * (g_b - g_a) / bent
+        lowest = g_a + (g_b - g_a) * x - bent * x * (1.0 - x)
+    return lowest - g.error > -ERRORS * g.small
+
+
+def beside(g: Gap, a: float, b: float, time: float) -> bool:
+    """Whether a window is as near as that to an event at an end of the piece."""
+    return (g.first and b < time) or (g.last and g.length - a < time)
+
+
+def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
+    """Whether the gap of contact c stays open between a and b after t0, which no corner of the obstacle parts."""
+    first, last = g.first and a == 0.0, g.last and b == g.length
+    g.at(a)
+    tau, place, bend = a, g.place, g.bend
+    gap = 0.0 if first else place - g.sigma(c, t0 + a)
+    g.at(b)
+    g.times[0], g.places[0], g.bends[0] = b, g.place, g.bend
+    g.gaps[0] = 0.0 if last else g.place - g.sigma(c, t0 + b)
+    n, looked = 1, 0
+    while n > 0:
+        looked += 1
+        k = n - 1
+        h = g.times[k] - tau
+        margin = 0.125 * g.fourth * h * h + g.loose + SLACK * (abs(bend) + abs(g.bends[k]))
+        high, low = max(bend, g.bends[k]) + margin, min(bend, g.bends[k]) - margin
+        g.cells.find(c, t0 + tau, t0 + g.times[k])
+        good = min(place, g.places[k]) - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error
+        if not (good or g.cells.rough):
+            low -= g.cells.high
+            high -= g.cells.low
+            begins, ends = first and tau == a, last and k == 0
+            good = open_between(gap, g.gaps[k], h, low, high, begins, ends, g.error)
+            if not good and beside(g, tau, g.times[k], g.near):
+                good = shallow(g, gap, g.gaps[k], h, high)
+        if good or beside(g, tau, g.times[k], g.moment):
+            tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
+            n = k
+        elif n > DEEPEST or looked > MOST:
+            return False
+        else:
+            g.times[n] = 0.5 * (tau + g.times[k])
+            g.at(g.times[n])
+            g.places[n], g.bends[n] = g.place, g.bend
+            g.gaps[n] = g.place - g.sigma(c, t0 + g.times[n])
+            n += 1
+    return True
+
+
+def between_corners(g: Gap, c: int, t0: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
+    """Whether the gap of contact c stays open in a piece that begins at t0, between one corner and the next.
+
+    i : the first of the cuts after t0
+    """
+    a = 0.0
+    while a < g.length:
+        b = g.length
+        if i < n_cuts and cuts[i] - t0 < b:
+            b = cuts[i] - t0
+            i += 1
+        if not clear(g, c, t0, a, b):
+            return False
+        a = b
+    return True

@@ -1,0 +1,97 @@
+"""The first look at a run: kernels certify most pieces of flat contacts (`flights`, `curves`), in one pass."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.audit.curved import Curved
+from lcpstep.audit.curves import Curve, clear_curves, hulls
+from lcpstep.audit.flat import Flat
+from lcpstep.audit.flights import Swing, clear_flights
+from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE, PRESSED, UNKNOWN
+from lcpstep.audit.motion import Oscillation
+from lcpstep.audit.obstacle import Obstacle
+from lcpstep.events.flight.run import flight_of
+from lcpstep.intervals import NotEnclosed
+from lcpstep.kernels.function import Function
+
+NEVER = np.zeros(0)
+GROUPS, FEW = (64, 8), 32  # pieces that are looked at together; so many groups are worth it
+
+
+def look(p: Any) -> NDArray[np.bool_]:
+    """Which pieces of which contacts are certified, (m, n_c); p: `pieces.Pieces`."""
+    found = np.zeros((len(p.t) - 1, p.scene.n_c), dtype=np.uint8)
+    if isinstance(p.problem, Flat):
+        by = by_flights if isinstance(p.motion, Oscillation) else by_curves
+        try:
+            by(p, p.problem.obstacle, found)
+        except NotEnclosed as why:
+            p.problem.why = str(why)
+    elif p.problem.bound is None:
+        by_groups(p, p.problem, found)
+    return found.view(np.bool_)
+
+
+def by_flights(p: Any, o: Obstacle, found: Any) -> None:
+    """Flights in closed form."""
+    m, motion = p.m, p.motion
+    flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
+    gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
+    if gap.known:
+        touched, kind, cuts = marks(p, o)
+        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, sampled(o, p.t), touched, kind, cuts, found)
+
+
+def by_curves(p: Any, o: Obstacle, found: Any) -> None:
+    """Polynomials between kept states."""
+    m, motion = p.m, p.motion
+    absolute, relative = p.problem.error
+    absolute = np.ascontiguousarray(absolute) if np.ndim(absolute) else np.full((1, p.scene.n_q), absolute)
+    none = Function(0, np.zeros(0), 1, 1, (1, 3))
+    gap = Curve(o.cells(len(found)), m.motion, none, o.state, limits(p), motion.degree)
+    G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
+    B = np.ascontiguousarray(motion.B)
+    touched, kind, cuts = marks(p, o)
+    clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, touched, kind, cuts, found)
+
+
+def by_groups(p: Any, problem: Curved, found: Any) -> None:
+    """Gaps of any form that are clear by their places alone, first those of many pieces together."""
+    B, left = np.ascontiguousarray(p.motion.B), ~(p.closed | p.unknown[:, None])
+    for group in GROUPS:
+        first = np.arange(0, len(B), group)
+        asked = np.logical_or.reduceat(left & (found == 0), first).any(axis=1)
+        if group > 1 and len(first) < FEW:
+            continue
+        lo, hi = np.full((len(first), B.shape[2]), np.inf), np.full((len(first), B.shape[2]), -np.inf)
+        hulls(B, group, lo, hi)
+        end = np.minimum(first + group, len(B))
+        error = np.maximum.reduceat(np.broadcast_to(problem.error[0], (len(B), B.shape[2])), first)
+        error = error + problem.error[1] * np.maximum(np.abs(lo), np.abs(hi))
+        lowest = problem.lowest(p.t[first][asked], p.t[end][asked], (lo - error)[asked], (hi + error)[asked])
+        clear = np.zeros((len(first), found.shape[1]), dtype=bool)
+        clear[asked] = lowest > 0.0
+        found |= np.repeat(clear, end - first, axis=0) & left
+
+
+def sampled(o: Obstacle, t: Any) -> Any:
+    """What the contacts meet at every kept state, (m + 1, n_c, 3)."""
+    out = np.zeros((len(t), o.n_c, 3))
+    if o.m.motion.given:
+        o.m.motion.sample(t, o.state[0], o.state[1], out)
+    return out
+
+
+def marks(p: Any, o: Obstacle) -> tuple[Any, Any, Any]:
+    """Events of the run, what kind pieces are of, see `flights`, and corners."""
+    kind = np.where(p.unknown[:, None], UNKNOWN, PRESSED * p.closed.view(np.uint8)).astype(np.uint8)
+    return p.touched.view(np.uint8), kind, p.cuts if o.moves else NEVER
+
+
+def limits(p: Any) -> tuple[float, float, float]:
+    """How long events last, and what is negligible, see `clear.Gap`."""
+    return AT_EVENT * p.scale, BESIDE * p.scale, NEGLIGIBLE * p.largest

@@ -1,0 +1,32 @@
+cimport cython
+from libc.math cimport cos, hypot, sin, sqrt
+from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, open_between
+from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
+from lcpstep.pointers cimport abs, after, max, min
+
+cdef double SLACK, ROUNDING, PRESSING, ERRORS
+cdef Py_ssize_t UNKNOWN, PRESSED
+
+
+@cython.final
+cdef class Swing(Gap):
+    cdef Flight s
+    cdef readonly bint swings, known
+    cdef double forced, height
+    cdef double size(self, double z, double w) noexcept nogil
+
+@cython.locals(whole=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
+cpdef object clear_flights(
+    Swing g, object t, object q, object y, object w, object obstacle, object touched, object kind,
+    object cuts, object found
+)
+@cython.locals(bent=bint)
+cdef bint at_once(
+    Swing g, Flight o, double t, double* q, double* x, double* w, double s, double s_b, bint whole
+) noexcept nogil
+cdef double equation(Flight o, double t, double y, double w) noexcept nogil
+cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
+@cython.locals(good=bint)
+cdef bint pressed(Swing g, Flight s, double t0) noexcept nogil
+cdef double driven(Flight s, double t) noexcept nogil

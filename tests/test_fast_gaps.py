@@ -1,0 +1,89 @@
+"""Gaps that turn fast with the place: a warning says so where samples show it, and nowhere else."""
+
+import math
+import warnings
+from dataclasses import replace
+
+import pytest
+
+from lagrangian import Contacts, Scene, scenes
+from lcpstep import EventDriven, Located, simulate
+from lcpstep.turns import FastTurn
+from tests.audit.test_audit import over_a_bump
+
+CURVED = [
+    name for name, entry in scenes.CATALOGUE.items()
+    if isinstance(entry.make(), Scene) and isinstance(entry.make().contacts, Contacts)
+]  # fmt: skip
+
+
+def washboard(t, q, v, p, out):
+    """Waves of the ground, of wavelength 2 pi p[1]."""
+    out[0] = q[1] + p[3] - p[0] * (1.0 + math.cos(q[0] / p[1]))
+
+
+def washboard_q(t, q, v, p, out):
+    """Its Jacobian."""
+    out[0, 0], out[0, 1] = p[0] * math.sin(q[0] / p[1]) / p[1], 1.0
+
+
+def roof(t, q, v, p, out):
+    """A ground of straight pieces."""
+    out[0] = q[1] + p[3] - p[0] * max(0.0, 1.0 - abs(q[0] - p[2]) / p[1])
+
+
+def roof_q(t, q, v, p, out):
+    """Its Jacobian."""
+    x = q[0] - p[2]
+    out[0, 0], out[0, 1] = (math.copysign(p[0] / p[1], x) if abs(x) < p[1] else 0.0), 1.0
+
+
+def over(gap, jacobian, p, method):
+    """What is warned of a run."""
+    scene = over_a_bump(0.1, 1.0)
+    contacts = replace(scene.contacts, gap=gap, jacobian=jacobian)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        simulate(replace(scene, contacts=contacts, p=p), method)
+    return [str(x.message) for x in said if x.category is FastTurn]
+
+
+@pytest.mark.parametrize("wave", [1e-3, 1e-4])
+def test_a_washboard_finer_than_the_steps_is_told(wave):
+    said = over(washboard, washboard_q, [0.02, wave, 0.0, 1.05], EventDriven())
+    assert len(said) == 1
+    assert "the gap of contact 0 turns within less than" in said[0]
+    assert "audit=True" in said[0]
+    assert "corners" in said[0]
+    assert not over(washboard, washboard_q, [0.02, wave, 0.0, 1.05], EventDriven(audit=True))
+
+
+@pytest.mark.parametrize("wave", [0.1, 1.0])
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
+def test_one_that_steps_resolve_is_not(wave, method):
+    assert not over(washboard, washboard_q, [0.02, wave, 0.0, 1.05], method)
+
+
+def test_a_narrow_bump_that_a_sample_meets_is_told():
+    """Bumps much narrower than a step, at 20 places."""
+    told = 0
+    for k in range(20):
+        scene = replace(over_a_bump(0.3, 2e-3), p=[0.3, 2e-3, 2.0 + 0.1973 * k, 1.05])
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            simulate(scene, EventDriven())
+        told += any(x.category is FastTurn for x in said)
+    assert told > 0
+
+
+@pytest.mark.parametrize("width", [0.1, 0.5, 2.0])
+def test_corners_of_the_ground_are_not_told(width):
+    for k in range(5):
+        assert not over(roof, roof_q, [0.4, width, 3.0 + 0.31 * k, 1.05], EventDriven())
+
+
+@pytest.mark.parametrize("name", CURVED)
+def test_no_ready_scene_is_warned_of(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", FastTurn)
+        simulate(scenes.CATALOGUE[name].make(), EventDriven())
