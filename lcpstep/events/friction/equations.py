@@ -12,7 +12,8 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, moves, obstacle, total_force
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
+    from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -30,59 +31,72 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
 
     False where a coefficient of friction is none.
     """
-    n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
+    measure_rates(s, t, y)
+    if not s.measured or s.moving:
+        measure_biases(s, t, y)
+    if not s.measured:
+        respond(s)
+        s.measured = s.constant
+    return measure_friction(s, t, y)
+
+
+def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
+    """Rows and their rates."""
+    if s.measured and not s.moving:
+        return
+    n, n_j, k = s.n_q, s.n_j, s.n_j + s.n_c
     q, v, side = y, after(y, n), s.clock.inside(t)
-    if s.known:
-        measure_motion(s, side, q, v)
-        return not s.coefficients.varies or measure_friction(s, side, q, v)
+    if n_j > 0:
+        gap_rates(s.joints, side, q, v, s.R, s.rate)
+    gap_rates(s.contacts, side, q, v, after(s.R, n_j * n), after(s.rate, n_j))
+    gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
+
+
+def measure_biases(s: Rubbing, t: float, y: Doubles) -> None:
+    """Accelerations of the rows that the state alone makes."""
+    n_j, k = s.n_j, s.n_j + s.n_c
+    q, v, side = y, after(y, s.n_q), s.clock.inside(t)
     if n_j > 0:
         bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
-        gap_rates(s.joints, side, q, v, s.R, s.rate)
     bias(s.contacts, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
-    gap_rates(s.contacts, side, q, v, after(s.R, n_j * n), after(s.rate, n_j))
-    k = n_j + n_c
     bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
-    gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
+
+
+def renew_mass(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The factor of the mass matrix at a state; False where it is singular."""
+    if not s.contacts.mass.given:
+        return True
+    mass(s.contacts, s.clock.inside(t), y, after(y, s.n_q), s.M)
+    return positive_definite(s.M, s.n_q)
+
+
+def respond(s: Rubbing) -> None:
+    """The Delassus matrix of the rows, and what an impulse on each of them does."""
+    n, r = s.n_q, s.n_r
     for i in range(r):
         row = after(s.MR, i * n)
         copy(row, after(s.R, i * n), n)
         inverse_mass(s.contacts, s.M, s.work, row)
         for j in range(i + 1):
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
-    s.known = s.constant
-    return not s.coefficients.varies or measure_friction(s, side, q, v)
 
 
-def measure_motion(s: Rubbing, t: float, q: Doubles, v: Doubles) -> None:
-    """Rates and biases of rows that never change: those of obstacles and joints that move."""
-    if moves(s.joints):
-        obstacle(s.joints, t, q, v)
-        for j in range(s.n_j):
-            s.rate[j], s.bias[j] = -s.joints.motion_now[3 * j + 1], -s.joints.motion_now[3 * j + 2]
-    if moves(s.contacts):
-        obstacle(s.contacts, t, q, v)
-        for c in range(s.n_c):
-            i = s.n_j + c
-            s.rate[i], s.bias[i] = -s.contacts.motion_now[3 * c + 1], -s.contacts.motion_now[3 * c + 2]
-
-
-def measure_friction(s: Rubbing, t: float, q: Doubles, v: Doubles) -> bool:
+def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
     """Coefficients of friction at the sliding velocities, which on the way to zero do not change their sign."""
+    if not s.coefficients.varies:
+        return True
+    q, v = y, after(y, s.n_q)
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
         s.slip[c] = product(s.R, v, i, s.n_q) + s.rate[i]
-        if (
-            s.mode[c] == STICKS
-            or s.mode[c] == LEANS
-            or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0)
-        ):
+        sticks = s.mode[c] == STICKS or s.mode[c] == LEANS
+        if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0
-    return s.coefficients.measure(t, q, s.slip)
+    return s.coefficients.measure(s.clock.inside(t), q, s.slip)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
-    s.factored = False
     if not free_motion(s, t, y, s.a_free):
         return False
     if not measure_rows(s, t, y):

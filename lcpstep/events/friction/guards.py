@@ -13,7 +13,7 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import gap_size, measure_gaps, measure_rows, size_of
+    from lcpstep.events.friction.equations import gap_size, measure_gaps, measure_rates, size_of
     from lcpstep.events.friction.held import list_multipliers, right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
@@ -34,14 +34,19 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
     """All guards at a state, into `value`; False where one is not finite."""
     if not right_hand_side(s, t, y, s.dy):
         return False
-    if s.n_held == 0 and not measure_rows(s, t, y):
-        return False
+    if s.n_held == 0:
+        measure_rates(s, t, y)
+    list_multipliers(s)
+    return read(s, t, y)
+
+
+def read(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The same where rows and multipliers are known."""
     v, total, opened = after(y, s.n_q), 0.0, False
     for c in range(s.n_c):
         opened = opened or s.mode[c] == OPEN
     if opened:
         measure_gaps(s, t, y)
-    list_multipliers(s)
     for c in range(s.n_c):
         i, k = s.n_j + c, GUARDS * c
         s.value[k] = s.value[k + 1] = s.value[k + 2] = OFF

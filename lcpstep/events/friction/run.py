@@ -23,17 +23,19 @@ from lcpstep.trajectory import Status
 Array = NDArray[np.float64]
 
 
-def start(scene: Scene, method: Any) -> Smooth:
-    """The state at the start of the span; `method` has rtol and atol."""
+def start(scene: Scene, kind: Callable[..., Any], yields: bool, rtol: float, atol: float, *more: Any) -> Any:
+    """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
+
+    yields : whether sliding that jams ends in an impact
+    """
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
     friction = given.friction
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
-    s = Smooth(
+    s = kind(
         contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution),
-        friction.law == "stronge", method.jamming == "impact", clock, scene.t_span[1], scan, method.rtol,
-        method.atol, *quadrature(),
+        friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -44,12 +46,16 @@ class FrictionRun(running.EventRun):
     """A run with contacts that stick and slide."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
-        self.system = start(scene, method)
+        self.system = self.start(scene, method)
         width = 7, 2 * scene.n_q
         rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
         columns = 2 * scene.n_c + scene.n_j
         recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
         super().__init__(method, scene, kept, recorder)
+
+    def start(self, scene: Scene, method: Any) -> Any:
+        """The motion at the start of the span."""
+        return start(scene, Smooth, method.jamming == "impact", method.rtol, method.atol)
 
     @property
     def now(self) -> float:

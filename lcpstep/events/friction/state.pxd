@@ -4,10 +4,12 @@ from lcpstep.kernels.clock cimport Clock, RESOLUTION
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport after, indices_after
 
-cdef Py_ssize_t GUARDS, BEGIN
+cdef Py_ssize_t GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
 
 
@@ -20,11 +22,11 @@ cdef class Rubbing(RungeKutta):
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_nodes
     cdef public Py_ssize_t next, culprit, jams, rounds
-    cdef readonly bint in_turn, yields, constant
-    cdef bint known, factored
+    cdef readonly bint in_turn, yields
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
+    cdef bint constant, moving, measured
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -76,3 +78,4 @@ cdef class Rubbing(RungeKutta):
     cdef double* band
     cdef double* samples
     cdef Py_ssize_t* armed
+    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -12,6 +12,7 @@ import cython
 import numpy as np
 
 from lcpstep.events.friction.codes import BEGIN
+from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
@@ -20,7 +21,9 @@ if not cython.compiled:
     from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
     from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import after, indices_after
 
 GUARDS = (
@@ -34,6 +37,7 @@ class Rubbing(RungeKutta):
 
     contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
+    constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
@@ -49,8 +53,6 @@ class Rubbing(RungeKutta):
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
-    constant, known              rows and mass never change; they have been measured
-    factored                     L is that of the rows held, and stays it while modes last: with constant rows alone
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
@@ -87,10 +89,11 @@ class Rubbing(RungeKutta):
         r = n_j + 2 * n_c
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
-        self.t_end, self.scan_length, self.next, self.in_turn = t_end, scan_length, BEGIN, in_turn
-        self.yields, self.jams, self.rounds = yields, 0, 0
-        flat = contacts.flat and tangents.flat and joints.flat
-        self.constant, self.known, self.factored = flat and not contacts.mass.given, False, False
+        self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
+        self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
+        self.constant = self.constant and not coefficients.varies
+        self.moving, self.measured = contacts.motion.given or joints.motion.given, False
+        self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
@@ -152,6 +155,10 @@ class Rubbing(RungeKutta):
         self.samples = after(self.band, GUARDS * n_c)
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
+
+    def proceed(self, record: Record, tally: Tally) -> int:
+        """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
+        return NOT_FINITE
 
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
