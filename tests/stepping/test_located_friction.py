@@ -93,7 +93,7 @@ def test_these_scenes_have_every_kind_of_event():
     seen = {
         int(k) for make in (on_a_shaken_floor, torn_off) for k in simulate(make(), Located(1e-2)).impacts.kind
     }
-    assert seen == {int(kind) for kind in Kind}
+    assert seen == {int(kind) for kind in Kind if kind <= Kind.REVERSE}
 
 
 @pytest.mark.slow

@@ -23,7 +23,9 @@ from lcpstep.trajectory import Status
 Array = NDArray[np.float64]
 
 
-def start(scene: Scene, kind: Callable[..., Any], yields: bool, rtol: float, atol: float, *more: Any) -> Any:
+def start(
+    scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any, yields: bool = False
+) -> Any:
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
 
     yields : whether sliding that jams ends in an impact
@@ -55,7 +57,7 @@ class FrictionRun(running.EventRun):
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
-        return start(scene, Smooth, method.jamming == "impact", method.rtol, method.atol)
+        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
 
     @property
     def now(self) -> float:

@@ -30,7 +30,7 @@ class RubbingRun(FrictionRun):
         h, n = parts[0][0], parts[-1][3]
         order = int(method.order)
         system: RubbingSteps = start(
-            scene, RubbingSteps, False, ROUNDING, ROUNDING, order, h, float(scene.t_span[0]), n
+            scene, RubbingSteps, ROUNDING, ROUNDING, order, h, float(scene.t_span[0]), n
         )
         return system
 
