@@ -60,11 +60,11 @@ def test_compare_prints_a_table_and_how_to_read_it_for_any_scene(capsys):
     ("scene", "reference"),
     [("coulomb-oscillator", "closed form"), ("kane-pendulum", "event-driven at a tolerance")],
 )
-def test_compare_offers_what_treats_friction(capsys, scene, reference):
+def test_compare_offers_all_methods_where_there_is_friction(capsys, scene, reference):
     status, out, _ = run(capsys, "compare", scene, "--h", 1e-3, "--no-pictures")
     assert status == DONE
     assert reference in out
-    assert out.count("left out: ") == 2
+    assert "left out: " not in out
 
 
 def test_angles_are_not_metres(capsys):

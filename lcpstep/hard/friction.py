@@ -11,10 +11,17 @@ import numpy as np
 from lagrangian import Scene, scenes
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.kane_pendulum import after_impact, kinetic_energy
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
 
 
-@check("coulomb-oscillator", "states", period=2.0 * math.pi, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "coulomb-oscillator",
+    "states",
+    period=2.0 * math.pi,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def oscillator(solve: Solver) -> float:
     return state_error(solve, scenes.coulomb_oscillator())
 
@@ -25,6 +32,7 @@ def oscillator(solve: Solver) -> float:
     period=2.0 * math.pi,
     moreau=0.0,
     event_driven=0.0,
+    located=0.0,
 )
 def stops(solve: Solver) -> Found:
     run = solve(scenes.coulomb_oscillator(), keep=np.array([18.0, 19.0, 20.0]))
@@ -33,39 +41,67 @@ def stops(solve: Solver) -> Found:
     return Found(max(moved, speed), f"at {run.q[-1, 0]:.12f}, speed {speed:.0e}")
 
 
-@check("slipping-wheel", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+@check("slipping-wheel", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
 def wheel(solve: Solver) -> float:
     return state_error(solve, scenes.slipping_wheel())
 
 
-@check("slipping-wheel", "rolls without slip from then on", period=0.5, moreau=1e-12, event_driven=1e-12)
+@check(
+    "slipping-wheel",
+    "rolls without slip from then on",
+    period=0.5,
+    moreau=1e-12,
+    event_driven=1e-12,
+    located=1e-12,
+)
 def rolls(solve: Solver) -> float:
     run = solve(scenes.slipping_wheel())
     rolling = run.t > 1.05 * slip_time(1.0, 0.2, 0.5, 9.81)
     return float(np.max(np.abs(run.v[rolling, 0] + 0.3 * run.v[rolling, 2])))
 
 
-@check("sliding-block", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+@check("sliding-block", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
 def block(solve: Solver) -> float:
     return state_error(solve, scenes.sliding_block())
 
 
-@check("sliding-block", "stops exactly", period=0.5, moreau=0.0, event_driven=0.0)
+@check("sliding-block", "stops exactly", period=0.5, moreau=0.0, event_driven=0.0, located=0.0)
 def block_stops(solve: Solver) -> float:
     return float(np.max(np.abs(solve(scenes.sliding_block()).v[-1])))
 
 
-@check("slope-landing", "states: slides, then stops", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "slope-landing",
+    "states: slides, then stops",
+    period=0.5,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def lands(solve: Solver) -> float:
     return state_error(solve, scenes.slope_landing())
 
 
-@check("slope-landing", "states: sticks as it lands", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "slope-landing",
+    "states: sticks as it lands",
+    period=0.5,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def lands_and_sticks(solve: Solver) -> float:
     return state_error(solve, scenes.slope_landing(mu=2.5))
 
 
-@check("slope-landing", "states: slides for ever", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "slope-landing",
+    "states: slides for ever",
+    period=0.5,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def lands_and_slides(solve: Solver) -> float:
     return state_error(solve, scenes.slope_landing(mu=0.2))
 
@@ -81,19 +117,27 @@ def _kane(solve: Solver, scene: Scene) -> tuple[float, float]:
     return float(np.max(np.abs(v - after_impact(scene)))), gained
 
 
-@check("kane-pendulum", "velocities after the impact, Newton and Coulomb", moreau=1e-6, event_driven=1e-6)
+@check(
+    "kane-pendulum",
+    "velocities after the impact, Newton and Coulomb",
+    moreau=1e-6,
+    event_driven=1e-6,
+    located=1e-6,
+)
 def kane_newton(solve: Solver) -> Found:
     error, gained = _kane(solve, scenes.kane_pendulum(law="newton"))
     return Found(error, f"energy {100.0 * gained:+.2f} %, as this law has it")
 
 
-@check("kane-pendulum", "velocities after the impact, Moreau's law", moreau=1e-6, event_driven=1e-6)
+@check(
+    "kane-pendulum", "velocities after the impact, Moreau's law", moreau=1e-6, event_driven=1e-6, located=1e-6
+)
 def kane_moreau(solve: Solver) -> Found:
     error, gained = _kane(solve, scenes.kane_pendulum())
     return Found(error, f"energy {100.0 * gained:+.2f} %")
 
 
-@check("kane-pendulum", "energy gained under the default law", moreau=0.0, event_driven=0.0)
+@check("kane-pendulum", "energy gained under the default law", moreau=0.0, event_driven=0.0, located=0.0)
 def kane_energy(solve: Solver) -> float:
     return max(0.0, _kane(solve, scenes.kane_pendulum())[1])
 
@@ -104,6 +148,7 @@ def kane_energy(solve: Solver) -> float:
     period=0.146,
     moreau=1e-12,
     event_driven=1e-11,
+    located=1e-12,
 )
 def woodpecker(solve: Solver) -> Found:
     run = solve(scenes.woodpecker())
@@ -115,13 +160,19 @@ def woodpecker(solve: Solver) -> Found:
     return Found(lost, f"last pecks {pecks[-1] - pecks[-2]:.9f} s apart")
 
 
-@check("woodpecker", "height, against half the step or tolerance", period=0.146, moreau=FIRST_ORDER)
+@check(
+    "woodpecker",
+    "height, against half the step or tolerance",
+    period=0.146,
+    moreau=FIRST_ORDER,
+    located=SECOND_ORDER,
+)
 def woodpecker_height(solve: Solver) -> float:
     coarse, fine = (solve(scenes.woodpecker(), h=h) for h in (solve.h, 0.5 * solve.h))
     return abs(float(coarse.q[-1, 0] - fine.q[-1, 0]))
 
 
-@check("falling-rod", "states", period=1.0, moreau=FIRST_ORDER, event_driven=1e-10)
+@check("falling-rod", "states", period=1.0, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
 def rod(solve: Solver) -> float:
     scene = scenes.falling_rod(t_end=0.15)
     run = solve(scene)

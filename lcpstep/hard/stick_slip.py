@@ -11,7 +11,7 @@ from lagrangian import Scene, scenes
 from lagrangian.scenes.belts import shaken_arc
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
 from lcpstep.hard.work import unbalanced
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -23,47 +23,82 @@ def times(run: Trajectory, kind: Kind, contact: int = 0) -> Any:
     return run.impacts.time[(run.impacts.kind == kind) & (run.impacts.contact == contact)]
 
 
-@check("coulomb-oscillator", "stops at its place", period=TURN, moreau=FIRST_ORDER, event_driven=1e-12)
+@check(
+    "coulomb-oscillator",
+    "stops at its place",
+    period=TURN,
+    moreau=FIRST_ORDER,
+    event_driven=1e-12,
+    located=SECOND_ORDER,
+)
 def stops_at_its_place(solve: Solver) -> float:
     return abs(float(solve(scenes.coulomb_oscillator()).q[-1, 0]) + 0.05)
 
 
-@check("coulomb-oscillator", "times of turning and stopping", period=TURN, event_driven=1e-11)
+@check(
+    "coulomb-oscillator",
+    "times of turning and stopping",
+    period=TURN,
+    event_driven=1e-11,
+    located=SECOND_ORDER,
+)
 def turns(solve: Solver) -> float:
     run = solve(scenes.coulomb_oscillator())
     found = np.append(times(run, Kind.REVERSE), times(run, Kind.STICK_TANGENT))
     return float(np.max(np.abs(found - math.pi * np.arange(1, 6)))) if len(found) == 5 else math.inf
 
 
-@check("slipping-wheel", "time at which it begins to roll", period=0.5, event_driven=1e-12)
+@check("slipping-wheel", "time at which it begins to roll", period=0.5, event_driven=1e-12, located=1e-12)
 def begins_to_roll(solve: Solver) -> float:
     found = times(solve(scenes.slipping_wheel()), Kind.STICK_TANGENT)
     return abs(float(found[0]) - slip_time(1.0, 0.2, 0.5, 9.81)) if len(found) == 1 else math.inf
 
 
-@check("mass-on-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10)
+@check("mass-on-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
 def belt(solve: Solver) -> float:
     return state_error(solve, scenes.mass_on_belt())
 
 
-@check("mass-on-belt", "states, from far off", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "mass-on-belt",
+    "states, from far off",
+    period=TURN,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def belt_from_afar(solve: Solver) -> float:
     return state_error(solve, scenes.mass_on_belt(belt=0.5, mu=0.1, x0=-2.5, v0=0.9))
 
 
-@check("mass-on-belt", "velocity while it is carried", period=TURN, moreau=1e-12, event_driven=1e-12)
+@check(
+    "mass-on-belt",
+    "velocity while it is carried",
+    period=TURN,
+    moreau=1e-12,
+    event_driven=1e-12,
+    located=1e-12,
+)
 def carried(solve: Solver) -> float:
     scene = scenes.mass_on_belt()
     run = solve(scene, keep=np.linspace(0.5, 3.0, 50))  # carried from 0.25 s to 3.2 s
     return float(np.max(np.abs(run.v[:, 0] - 0.2)))
 
 
-@check("mass-on-shaken-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "mass-on-shaken-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER
+)
 def shaken(solve: Solver) -> float:
     return state_error(solve, scenes.mass_on_shaken_belt())
 
 
-@check("mass-on-shaken-belt", "times of turning, over 20 periods", period=TURN / 1.5, event_driven=1e-10)
+@check(
+    "mass-on-shaken-belt",
+    "times of turning, over 20 periods",
+    period=TURN / 1.5,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def shaken_turns(solve: Solver) -> float:
     half = math.pi / 1.5
     found = times(solve(scenes.mass_on_shaken_belt(t_end=40.5 * half)), Kind.REVERSE)
@@ -80,24 +115,42 @@ def shaken_amplitude(solve: Solver) -> float:
     return float(np.max(np.abs(run.q[:, 0] - float(x(np.array([t]))[0]))))
 
 
-@check("superball", "states", period=0.64, moreau=FIRST_ORDER, event_driven=1e-10)
+@check("superball", "states", period=0.64, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
 def superball(solve: Solver) -> float:
     return state_error(solve, scenes.superball())
 
 
-@check("superball", "states, to and fro over one place", period=0.64, moreau=FIRST_ORDER, event_driven=1e-10)
+@check(
+    "superball",
+    "states, to and fro over one place",
+    period=0.64,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def to_and_fro(solve: Solver) -> float:
     return state_error(solve, scenes.superball(spin=1.0 / (0.4 * 0.03)))
 
 
 @check(
-    "superball", "states, sliding through its impacts", period=0.64, moreau=FIRST_ORDER, event_driven=1e-10
+    "superball",
+    "states, sliding through its impacts",
+    period=0.64,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
 )
 def slides_through(solve: Solver) -> float:
     return state_error(solve, scenes.superball(v0=3.0, mu=0.1))
 
 
-@check("sliding-rocking-block", "states as its corner stops", period=1.0, event_driven=1e-10)
+@check(
+    "sliding-rocking-block",
+    "states as its corner stops",
+    period=1.0,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 def rocks_and_slides(solve: Solver) -> float:
     scene = scenes.sliding_rocking_block(t_end=0.1)
     found = times(solve(scene), Kind.STICK_TANGENT)
@@ -136,6 +189,7 @@ def sliding_end(scene: Scene) -> float:
     period=1.0,
     moreau=1e-12,
     event_driven=1e-10,
+    located=1e-12,
 )
 def momentum(solve: Solver) -> Found:
     run = solve(scenes.sliding_rocking_block())

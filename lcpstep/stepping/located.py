@@ -30,7 +30,8 @@ class Located:
         contacts; a moving obstacle or frame with one coordinate only.
     max_events : bound on the number of events of a run, which ends with the status TOO_MANY_EVENTS there
     max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
-        which loses energy that elastic contacts would keep; the run's message says how many steps that were
+        which loses energy that elastic contacts would keep; the run's message says how many steps that were. Not
+        with friction, where steps hold any number of events
 
     tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
         tolerance * (1 + size of the motion) over the span, in the scene's units. A tolerance that cannot be met ends
@@ -41,8 +42,9 @@ class Located:
     Raises
     ------
     ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
-    LcpStepError   when it runs: the scene has friction (with any order), joints (with order 4, "exact", or a
-        tolerance), or, with order "exact", not the linear motion under constant and harmonic forces that it takes
+    LcpStepError   when it runs: the scene has friction (with order "exact"), joints without friction
+        (with order 4, "exact", or a tolerance), or, with order "exact", not the linear motion under constant and
+        harmonic forces that it takes
 
     Notes
     -----
@@ -50,7 +52,11 @@ class Located:
     chattering, sticking and release. Contacts that fire together obey Moreau's law for simultaneous impacts, all
     others are struck one after another. Linear systems take the trapezoidal rule and are stable for every h, others
     velocity Verlet, which needs h below 2 / (highest frequency). Scenes with joints (order 2, fixed steps) take
-    velocity Verlet too; every step ends on the joints. Sources: J. J. Moreau (1988), V. Acary and
+    velocity Verlet too; every step ends on the joints.
+
+    With planar friction (`Coulomb`) steps are velocity Verlet's or, of order 4, those of Runge-Kutta's classical
+    method, along the modes of the contacts, which may be beside joints (`lcpstep.stepping.rubbing`). Slips, sticks
+    and reversals have their own times, as impacts have. Sources: J. J. Moreau (1988), V. Acary and
     B. Brogliato (2008) for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts
     and the joints.
     """
@@ -96,9 +102,8 @@ class Located:
         """The motion of a scene with friction."""
         from lcpstep.model import require
 
-        if self.order == "exact" or self.tolerance is not None:
-            variant = "a tolerance" if self.tolerance is not None else "order='exact'"
-            require(scene, f"Located with {variant}", joints=True, friction=False)
+        if self.order == "exact":
+            require(scene, "Located with order='exact'", joints=True, friction=False)
         from lcpstep.stepping.rubbing.run import RubbingRun
 
         return RubbingRun(self, scene, kept).finish(progress)

@@ -9,6 +9,7 @@ from lcpstep.accuracy.contest import contest
 from lcpstep.plot.contest import contests
 
 METHODS = [Moreau(2e-3), Located(2e-3), Located(2e-3, order=4), EventDriven()]
+EXACT = Located(2e-3, order="exact")  # refuses friction
 
 
 def test_errors_are_those_of_the_exact_motion_and_fall_with_the_step():
@@ -35,11 +36,11 @@ def test_without_a_closed_form_the_reference_is_a_tighter_run():
 
 
 def test_what_is_refused_says_why_and_what_nothing_treats_is_an_error():
-    found = contest(scenes.coulomb_oscillator(t_end=3.0), METHODS)
-    assert [bool(x.reason) for x in found.entrants] == [False, True, True, False]
-    assert "friction" in found.entrants[1].reason
+    found = contest(scenes.coulomb_oscillator(t_end=3.0), [*METHODS, EXACT])
+    assert [bool(x.reason) for x in found.entrants] == [False, False, False, False, True]
+    assert "friction" in found.entrants[-1].reason
     with pytest.raises(LcpStepError, match="no method treats 'coulomb-oscillator'"):
-        contest(scenes.coulomb_oscillator(t_end=3.0), METHODS[1:3])
+        contest(scenes.coulomb_oscillator(t_end=3.0), [EXACT])
 
 
 def test_steps_that_are_too_long_for_the_motion_are_left_out():
@@ -52,12 +53,12 @@ def test_steps_that_are_too_long_for_the_motion_are_left_out():
 
 def test_a_picture_of_scenes_with_refusals():
     found = [
-        contest(scene, METHODS)
+        contest(scene, [*METHODS, EXACT])
         for scene in (scenes.coulomb_oscillator(t_end=1.0), scenes.bouncing_ball(t_end=1.0))
     ]
     figure = contests(found, ["one", "two"])
     assert [len(ax.get_lines()) > 1 for ax in figure.axes] == [True, True, True, True, True, True]
     (legend,) = figure.legends
     assert {x.get_text() for x in legend.get_texts()} == {
-        "reference", "Moreau", "Located, order 2", "Located, order 4", "EventDriven",
+        "reference", "Moreau", "Located, order 2", "Located, order 4", "EventDriven", "Located, order exact",
     }  # fmt: skip

@@ -18,11 +18,13 @@ cdef bint hold_again(Rubbing s) noexcept nogil
 cdef void solve_held(Rubbing s, double* x) noexcept nogil
 cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
 cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
+cdef bint nothing(double* x, Py_ssize_t n) noexcept nogil
 cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
 @cython.locals(zero=bint)
 cdef bint is_on_rows(Rubbing s) noexcept nogil
 cdef bint take_rows(Rubbing s, double t) noexcept nogil
 cdef void push_by_change(Rubbing s, double* x) noexcept nogil
-cdef void project(Rubbing s, double t) noexcept nogil
+cdef bint project(Rubbing s, double t) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
+cdef void count_impulses(Rubbing s, double* x) noexcept nogil

@@ -139,10 +139,20 @@ def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
         for m in range(s.n_held):
             i = s.held[m]
             s.change[m] = -bias[i] - product(s.R, a, i, s.n_q)
+        if nothing(s.change, s.n_held):
+            break
         solve_held(s, s.change)
         for m in range(s.n_held):
             s.x[m] += s.change[m]
             push(s, s.held[m], s.change[m], a)
+
+
+def nothing(x: Doubles, n: int) -> bool:
+    """Whether all entries are exactly zero."""
+    total = 0.0
+    for i in range(n):
+        total += abs(x[i])
+    return total == 0.0
 
 
 def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
@@ -170,8 +180,11 @@ def list_multipliers(s: Rubbing) -> None:
             s.multiplier[i + s.n_c] = s.multiplier[i + s.n_c] + share * s.x[m]
 
 
-def project(s: Rubbing, t: float) -> None:
-    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero."""
+def project(s: Rubbing, t: float) -> bool:
+    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero.
+
+    The impulses that take the velocities are left in `change`; False where rows have become dependent.
+    """
     for _ in range(2):
         measure_gaps(s, t, s.y)
         if is_on_rows(s) or not take_rows(s, t):
@@ -181,11 +194,12 @@ def project(s: Rubbing, t: float) -> None:
             s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
         push_by_change(s, s.q)
     if not take_rows(s, t):
-        return
+        return False
     for m in range(s.n_held):
         i = s.held[m]
         s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
     push_by_change(s, s.v)
+    return True
 
 
 def is_on_rows(s: Rubbing) -> bool:
@@ -211,6 +225,8 @@ def take_rows(s: Rubbing, t: float) -> bool:
 
 def push_by_change(s: Rubbing, x: Doubles) -> None:
     """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
+    if nothing(s.change, s.n_held):
+        return
     solve_held(s, s.change)
     for m in range(s.n_held):
         push(s, s.held[m], s.change[m], x)
@@ -221,9 +237,14 @@ def stop_rows(s: Rubbing) -> None:
     copy(s.dv, s.v, s.n_q)
     constrain(s, s.dv, s.rate)
     copy(s.v, s.dv, s.n_q)
+    count_impulses(s, s.x)
+
+
+def count_impulses(s: Rubbing, x: Doubles) -> None:
+    """Count impulses of the rows held, with the friction of those that slide."""
     for m in range(s.n_held):
         i = s.held[m]
-        add_impulse(s, i, s.x[m])
+        add_impulse(s, i, x[m])
         share = pull(s, i)
         if share != 0.0:
-            add_impulse(s, i + s.n_c, share * s.x[m])
+            add_impulse(s, i + s.n_c, share * x[m])

@@ -6,7 +6,7 @@ from lcpstep.events.friction.state cimport GUARDS, NOISE
 from lcpstep.events.hybrid.roots cimport DEGREE, NONE, taylor
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, min
+from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t OPEN, SLIDES, SECANTS
@@ -14,12 +14,16 @@ cdef double NOWHERE
 
 cdef bint note_base(Strides s, double t) noexcept nogil
 cdef void widen_bands(Strides s) noexcept nogil
+@cython.locals(size=double)
+cdef double pushed(Strides s, Py_ssize_t i) noexcept nogil
 cdef bint note(Strides s, double t, double* y, double* dy, double* value, double* slope) noexcept nogil
 cdef bint read_guards(Strides s, double t, double* y) noexcept nogil
 cdef bint note_arrival(Strides s, double t, double h) noexcept nogil
+cdef void note_middle(Strides s, double t, double h, double* value) noexcept nogil
 @cython.locals(least=double, place=double)
 cdef Py_ssize_t first_event(Strides s, double h) noexcept nogil
 cdef void arm(Strides s) noexcept nogil
+cdef bint is_motion(Strides s, Py_ssize_t g) noexcept nogil
 @cython.locals(moves=bint)
 cdef double curve(Strides s, Py_ssize_t g, double h) noexcept nogil
 cdef void elevate(Strides s) noexcept nogil

@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, min
+    from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.rubbing.strides import Strides
 
 SECANTS = 60
@@ -41,14 +41,29 @@ def note_base(s: Strides, t: float) -> bool:
 
 
 def widen_bands(s: Strides) -> None:
-    """Sliding velocities that rounding of the forces makes within a step have no sign: slip begins with none."""
+    """Gaps and sliding velocities that rounding of the forces makes within a step have no sign.
+
+    A contact that opens, or begins to slide, does so with none, for its force has come to zero or to the edge of its
+    cone.
+    """
     for c in range(s.n_c):
-        if s.mode[c] == SLIDES:
-            i, g, size = s.n_j + s.n_c + c, GUARDS * c + 1, 0.0
-            for j in range(s.n_q):
-                size += abs(s.R[i * s.n_q + j] * s.a_free[j])
-            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * size)
-            s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+        g, i = GUARDS * c, s.n_j + c
+        if s.mode[c] == OPEN:
+            s.band[g] = max(s.band[g], s.h * NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i)))
+        elif s.mode[c] == SLIDES:
+            g, i = g + 1, i + s.n_c
+            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i))
+        else:
+            continue
+        s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+
+
+def pushed(s: Strides, i: int) -> float:
+    """Size of the terms of the acceleration of row i without contact forces, their signs left aside."""
+    size = abs(s.bias[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * s.a_free[j])
+    return size
 
 
 def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
@@ -78,11 +93,16 @@ def note_arrival(s: Strides, t: float, h: float) -> bool:
     """Guards at the end of the step just made, and of the forces between with order four."""
     if not note(s, t + h, s.y_new, s.arrival, s.end_value, s.end_slope):
         return False
+    note_middle(s, t, h, s.middle_value)
+    return True
+
+
+def note_middle(s: Strides, t: float, h: float, value: Doubles) -> None:
+    """With order four, guards of the forces between the ends of the step just made."""
     if s.order == 4 and s.n_held > 0:
         copy(s.multiplier, s.middle, s.n_r)
         read(s, t + 0.5 * h, s.y_stage)
-        copy(s.middle_value, s.value, GUARDS * s.n_c)
-    return True
+        copy(value, s.value, GUARDS * s.n_c)
 
 
 def first_event(s: Strides, h: float) -> int:
@@ -108,13 +128,18 @@ def arm(s: Strides) -> None:
             s.armed[g] = 1
 
 
+def is_motion(s: Strides, g: int) -> bool:
+    """Whether guard g is a gap or a sliding velocity, rather than one of forces."""
+    c = g // GUARDS
+    if g % GUARDS == 0:
+        return s.mode[c] == OPEN
+    return s.mode[c] == SLIDES and g % GUARDS == 1 and s.coefficients.rough[c] == 1
+
+
 def curve(s: Strides, g: int, h: float) -> float:
     """Bernstein coefficients of guard g over the step, of degree three; the least of them."""
-    b, c = s.scan.c, g // GUARDS
+    b, moves = s.scan.c, is_motion(s, g)
     b[0], b[3] = s.begin_value[g], s.end_value[g]
-    moves = (
-        s.mode[c] == OPEN if g % GUARDS == 0 else s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
-    )
     if moves and s.order == 4:
         b[1] = b[0] + h * s.begin_slope[g] / 3.0
         b[2] = b[3] - h * s.end_slope[g] / 3.0

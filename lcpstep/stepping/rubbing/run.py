@@ -8,8 +8,10 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.events.friction.run import FrictionRun, start
+from lcpstep.stepping.adaptive import FIRST, too_small
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
+from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -20,7 +22,7 @@ ROUNDING = (
 
 
 class RubbingRun(FrictionRun):
-    """A run by steps of one size, the last one shortened where they do not divide the span."""
+    """A run by steps of one size, the last one shortened where they do not divide the span, or by a tolerance."""
 
     method: Located
 
@@ -30,11 +32,26 @@ class RubbingRun(FrictionRun):
         h, n = parts[0][0], parts[-1][3]
         order = int(method.order)
         system: RubbingSteps = start(
-            scene, RubbingSteps, ROUNDING, ROUNDING, order, h, float(scene.t_span[0]), n
+            scene,
+            RubbingSteps,
+            ROUNDING,
+            ROUNDING,
+            order,
+            h,
+            float(scene.t_span[0]),
+            n,
+            method.tolerance or 0.0,
         )
+        system.next_step = FIRST * (scene.t_span[1] - scene.t_span[0])
         return system
 
     @property
     def ahead(self) -> np.ndarray:
         """Times at which a callback may be what has failed [s]."""
         return np.linspace(self.now, min(self.now + self.method.h, self.scene.t_span[1]), len(super().ahead))
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.STEP_TOO_SMALL:
+            return too_small(self.method, self.scene, self.now, *self.state, self.where)
+        return super().why(code)

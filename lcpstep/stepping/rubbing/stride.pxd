@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport measure
-from lcpstep.events.friction.held cimport hold_modes, project
+from lcpstep.events.friction.held cimport count_impulses, hold_modes, project
 from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
 from lcpstep.events.friction.modes cimport decide
 from lcpstep.events.friction.state cimport GUARDS
@@ -10,6 +10,7 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport min
 from lcpstep.stepping.rubbing.found cimport NOWHERE, arm, first_event, locate, note_arrival, note_base
+from lcpstep.stepping.rubbing.paced cimport pace
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
@@ -17,6 +18,7 @@ cdef double LOOK_AHEAD, FURTHER
 
 @cython.locals(by_force=bint)
 cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil
 cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil

@@ -9,7 +9,7 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.held import count_impulses, hold_modes, project
     from lcpstep.events.friction.keep import keep, keep_event, store_dense
     from lcpstep.events.friction.modes import decide
     from lcpstep.events.friction.state import GUARDS
@@ -19,6 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import min
     from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
+    from lcpstep.stepping.rubbing.paced import pace
     from lcpstep.stepping.rubbing.strides import Strides
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
@@ -38,8 +39,12 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     if not s.going and not note_base(s, t0):
         return failed(s)
     s.going = False
-    if not s.step(t0, h) or not note_arrival(s, t0, h):
-        return failed(s)
+    code = attempt(s, t0, h)
+    if code != DONE:
+        return code
+    if s.length < h:
+        h = s.length
+        goal = border = s.clock.after(h)
     g = first_event(s, h)
     if g < 0:
         arm(s)
@@ -69,6 +74,14 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     else:
         stop(s, c)
     return DONE
+
+
+def attempt(s: Strides, t: float, h: float) -> int:
+    """A step from t of size h, or shorter where a tolerance asks for it, and guards where it ends; a status."""
+    if s.tolerance > 0.0:
+        return pace(s, t, h)
+    s.length = h
+    return DONE if s.step(t, h) and note_arrival(s, t, h) else failed(s)
 
 
 def failed(s: Strides) -> int:
@@ -107,15 +120,18 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
-    if tau > 0.0 and s.n_held > 0:
-        project(s, t)
+    if tau > 0.0 and s.n_held > 0 and project(s, t):
+        count_impulses(s, s.change)
     while record.wants(t, t >= s.t_end):  # the end of the span
         keep(s, record, record.times[record.next_time], s.y)
         record.next_time += 1
 
 
 def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
-    """Keep the states asked for before the end t of the step, and its dense output; where impulses are summed to."""
+    """Keep the states asked for before the end t of the step, and its dense output.
+
+    Returned: up to which fraction of the step impulses have been kept.
+    """
     pressed = 0.0
     s.length = tau
     if record.dense_size > 0 or record.wants(t, False):

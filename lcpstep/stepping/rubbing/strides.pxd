@@ -12,7 +12,7 @@ cdef Py_ssize_t ARRIVAL
 cdef class Strides(Smooth):
     cdef object ends
     cdef Py_ssize_t order, n_steps
-    cdef double h, t_start
+    cdef double h, t_start, tolerance, span, size_q, size_v
     cdef bint going
     cdef double* leaving
     cdef double* arriving
@@ -23,6 +23,13 @@ cdef class Strides(Smooth):
     cdef double* end_value
     cdef double* end_slope
     cdef double* middle_value
+    cdef double* half_value
+    cdef double* quarter_value
+    cdef double* late_value
+    cdef double* refined
+    cdef double* stored
+    cdef double* stored_rates
+    cdef double* stored_forces
     cdef double* arrival
     cdef bint step(self, double t, double h) noexcept nogil
     cdef bint complete(self, double t, double h) noexcept nogil

@@ -32,26 +32,32 @@ class Strides(Smooth):
     """A motion with friction by steps of one size.
 
     order                2 or 4
-    h, t_start, n_steps  steps: their size, when the first begins, how many there are
+    h, t_start, n_steps  steps: their size, or the largest, when the first begins, how many there are of one size
+    tolerance, span      0 for steps of one size; of time
+    size_q, size_v       of the motion so far, where there is a tolerance
     going                whether rates, forces, guards and their slopes at the base state are known
     leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
     push : (n_r,)                         their impulses over it
     begin_value, begin_slope, end_value, end_slope, middle_value : (3 n_c,)    guards there, and their rates of change
     arrival : (n,)       rates at the end of the step last made
+    refined : (n,);  half_value, quarter_value, late_value : (3 n_c,)    where two steps of half the size lead, guards
+                         between them, and those of the forces within each (order 4)
+    stored, stored_rates : (n,);  stored_forces : (n_r,)    the base state, its rates and forces meanwhile
 
     Parameters
     ----------
     given    as of `Rubbing`
-    order, h, t_start, n_steps   as above
+    order, h, t_start, n_steps, tolerance   as above
     """
 
     def __init__(self, *given: Any) -> None:
-        super().__init__(*given[:-4])
-        self.order, self.h, self.t_start, self.n_steps = given[-4:]
-        self.going = False
+        super().__init__(*given[:-5])
+        self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
+        self.going, self.span = False, self.t_end - self.t_start
+        self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
-        self.ends = np.zeros(4 * self.n_r + 5 * g)
+        self.ends = np.zeros(5 * self.n_r + 8 * g + 3 * self.n)
         self.leaving = doubles(self.ends)
         self.arriving = after(self.leaving, self.n_r)
         self.middle = after(self.leaving, 2 * self.n_r)
@@ -61,6 +67,13 @@ class Strides(Smooth):
         self.end_value = after(self.begin_value, 2 * g)
         self.end_slope = after(self.begin_value, 3 * g)
         self.middle_value = after(self.begin_value, 4 * g)
+        self.half_value = after(self.begin_value, 5 * g)
+        self.quarter_value = after(self.begin_value, 6 * g)
+        self.late_value = after(self.begin_value, 7 * g)
+        self.refined = after(self.begin_value, 8 * g)
+        self.stored = after(self.refined, self.n)
+        self.stored_rates = after(self.refined, 2 * self.n)
+        self.stored_forces = after(self.refined, 3 * self.n)
 
     def step(self, t: float, h: float) -> bool:
         """A step of size h from y at t to y_new; False where it is not finite, or rows cannot be held."""
@@ -85,7 +98,9 @@ class Strides(Smooth):
         return x * (all_ + (1.0 - x) * (out + x * in_))
 
     def goal(self, steps: int) -> float:
-        """The time at which the step after so many ends."""
+        """The time at which the step after so many ends, at the latest."""
+        if self.tolerance > 0.0:
+            return min(self.clock.t0 + min(self.h, self.scan_length), self.t_end)
         if steps + 1 >= self.n_steps:
             return self.t_end
         return min(self.t_start + self.h * (steps + 1), self.t_end)

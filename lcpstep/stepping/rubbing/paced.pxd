@@ -1,0 +1,23 @@
+cimport cython
+from libc.math cimport pow
+from lcpstep.events.friction.state cimport GUARDS
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport copy, distance, largest
+from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.stepping.rubbing.found cimport curve, is_motion, note_arrival, note_middle, read_guards
+from lcpstep.stepping.rubbing.strides cimport Strides
+
+cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+cdef double ROUNDING, SAFETY, LEAST, MOST, LEAST_SHARE, FLAT, NEAR
+
+@cython.locals(truncated=bint, error=double, share=double, allowed=double)
+cdef Py_ssize_t pace(Strides s, double t, double longest) noexcept nogil
+cdef Py_ssize_t why(Strides s, double error) noexcept nogil
+cdef double change(Strides s, double allowed, double error) noexcept nogil
+cdef double speed(Strides s) noexcept nogil
+@cython.locals(good=bint)
+cdef bint halves(Strides s, double t, double h) noexcept nogil
+@cython.locals(least=double, off=double, error=double)
+cdef double weigh(Strides s, double h) noexcept nogil
+cdef double strayed(Strides s, Py_ssize_t g) noexcept nogil
+cdef double value_at(Strides s, double x) noexcept nogil

@@ -1,0 +1,137 @@
+"""Steps with friction chosen by a tolerance, as kernels: one step of h is compared with two of h/2.
+
+A step is taken where its error, relative to 1 + the size of the motion, is no more than its share h / span of the
+tolerance, as by `step_control`: errors of the whole motion are proportional to it, up to what the motion itself
+magnifies. It ends at its first event, which is located on the motion taken; what comes after is compared anew. Gaps,
+sliding velocities and forces that may have come to zero unseen within the step count by how far half the step finds
+them from their polynomials. Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I
+(Springer 1993), section II.4.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+
+if not cython.compiled:
+    from math import pow
+
+    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy, distance, largest
+    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.stepping.rubbing.found import curve, is_motion, note_arrival, note_middle, read_guards
+    from lcpstep.stepping.rubbing.strides import Strides
+
+ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
+SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
+LEAST_SHARE = 1e-3  # of the tolerance, in steps within which a force jumps
+FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
+NEAR = 3.0  # errors of a guard: from where on it may have acted
+
+
+def pace(s: Strides, t: float, longest: float) -> int:
+    """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status."""
+    h, before = min(s.next_step, longest), inf
+    truncated = h < s.next_step
+    while True:
+        s.culprit = -1
+        error = inf
+        if halves(s, t, h) and s.step(t, h) and note_arrival(s, t, h):
+            error = weigh(s, h)
+        share = h / s.span
+        if FLAT * error > before and error < inf:
+            share = max(share, LEAST_SHARE)
+        allowed = share * s.tolerance
+        if error <= allowed:
+            break
+        if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDING:
+            return why(s, error)
+        h *= 0.5 if before == inf else change(s, allowed, error)
+        before, truncated = error, False
+    s.next_step = max(h * max(change(s, allowed, error), 1.0), s.next_step if truncated else 0.0)
+    s.size_q = largest(s.y_new, s.size_q, s.n_q)
+    s.size_v = max(s.size_v, speed(s))
+    s.length = h
+    return DONE
+
+
+def why(s: Strides, error: float) -> int:
+    """Why no step was short enough."""
+    if s.culprit >= 0:
+        return PAINLEVE_INCONSISTENT
+    return STEP_TOO_SMALL if error < inf else NOT_FINITE
+
+
+def change(s: Strides, allowed: float, error: float) -> float:
+    """By how much to change the step after an error of this size."""
+    if error <= 0.0:
+        return MOST
+    return min(MOST, max(LEAST, SAFETY * pow(allowed / error, 1.0 / s.order)))
+
+
+def speed(s: Strides) -> float:
+    """The largest velocity at the end of the step."""
+    most = 0.0
+    for i in range(s.n_q, s.n):
+        most = max(most, abs(s.y_new[i]))
+    return most
+
+
+def halves(s: Strides, t: float, h: float) -> bool:
+    """Two steps of half the size, to `refined`, guards between them into `half_value`; False where they fail."""
+    n, half = s.n, 0.5 * h
+    if not (s.step(t, half) and read_guards(s, t + half, s.y_new)):
+        return False
+    copy(s.half_value, s.value, GUARDS * s.n_c)
+    note_middle(s, t, half, s.quarter_value)
+    copy(s.stored, s.y, n)
+    copy(s.stored_rates, s.K, n)
+    copy(s.stored_forces, s.leaving, s.n_r)
+    copy(s.y, s.y_new, n)
+    copy(s.K, s.arrival, n)
+    copy(s.leaving, s.arriving, s.n_r)
+    good = s.step(t + half, half)
+    if good:
+        note_middle(s, t + half, half, s.late_value)
+    copy(s.refined, s.y_new, n)
+    copy(s.y, s.stored, n)
+    copy(s.K, s.stored_rates, n)
+    copy(s.leaving, s.stored_forces, s.n_r)
+    return good
+
+
+def weigh(s: Strides, h: float) -> float:
+    """The error of the step, relative to the motion; of what may have happened unseen in it, too."""
+    wrong_q, wrong_v = distance(s.y_new, s.refined, s.n_q), 0.0
+    for i in range(s.n_q, s.n):
+        wrong_v = max(wrong_v, abs(s.y_new[i] - s.refined[i]))
+    for g in range(GUARDS * s.n_c):
+        least, off = curve(s, g, h), strayed(s, g)
+        if least > NEAR * off or s.begin_value[g] <= s.band[g]:
+            continue
+        if not is_motion(s, g):
+            i = s.n_j + g // GUARDS
+            wrong_v = max(wrong_v, off * h * s.W[i * s.n_r + i])
+        elif g % GUARDS == 0:
+            wrong_q = max(wrong_q, off)
+        else:
+            wrong_v = max(wrong_v, off)
+    size_q, size_v = largest(s.y_new, s.size_q, s.n_q), max(s.size_v, speed(s))
+    error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v))
+    return error - min(ROUNDING, LEAST_SHARE * s.tolerance)
+
+
+def strayed(s: Strides, g: int) -> float:
+    """How far guard g, whose polynomial is at hand, is from it where that was not made from it."""
+    if s.order == 4 and s.n_held > 0 and not is_motion(s, g):
+        early = abs(value_at(s, 0.25) - s.quarter_value[g])
+        return max(early, abs(value_at(s, 0.75) - s.late_value[g]))
+    return abs(value_at(s, 0.5) - s.half_value[g])
+
+
+def value_at(s: Strides, x: float) -> float:
+    """The polynomial at hand, of degree three, at the fraction x of the step."""
+    b, y = s.scan.c, 1.0 - x
+    return y * y * (y * b[0] + 3.0 * x * b[1]) + x * x * (3.0 * y * b[2] + x * b[3])
