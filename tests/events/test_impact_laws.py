@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.kane_pendulum import kinetic_energy
-from lcpstep import EventDriven, Kind, Moreau, Status, energy, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, energy, simulate
 from tests.uncompiled import both_ways
 
 G0 = 9.81
@@ -176,6 +176,16 @@ def slider(law, r):
 
 def total(scene, q, v):
     return 0.5 * v @ scene.system.M @ v + G0 * q[1]
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("law", ["moreau", "newton", "stronge"])
+def test_located_steps_have_the_same_impacts(law, order):
+    scene = slider(law, 0.5)
+    exact, steps = (
+        simulate(scene, method, keep=[0.4]) for method in (EventDriven(), Located(5e-3, order=order))
+    )
+    assert np.max(np.abs(steps.q[-1] - exact.q[-1])) < 1e-9
 
 
 @pytest.mark.parametrize("r", [0.0, 0.5])
