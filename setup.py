@@ -6,6 +6,7 @@ python setup.py build_ext --inplace     after a change: compiles what it concern
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import os
 import platform
 import shutil
@@ -46,12 +47,13 @@ NO_COMPILER = (
 
 
 class Build(build_ext):
-    """Compile, several files at a time."""
+    """Compile, several files at a time, and say how far that is; what lies built beside its source is taken over."""
 
     def initialize_options(self) -> None:
         """Use the processors there are."""
         super().initialize_options()
         self.parallel = os.cpu_count()
+        self.begun = itertools.count(1)
 
     def run(self) -> None:
         """Compile everything, by the compiler of PyPI's ziglang where there is no other."""
@@ -60,6 +62,23 @@ class Build(build_ext):
                 sys.exit(NO_COMPILER)
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
         super().run()
+
+    def build_extension(self, ext: Extension) -> None:
+        """Compile one module, or copy it where it was built since its sources changed, by this interpreter."""
+        there = HERE / self.get_ext_filename(ext.name)
+        sources = [Path(file) for file in (*ext.sources, *ext.depends)]
+        if not self.force and there.exists() and there.stat().st_mtime > max(map(modified, sources)):
+            target = Path(self.get_ext_fullpath(ext.name))
+            target.parent.mkdir(parents=True, exist_ok=True)
+            self.copy_file(str(there), str(target))
+            return
+        print(f"[{next(self.begun)}/{len(self.extensions)}] Compiling {ext.name}", flush=True)
+        super().build_extension(ext)
+
+
+def modified(file: Path) -> float:
+    """When it was written."""
+    return file.stat().st_mtime
 
 
 def has_compiler() -> bool:

@@ -14,11 +14,13 @@ import tempfile
 import urllib.parse
 import urllib.request
 import venv
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
+LAST = 60  # lines of pip's that are shown where it fails
 CHECKS = (
     ["ruff", "check", "."],
     ["ruff", "format", "--check", "."],
@@ -55,7 +57,7 @@ def set_up() -> None:
         print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
-    install("--quiet", "--editable", ".")
+    install("--editable", ".")
     note_done("installed", "pyproject.toml", "setup.py", "ready.py", *kernels())
 
 
@@ -66,7 +68,7 @@ def set_up_checks() -> None:
     if is_done("checks", "pyproject.toml"):
         return
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    install("--quiet", *project["optional-dependencies"]["test"])
+    install(*project["optional-dependencies"]["test"])
     note_done("checks", "pyproject.toml")
 
 
@@ -109,11 +111,37 @@ def install(*arguments: str) -> None:
             wheel = fetch_pip(Path(folder))
             subprocess.check_call([python, f"{wheel}/pip", "install", "--quiet", str(wheel)])
         way = ways[0]
-    done = subprocess.run(
-        [*way, "install", *arguments], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    if done.returncode != 0:  # else its warnings are of no use to anybody
-        sys.exit(f"{done.stdout}{done.stderr}setting up failed: pip install {' '.join(arguments)}")
+    pip = subprocess.Popen(
+        [*way, "install", "--verbose", *arguments], cwd=ROOT, text=True, errors="replace",
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    said = list(shown(pip.stdout))
+    if pip.wait() != 0:  # else its warnings are of no use to anybody
+        log = ENVIRONMENT / "setting-up.log"
+        log.write_text("".join(said))
+        sys.exit(
+            f"{''.join(said[-LAST:])}setting up failed: pip install {' '.join(arguments)}; all of it: {log}"
+        )
+
+
+def shown(lines: Iterable[str]) -> Iterator[str]:
+    """The lines; meanwhile, on a terminal, one line with what is compiled and how many are left.
+
+    Cython and setup.py write `[ 12/119] Compiling lcpstep.rows` before each module.
+    """
+    terminal = sys.stdout.isatty()
+    for line in lines:
+        step = re.search(r"\[ *(\d+)/(\d+)\] (Cythonizing|Compiling) (\S+)", line)
+        if step is not None and terminal:
+            done, total, name = int(step[1]), int(step[2]), step[4].removesuffix(".py").replace("/", ".")
+            task = "translated to C" if step[3] == "Cythonizing" else "compiled"
+            words = f"{task}: {name}, {total - done} of {total} left"[
+                : shutil.get_terminal_size().columns - 1
+            ]
+            print(f"\r\x1b[K{words}", end="", flush=True)
+        yield line
+    if terminal:
+        print("\r\x1b[K", end="", flush=True)
 
 
 def works(pip: list) -> bool:

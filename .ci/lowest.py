@@ -40,7 +40,7 @@ def set_up(environment: Path) -> None:
     constraints = environment / "lowest.txt"
     constraints.write_text("\n".join(lowest()) + "\n")
     extras = ",".join(EXTRAS)
-    start.install("--quiet", "--constraint", str(constraints), "--editable", f".[{extras}]")
+    start.install("--constraint", str(constraints), "--editable", f".[{extras}]")
 
 
 if __name__ == "__main__":

@@ -9,19 +9,18 @@ Source of the form: E. Hairer, G. Wanner, Solving Ordinary Differential Equation
 
 from lagrangian import scenes
 from lcpstep import Located, Moreau, study
-from lcpstep.analysis.work_precision import Study
 from lcpstep.plot.work_precision import work_precision
 
 MEASURES = ("sup_position", "impact_time")
 
 
-def small_study() -> Study:
+def small_study():
     """Four steps for each method; each the mean over some nearby ones."""
     methods = [Moreau(), Located(), Located(order=4)]
     return study(scenes.impact_oscillator(t_end=10.0), methods, h=[3e-2, 1e-2, 3e-3, 1e-3], measures=MEASURES)
 
 
-def orders(found: Study) -> list[float]:
+def orders(found) -> list[float]:
     """Fitted orders of the error of the position."""
     return [found.order(name, "sup_position").value for name in found.methods]
 

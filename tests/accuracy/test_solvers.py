@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, UnknownName, simulate, solve_lcp
-from lcpstep.analysis.solvers import SolverRun, Solvers, compare_solvers
+from lcpstep.accuracy.solvers import SolverRun, Solvers, compare_solvers
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
 

@@ -8,9 +8,9 @@ import pytest
 
 from lagrangian import LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, simulate, study
-from lcpstep.analysis.horizon import growth
-from lcpstep.analysis.orders import cost_of, fitted_order
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.horizon import growth
+from lcpstep.accuracy.orders import cost_of, fitted_order
+from lcpstep.accuracy.work_precision import Study
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
 from lcpstep.errors import LcpStepError, StudyInterrupted, UnknownName

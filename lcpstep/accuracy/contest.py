@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis import dials
-from lcpstep.analysis.dials import changeable, dial, with_value
+from lcpstep.accuracy import dials
+from lcpstep.accuracy.dials import changeable, dial, with_value
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lcpstep.analysis.orders import Cost, Order, cost_of, fitted_order
+from lcpstep.accuracy.orders import Cost, Order, cost_of, fitted_order
 from lcpstep.errors import DamagedFile
 from lcpstep.files import replacing
 

@@ -5,7 +5,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, LcpStepError, Located, Moreau
-from lcpstep.analysis.contest import contest
+from lcpstep.accuracy.contest import contest
 from lcpstep.plot.contest import contests
 
 METHODS = [Moreau(2e-3), Located(2e-3), Located(2e-3, order=4), EventDriven()]

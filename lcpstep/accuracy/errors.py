@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis.graphs import Graph, hausdorff
-from lcpstep.analysis.matching import Matching, match_impacts
+from lcpstep.accuracy.graphs import Graph, hausdorff
+from lcpstep.accuracy.matching import Matching, match_impacts
 from lcpstep.kernels import states
 from lcpstep.model import model
 
@@ -60,7 +60,7 @@ class Difference:
     motion, reference : two `Trajectory` objects that kept every step, or anything with t, at, impacts and scene
     t_end : the motions are compared up to this time; default: to the end of the shorter one [s]
     rate : in the distance of graphs one second counts like `rate` [m/s^2] times a second
-    within, least : see `lcpstep.analysis.matching.match_impacts`
+    within, least : see `lcpstep.accuracy.matching.match_impacts`
 
     Raises
     ------

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.analysis.errors import Difference, Motion
+from lcpstep.accuracy.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.lcp import solve_lcp
 from lcpstep.lcp.qp import TOLERANCES, known_solvers

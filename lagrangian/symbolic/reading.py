@@ -10,7 +10,7 @@ which keeps the mass matrix symmetric. Source: T. R. Kane, D. A. Levinson, Dynam
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import sympy
@@ -18,31 +18,39 @@ from numpy.typing import ArrayLike
 from sympy import Expr, ImmutableMatrix
 from sympy.physics.mechanics import KanesMethod, LagrangesMethod
 
-from lagrangian.symbolic import (
-    Equations,
-    Mechanism,
-    _jacobian,
-    _parameters,
-    _sequence,
-    _tidy,
-    _Variables,
-    made,
-)
+from lagrangian.symbolic.expressions import Equations, gap_rows, jacobian_of, tidy
+from lagrangian.symbolic.mechanism import Mechanism, made
+from lagrangian.symbolic.variables import Variables, parameter_values, sequence
 
 
 def from_sympy(
     method: Any,
     *,
     parameters: Mapping[Any, float] | None = None,
-    gaps: Expr | list[Expr] = (),
+    gaps: Expr | Sequence[Expr] = (),
     restitution: ArrayLike = 0.0,
     name: str = "mechanism",
 ) -> Mechanism:
-    """See `lagrangian.symbolic.from_sympy`."""
+    """A mechanism from SymPy's own mechanics: its equations, with gaps.
+
+    Parameters
+    ----------
+    method : sympy.physics.mechanics.System, KanesMethod or LagrangesMethod whose equations are formed, in independent
+        coordinates and speeds; speeds may be any that the kinematic equations give
+    parameters, gaps, restitution, name : as of `derive`; gaps in the method's coordinates
+
+    Returns
+    -------
+    Mechanism, whose velocities are the derivatives of the coordinates; its energy is not known
+
+    Raises
+    ------
+    ValueError   method is none of these, or has dependent coordinates or speeds; a symbol has no value
+    """
     method = _formed(method)
     coordinates = list(method.q)
-    values = _parameters(parameters or {})
-    x = _Variables.of(coordinates, None, values)
+    values = parameter_values(parameters or {})
+    x = Variables.of(coordinates, None, values)
     kane = isinstance(method, KanesMethod)
     mass, forcing, offset, rates = _in_velocities(method, coordinates) if kane else _as_they_are(method)
     n = len(coordinates)
@@ -51,29 +59,22 @@ def from_sympy(
     f_k = _read(x, "the forces", forcing)
     v = ImmutableMatrix(x.v)
     U = Y * (v - w)
-    r = _jacobian(U, x.q) * v + U.diff(x.t)
-    M = (Y.T * M_k * Y).applyfunc(_tidy)
+    r = jacobian_of(U, x.q) * v + U.diff(x.t)
+    M = (Y.T * M_k * Y).applyfunc(tidy)
     M = ImmutableMatrix(n, n, lambda i, j: M[min(i, j), max(i, j)])
     f = Y.T * (f_k - M_k * r)
     if present := M.free_symbols & set(x.v):
         raise ValueError(f"method: expected a mass matrix without velocities, got {x.names(present)} in it")
-    g = [x.read(f"gaps[{i}]", gap, x.v) for i, gap in enumerate(_sequence(gaps))]
-    G = _jacobian(g, x.q)
-    gap = ImmutableMatrix(len(g), 1, g)
-    gap_t = gap.diff(x.t)
-    u = G * v + gap_t
+    g = [x.read(f"gaps[{i}]", gap, x.v) for i, gap in enumerate(sequence(gaps))]
     equations = Equations(
         M=M,
         N=ImmutableMatrix.zeros(n, 1),
         F=f,
         force=f,
-        force_q=_jacobian(f, x.q),
-        force_v=_jacobian(f, x.v),
-        gap=gap,
-        jacobian=G,
-        gap_t=gap_t,
-        bias=_jacobian(u, x.q) * v + u.diff(x.t),
+        force_q=jacobian_of(f, x.q),
+        force_v=jacobian_of(f, x.v),
         energy=ImmutableMatrix(0, 1, []),
+        **gap_rows(g, x),
     )
     return made(equations, g, x, values, restitution, name)
 
@@ -110,7 +111,7 @@ def _in_velocities(method: KanesMethod, q: list[Expr]) -> tuple[Any, Any, Any, A
     given = sympy.Matrix([known[rate] for rate in rates])
     W = given.jacobian(speeds)
     w = given.xreplace(dict.fromkeys(speeds, sympy.S.Zero))
-    Y = W.inv().applyfunc(_tidy)
+    Y = W.inv().applyfunc(tidy)
     U = Y * (sympy.Matrix(rates) - w)
     written = dict(zip(speeds, U, strict=True))
     return method.mass_matrix.xreplace(written), method.forcing.xreplace(written), w, Y
@@ -122,6 +123,6 @@ def _as_they_are(method: LagrangesMethod) -> tuple[Any, Any, Any, Any]:
     return method.mass_matrix, method.forcing, sympy.zeros(n, 1), sympy.eye(n)
 
 
-def _read(x: _Variables, name: str, matrix: Any) -> ImmutableMatrix:
+def _read(x: Variables, name: str, matrix: Any) -> ImmutableMatrix:
     """A matrix of the author's in q, v, t, p."""
     return ImmutableMatrix(matrix.rows, matrix.cols, [x.read(f"method: {name}", entry) for entry in matrix])

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from lagrangian import Harmonic, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, simulate
-from lcpstep.analysis.errors import MEASURES, Difference
-from lcpstep.analysis.graphs import Graph, hausdorff
-from lcpstep.analysis.matching import match_impacts
+from lcpstep.accuracy.errors import MEASURES, Difference
+from lcpstep.accuracy.graphs import Graph, hausdorff
+from lcpstep.accuracy.matching import match_impacts
 from lcpstep.trajectory import IMPACT_DTYPE, Kind
 
 BALL = scenes.bouncing_ball()

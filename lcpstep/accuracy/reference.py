@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.analysis.dials import dial, shown, with_value
-from lcpstep.analysis.errors import Difference, Motion
+from lcpstep.accuracy.dials import dial, shown, with_value
+from lcpstep.accuracy.errors import Difference, Motion
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.simulation import Method, simulate

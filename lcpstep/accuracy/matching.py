@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.analysis.pairing import pair_up
+from lcpstep.accuracy.pairing import pair_up
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]
