@@ -54,6 +54,7 @@ sphinx_gallery_conf = {
     "examples_dirs": str(ROOT / "examples"),
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
+    "subsection_order": [f"../examples/{name}" for name in ("scenes", "methods", "thesis")],
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": (pictures.saved,),
     "reset_modules": (),

@@ -80,9 +80,10 @@ def cam_film(file: Path) -> None:
     strip = np.array([struck_colours(width=40)] * pictures[-1].height)  # rare, but to be seen
     palette = Image.fromarray(np.hstack([np.asarray(pictures[-1]), strip])).quantize(48)
     colours = np.array(palette.getpalette()).reshape(-1, 3)
-    colours[np.argmax(colours.sum(axis=1))] = 255  # the paper is white
-    palette.putpalette(colours.ravel().tolist())
-    pictures = [x.quantize(palette=palette, dither=Image.Dither.NONE) for x in pictures]
+    colours[colours.min(axis=1) > 245] = 255  # the paper is white
+    paper = Image.new("P", (1, 1))
+    paper.putpalette(colours.ravel().tolist())
+    pictures = [x.quantize(palette=paper, dither=Image.Dither.NONE) for x in pictures]
     pictures[0].save(
         file, save_all=True, append_images=pictures[1:], duration=1000 // FPS, loop=0, optimize=True
     )

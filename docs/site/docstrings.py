@@ -23,7 +23,21 @@ def setup(app):
 
 def rewrite(app, what, name, obj, options, lines):
     """Put the lines of a docstring in the form that is expected."""
-    lines[:] = listed(plain(split(lines)))
+    lines[:] = listed(plain(split(joined(lines))))
+
+
+def joined(lines):
+    """What is returned in one line, however long: the lines below it go on with it."""
+    result, section = [], ""
+    for k, line in enumerate(lines):
+        if k + 1 < len(lines) and SECTION.match(lines[k + 1]):
+            section = line.strip()
+        goes_on = section == "Returns" and line.startswith("    ") and result[-1].strip()
+        if goes_on:
+            result[-1] += " " + line.strip()
+        else:
+            result.append(line)
+    return result
 
 
 def split(lines):
