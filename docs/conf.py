@@ -46,6 +46,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 default_role = "literal"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+autodoc_preserve_defaults = True
 add_module_names = False
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False

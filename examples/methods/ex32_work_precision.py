@@ -22,7 +22,7 @@ def small_study():
 
 def orders(found) -> list[float]:
     """Fitted orders of the error of the position."""
-    return [found.order(name, "sup_position").value for name in found.methods]
+    return [found.order(name, "sup_position").slope for name in found.methods]
 
 
 if __name__ == "__main__":
