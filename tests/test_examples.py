@@ -205,7 +205,9 @@ def test_an_example_says_what_it_shows(name):
     "page",
     [
         "README.md",
+        pytest.param("docs/index.md", marks=pytest.mark.slow),
         "docs/first-five-minutes.md",
+        "docs/large-systems.md",
         "docs/tutorial.md",
         "docs/symbolic.md",
         "docs/hybrid-systems.md",
@@ -216,9 +218,10 @@ def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
     pytest.importorskip("sympy")
     monkeypatch.chdir(tmp_path)
     source = tmp_path / "page.py"
-    source.write_text("\n".join(blocks((ROOT / page).read_text())))
+    text = "\n".join(blocks((ROOT / page).read_text()))
+    source.write_text(text)
     runpy.run_path(str(source))
-    assert capsys.readouterr().out
+    assert capsys.readouterr().out or "print(" not in text
 
 
 def blocks(text):
