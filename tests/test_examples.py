@@ -119,7 +119,7 @@ PINNED = {
     "ex03_own_mechanism": own_mechanism,
     "ex04_from_a_lagrangian": lambda x: x["energy_drift"]() < 1e-9,
     "ex05_kept_and_sent": kept,
-    "ex06_cam_film": lambda x: x["first_second"]().impacts.time[0] == near(0.0396, 5e-5),
+    "ex06_cam_film": lambda x: x["half_a_second"]().impacts.time[0] == near(0.0396, 5e-5),
     "ex11_newtons_cradle": cradle,
     "ex12_pile_at_rest": pile,
     "ex13_rocking_block": lambda x: x["loss_error"]() < 1e-12,
