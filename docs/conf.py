@@ -46,6 +46,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 default_role = "literal"
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+autodoc_preserve_defaults = True
 add_module_names = False
 numpydoc_show_class_members = False
 numpydoc_class_members_toctree = False
@@ -54,6 +55,7 @@ sphinx_gallery_conf = {
     "examples_dirs": str(ROOT / "examples"),
     "gallery_dirs": "gallery",
     "filename_pattern": r"\.py$",
+    "subsection_order": [f"../examples/{name}" for name in ("scenes", "methods", "thesis")],
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": (pictures.saved,),
     "reset_modules": (),

@@ -6,6 +6,9 @@ its parameters, the method, the versions. Loaded again it equals itself to the l
 had never been away. Nothing in such a file is executed.
 """
 
+import tempfile
+from pathlib import Path
+
 import numpy as np
 
 from lagrangian import scenes
@@ -15,7 +18,8 @@ from lcpstep import Located, Trajectory, load, simulate
 def sent_and_opened() -> tuple[Trajectory, Trajectory]:
     """A run of a chattering oscillator, and what its file makes of it."""
     run = simulate(scenes.sticking_oscillator(t_end=50.0), Located(h=0.01))
-    return run, load(run.save("kept.nc", overwrite=True))
+    with tempfile.TemporaryDirectory() as folder:
+        return run, load(run.save(Path(folder) / "kept.nc"))
 
 
 if __name__ == "__main__":

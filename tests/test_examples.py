@@ -1,4 +1,4 @@
-"""The examples and the documentation run: each example draws, and a number of it is what is known independently."""
+"""Examples and documentation run: each example draws, and a number of it is pinned to its independent value."""
 
 import contextlib
 import io
@@ -119,7 +119,7 @@ PINNED = {
     "ex03_own_mechanism": own_mechanism,
     "ex04_from_a_lagrangian": lambda x: x["energy_drift"]() < 1e-9,
     "ex05_kept_and_sent": kept,
-    "ex06_cam_film": lambda x: x["first_second"]().impacts.time[0] == near(0.0396, 5e-5),
+    "ex06_cam_film": lambda x: x["half_a_second"]().impacts.time[0] == near(0.0396, 5e-5),
     "ex11_newtons_cradle": cradle,
     "ex12_pile_at_rest": pile,
     "ex13_rocking_block": lambda x: x["loss_error"]() < 1e-12,
@@ -205,7 +205,9 @@ def test_an_example_says_what_it_shows(name):
     "page",
     [
         "README.md",
+        pytest.param("docs/index.md", marks=pytest.mark.slow),
         "docs/first-five-minutes.md",
+        "docs/large-systems.md",
         "docs/tutorial.md",
         "docs/symbolic.md",
         "docs/hybrid-systems.md",
@@ -216,9 +218,10 @@ def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
     pytest.importorskip("sympy")
     monkeypatch.chdir(tmp_path)
     source = tmp_path / "page.py"
-    source.write_text("\n".join(blocks((ROOT / page).read_text())))
+    text = "\n".join(blocks((ROOT / page).read_text()))
+    source.write_text(text)
     runpy.run_path(str(source))
-    assert capsys.readouterr().out
+    assert capsys.readouterr().out or "print(" not in text
 
 
 def blocks(text):

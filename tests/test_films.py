@@ -103,8 +103,9 @@ def test_mp4_is_written_by_what_is_called_ffmpeg(run, tmp_path, monkeypatch):
     tool.write_text('#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')
     tool.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    height, width, _ = next(run.animate(**SHORT).frames()).shape
     file = run.animate(tmp_path / "ball.mp4", **SHORT)
-    assert file.stat().st_size == 2 * 560 * 420 * 3
+    assert file.stat().st_size == 2 * (width // 2 * 2) * (height // 2 * 2) * 3
     tool.write_text("#!/bin/sh\ncat > /dev/null\necho Unknown codec >&2\nexit 1\n")
     with pytest.raises(LcpStepError, match="ffmpeg failed: Unknown codec; write"):
         run.animate(tmp_path / "other.mp4", **SHORT)
@@ -140,10 +141,25 @@ def test_what_cannot_be_drawn_or_written_is_said_in_a_line(run, tmp_path, monkey
         replace(bare, drawing="ball")
 
 
+def test_the_picture_has_the_proportions_of_what_moves(run):
+    """Wide, square and tall mechanisms, a metre or a kilometre long: little space around them, and room for words."""
+    for wide, high in ((10.0, 1.0), (1.0, 1.0), (1.0, 10.0), (3e3, 1e3)):
+        made = run.animate(
+            drawing=lambda t, q, a=wide, b=high: [Line([(0, 0), (a, 0), (a, b), (0, 0.1 * t * b)])], **SHORT
+        )
+        picture = next(made.frames())
+        height, width, _ = picture.shape
+        assert 380 <= width <= 560
+        assert 220 <= height <= 480
+        used = np.argwhere(np.any(picture[40:] < 200, axis=2))
+        if 0.5 < wide / high < 3.5:
+            assert np.all(np.ptp(used, axis=0) > [0.85 * (height - 40), 0.85 * width])
+
+
 def test_own_drawings_systems_with_modes_and_loaded_runs(run, tmp_path):
     own = replace(run.scene, drawing=ball_above)
     mine = simulate(own, Located(0.01)).animate(**SHORT)
-    assert [x.shape for x in mine.frames()] == 2 * [(420, 560, 3)]
+    assert [x.shape for x in mine.frames()] == 2 * [(378, 560, 3)]
     modes = simulate(scenes.stick_slip_oscillator(t_end=9.0), EventDriven(1e-8, 1e-8))
     assert len(list(modes.animate(**SHORT).frames())) == 2
     back = load(run.save(tmp_path / "run.nc"))

@@ -1,7 +1,7 @@
 """Docstrings of this project as numpydoc and reStructuredText want them.
 
-Here a parameter stands with its meaning on one line, `name : type   meaning`, and text is plain: a `|q|` is the size
-of q and no reference.
+Here a parameter stands with its meaning on one line, `name : type   meaning`, values are listed as `"name"  meaning`,
+and text is plain: a `|q|` is the size of q and no reference.
 """
 
 import re
@@ -10,7 +10,9 @@ SECTION = re.compile(r"^-{3,}$")
 DESCRIBED = ("Parameters", "Attributes", "Raises", "Warns")
 ENTRY = re.compile(r"^(?P<names>[\w, .*|]+?) : (?P<rest>.+)$")
 ERROR = re.compile(r"^(?P<names>[A-Z]\w+(?:, [A-Z]\w+)*)(?: {2,}| : )(?P<rest>.+)$")
+VALUE = re.compile(r'^    "[^"]+"  +\S')
 SPECIAL = re.compile(r"(?<!\\)([*|])|(?<=\w)_(?=\W|$)")
+CODE = re.compile(r"(``?[^`]*``?)")
 
 
 def setup(app):
@@ -21,7 +23,21 @@ def setup(app):
 
 def rewrite(app, what, name, obj, options, lines):
     """Put the lines of a docstring in the form that is expected."""
-    lines[:] = plain(split(lines))
+    lines[:] = listed(plain(split(joined(lines))))
+
+
+def joined(lines):
+    """What is returned in one line, however long: the lines below it go on with it."""
+    result, section = [], ""
+    for k, line in enumerate(lines):
+        if k + 1 < len(lines) and SECTION.match(lines[k + 1]):
+            section = line.strip()
+        goes_on = section == "Returns" and line.startswith("    ") and result[-1].strip()
+        if goes_on:
+            result[-1] += " " + line.strip()
+        else:
+            result.append(line)
+    return result
 
 
 def split(lines):
@@ -30,37 +46,46 @@ def split(lines):
     for k, line in enumerate(lines):
         if k + 1 < len(lines) and SECTION.match(lines[k + 1]):
             section = line.strip()
-        entry = ERROR.match(line) if section in ("Raises", "Warns") else ENTRY.match(line)
+        errors = section in ("Raises", "Warns")
+        entry = ERROR.match(line) if errors else ENTRY.match(line)
         if section not in DESCRIBED or entry is None:
             yield line
             continue
         kind, gap, meaning = entry["rest"].partition("   ")
-        if section in ("Raises", "Warns"):
-            yield from (entry["names"], "    " + entry["rest"].strip())
-        elif gap:
+        if gap and not errors:
             yield from (f"{entry['names']} : {kind}", "    " + meaning.strip())
         else:
-            yield from (entry["names"], "    " + entry["rest"])
+            yield from (entry["names"], "    " + entry["rest"].strip())
 
 
 def plain(lines):
     """Text without meaning for reStructuredText; examples and indented blocks of code as they are."""
     lines = list(lines)
-    result, block = [], False
+    block = False
     for k, line in enumerate(lines):
         indented = line.startswith("    ")
-        after_blank = k > 0 and not lines[k - 1].strip()
-        if indented and after_blank and not block and starts_block(lines, k):
-            result += ["::", ""]
+        if indented and not block and k > 0 and not lines[k - 1].strip() and starts_code(lines, k):
+            yield from ("::", "")
             block = True
         elif line.strip() and not indented:
             block = False
         code = block or line.lstrip().startswith((">>>", "..."))
-        result.append(line if code else "".join(escaped(x) for x in re.split(r"(``?[^`]*``?)", line)))
-    return result
+        yield line if code else "".join(map(escaped, CODE.split(line)))
 
 
-def starts_block(lines, k):
+def listed(lines):
+    """Lists of values within an entry as line blocks, so that each keeps its line."""
+    within = False
+    for line in lines:
+        if VALUE.match(line) and not within:
+            within = True
+            yield ""
+        elif not line.startswith("    "):
+            within = False
+        yield f"    | {line[4:]}" if within else line
+
+
+def starts_code(lines, k):
     """Whether an indented line after a blank one is code: the last text before it stands at the margin."""
     before = next((x for x in reversed(lines[:k]) if x.strip()), "")
     return not before.startswith(" ")

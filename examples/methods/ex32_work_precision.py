@@ -7,25 +7,25 @@ fitted with their uncertainty: one, two and four. Times are those of the machine
 Source of the form: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II (Springer 1996), IV.10.
 """
 
-from lcpstep.analysis.work_precision import Study
-
 from lagrangian import scenes
 from lcpstep import Located, Moreau, study
 from lcpstep.plot.work_precision import work_precision
 
+MEASURES = ("sup_position", "impact_time")
 
-def small_study() -> Study:
+
+def small_study():
     """Four steps for each method; each the mean over some nearby ones."""
     methods = [Moreau(), Located(), Located(order=4)]
-    return study(scenes.impact_oscillator(t_end=10.0), methods, h=[3e-2, 1e-2, 3e-3, 1e-3])
+    return study(scenes.impact_oscillator(t_end=10.0), methods, h=[3e-2, 1e-2, 3e-3, 1e-3], measures=MEASURES)
 
 
-def orders(found: Study) -> list[float]:
+def orders(found) -> list[float]:
     """Fitted orders of the error of the position."""
-    return [found.order(name, "sup_position").value for name in found.methods]
+    return [found.order(name, "sup_position").slope for name in found.methods]
 
 
 if __name__ == "__main__":
     found = small_study()
     print("orders of the position:", {name: str(found.order(name, "sup_position")) for name in found.methods})
-    work_precision(found, ["sup_position", "impact_time"]).savefig("work-precision.png", dpi=80)
+    work_precision(found, MEASURES).savefig("work-precision.png", dpi=80)

@@ -30,8 +30,10 @@ SHORTEST, LONGEST = 3.0, 8.0  # of a film whose length nobody has chosen [s]
 FLASH = 0.35  # how long an impact is seen [s of the film]
 WEAKEST = 0.25  # how much is seen of the weakest impact
 MARGIN = 0.06  # around the picture, of its size
-SIZE, DPI = (5.6, 4.2), 100  # of the picture [inch]
-TOP = 0.92  # of the picture is left to the axes, below a line of words
+LARGE, SMALL = (5.6, 4.8), (3.8, 2.2)  # what a picture measures at most and at least [inch]
+BESIDE = (0.8, 0.9)  # of it are labels and words [inch]
+DPI = 100
+WORDS = 0.34  # above the axes are left to a line of words [inch]
 BODY, FIXED, STRUCK = (0.12, 0.47, 0.71), (0.35, 0.35, 0.35), (0.84, 0.15, 0.16)
 COLOURS = 64  # of a GIF
 
@@ -197,14 +199,16 @@ def _pictures(film: Film, shapes: list[list[Shape]], glow: NDArray[np.float64]) 
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    figure = Figure(figsize=SIZE, dpi=DPI, layout=ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0, TOP)))
-    canvas, ax = FigureCanvasAgg(figure), figure.subplots()
     x0, y0, x1, y1 = _frame([extent(shape) for these in shapes for shape in these])
+    size = _size(x1 - x0, y1 - y0)
+    top = 1.0 - WORDS / size[1]
+    figure = Figure(figsize=size, dpi=DPI, layout=ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0, top)))
+    canvas, ax = FigureCanvasAgg(figure), figure.subplots()
     ax.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="x [m]", ylabel="y [m]")
     ax.set_aspect("equal", adjustable="box")
     ax.locator_params(axis="x", nbins=int(np.clip(6.0 * (x1 - x0) / (y1 - y0), 2, 9)))
     ax.grid(alpha=0.2)
-    words = figure.text(0.02, 0.97, "", va="top", fontsize=9, animated=True)
+    words = figure.text(0.02, 1.0 - 0.3 * WORDS / size[1], "", va="top", fontsize=9, animated=True)
     canvas.draw()
     figure.set_layout_engine("none")
     background = canvas.copy_from_bbox(figure.bbox)
@@ -250,6 +254,18 @@ def _frame(extents: list[tuple[float, float, float, float]]) -> tuple[float, flo
     middle, size = 0.5 * (low + high), np.maximum(size, least) * (1.0 + 2.0 * MARGIN)
     low, high = middle - 0.5 * size, middle + 0.5 * size
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _size(width: float, height: float) -> tuple[float, float]:
+    """Of a picture whose axes have these proportions [inch]: as large as it may be, and little around the axes."""
+    scale = min(
+        (most - beside) / length for most, beside, length in zip(LARGE, BESIDE, (width, height), strict=True)
+    )
+    wide, high = (
+        max(least, scale * length + beside)
+        for least, beside, length in zip(SMALL, BESIDE, (width, height), strict=True)
+    )
+    return wide, high
 
 
 def _speed(speed: float) -> str:

@@ -44,7 +44,8 @@ def branch(data: Any, title: str = "") -> Any:
     branch_lines(above, data)
     mark_special(above, data)
     above.set(ylabel=f"{data.attrs['labels'][0]}\nat phase {data.attrs['phase']:.4g}")
-    above.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    # Above the axes: beside them it would take its width from the colour bar's column too
+    above.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False)
     p, stable = data[parameter].values, data["stable"].values.astype(bool)
     for which, style in ((stable, STABLE), (~stable, UNSTABLE)):
         for modulus in data["multiplier_modulus"].values[which].T:
@@ -109,7 +110,7 @@ def multiplier_plane(figure: Any, ax: Any, data: Any) -> None:
     real, imag = data["multiplier_real"].values, data["multiplier_imag"].values
     p = np.broadcast_to(data[parameter].values[:, None], real.shape)
     points = ax.scatter(real, imag, c=p, s=12, cmap="viridis", zorder=3)
-    figure.colorbar(points, ax=ax, label=parameter_label(parameter))
+    figure.colorbar(points, ax=ax, label=parameter_label(parameter), pad=0.01)
     ax.set_aspect("equal", adjustable="datalim")
     ax.set(xlabel="real part of the multipliers", ylabel="imaginary part")
 

@@ -1,0 +1,107 @@
+"""The documentation as pages: links lead somewhere, every public name is in the reference, the site builds."""
+
+import importlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import lagrangian
+import lcpstep
+from lagrangian import scenes
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CHANGELOG.md",
+    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "docs" / "api").glob("*.md")),
+    ROOT / "benchmarks" / "README.md",
+]
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+MADE = {"gallery/index.rst"}  # by the build
+
+
+def anchors(file):
+    """Anchors of the headings of a page, as forges and the site make them."""
+    heads = re.findall(r"^#+ (.+)$", FENCED.sub("", file.read_text()), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_somewhere(page):
+    for link in LINK.findall(FENCED.sub("", page.read_text())):
+        if link.startswith(("http://", "https://", "mailto:")) or link in MADE:
+            continue
+        path, _, anchor = link.partition("#")
+        target = (page.parent / path).resolve() if path else page
+        assert target.exists(), f"{page.name}: {link}"
+        assert target.is_relative_to(ROOT), f"{page.name}: {link}"
+        if anchor and target.suffix == ".md":
+            assert anchor in anchors(target), f"{page.name}: {link}"
+
+
+def test_every_page_is_in_the_site():
+    """A page that no table of contents names would not be found."""
+    docs = ROOT / "docs"
+    named = set()
+    for page in (docs / "index.md", docs / "guide.md", docs / "api" / "index.md"):
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text(), re.DOTALL):
+            names = [line for line in block.splitlines() if line and not line.startswith(":")]
+            named |= {(page.parent / name).relative_to(docs).as_posix() for name in names}
+    pages = {file.relative_to(docs).with_suffix("").as_posix() for file in docs.rglob("*.md")}
+    assert pages - named == {"index"}
+    assert named - pages == {"gallery/index"}
+
+
+def in_the_reference():
+    text = "".join(file.read_text() for file in (ROOT / "docs" / "api").glob("*.md"))
+    whole = [importlib.import_module(name) for name in re.findall(r"\.\. automodule:: ([\w.]+)", text)]
+    named = set(re.findall(r"\.\. auto(?:class|function):: ([\w.]+)", text))
+    return named | {f"{module.__name__}.{name}" for module in whole for name in module.__all__}
+
+
+def test_every_public_name_is_in_the_reference():
+    named = {name.rpartition(".")[2] for name in in_the_reference()}
+    packages = [lcpstep, lagrangian, scenes]
+    packages += [importlib.import_module(f"lcpstep.{name}") for name in ("lcp", "maps", "analysis.proofs")]
+    for package in packages:
+        for name in package.__all__:
+            if isinstance(getattr(package, name), type) or callable(getattr(package, name)):
+                assert name in named, f"{package.__name__}.{name}"
+
+
+@pytest.mark.parametrize("name", sorted(in_the_reference()))
+def test_what_the_reference_names_exists_and_is_described(name):
+    module, _, own = name.rpartition(".")
+    found = getattr(importlib.import_module(module), own)
+    assert found.__doc__ or isinstance(found, dict)
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_warnings(tmp_path):
+    """Without running the gallery's examples, which are run by tests of their own."""
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-W",
+        "--keep-going",
+        "-q",
+        "-D",
+        "plot_gallery=0",
+        "-d",
+        tmp_path / "trees",
+    ]
+    done = subprocess.run(
+        [*command, ROOT / "docs", tmp_path / "site"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    for page in ("index", "first-five-minutes", "guide", "gallery/index", "api/simulating", "accuracy"):
+        assert (tmp_path / "site" / f"{page}.html").is_file()
+    front = (tmp_path / "site" / "index.html").read_text()
+    assert "cam.gif" in front
+    assert "gallery/index.html" in front
