@@ -13,11 +13,11 @@ nothing cancels; so chattering is followed until its hops are shorter than the r
 
 from __future__ import annotations
 
-import bisect
 import cmath
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -43,36 +43,40 @@ class Free:
     sine: float = 0.0
     omega: float = 0.0
 
-    def steady(self, t: float) -> tuple[float, float]:
+    def steady(self, t: Any, m: Any = cmath) -> tuple[Any, Any]:
         """Forced oscillation and its velocity."""
         if self.cosine == 0.0 and self.sine == 0.0:
             return 0.0, 0.0
         iw = 1j * self.omega
-        x = (self.cosine - 1j * self.sine) / (self.kappa + iw * (iw + 2.0 * self.delta)) * cmath.exp(iw * t)
+        x = (self.cosine - 1j * self.sine) / (self.kappa + iw * (iw + 2.0 * self.delta)) * m.exp(iw * t)
         return x.real, (iw * x).real
 
-    def at(self, t0: float, y0: float, v0: float, t: float) -> tuple[float, float, float]:
-        """y, y' and y'' at t of the motion that passes y0, v0 at t0."""
+    def at(self, t0: Any, y0: Any, v0: Any, t: Any, m: Any = cmath) -> tuple[Any, Any, Any]:
+        """y, y' and y'' at t of the motion that passes y0, v0 at t0: numbers, or arrays with numpy in the place of m."""
         tau = t - t0
-        (x0, dx0), (x, dx) = self.steady(t0), self.steady(t)
+        (x0, dx0), (x, dx) = self.steady(t0, m), self.steady(t, m)
         still = self.f0 / self.kappa if self.kappa != 0.0 else 0.0
         z0, dz0 = y0 - x0 - still, v0 - dx0
         if self.kappa == 0.0:
             z, dz = z0 + tau * (dz0 + 0.5 * self.f0 * tau), dz0 + self.f0 * tau
         else:
             mu = cmath.sqrt(self.delta**2 - self.kappa)
-            decay, S = math.exp(-self.delta * tau), _sinhc(mu, tau)
-            z = decay * (z0 * cmath.cosh(mu * tau).real + (dz0 + self.delta * z0) * S)
-            dz = decay * (dz0 * cmath.cosh(mu * tau).real - (self.kappa * z0 + self.delta * dz0) * S)
+            decay, C, S = m.exp(-self.delta * tau).real, m.cosh(mu * tau).real, _sinhc(mu, tau, m)
+            z = decay * (z0 * C + (dz0 + self.delta * z0) * S)
+            dz = decay * (dz0 * C - (self.kappa * z0 + self.delta * dz0) * S)
         y, v = x + still + z, dx + dz
-        force = self.f0 + self.cosine * math.cos(self.omega * t) + self.sine * math.sin(self.omega * t)
+        cosine, sine = m.cos(self.omega * t).real, m.sin(self.omega * t).real
+        force = self.f0 + self.cosine * cosine + self.sine * sine
         return y, v, force - 2.0 * self.delta * v - self.kappa * y
 
 
-def _sinhc(mu: complex, tau: float) -> float:
+def _sinhc(mu: complex, tau: Any, m: Any) -> Any:
     """sinh(mu tau) / mu, real."""
     x = mu * tau
-    return tau * (1.0 + (x * x).real / 6.0) if abs(x) < 1e-5 else (cmath.sinh(x) / mu).real
+    if m is np:
+        small = np.abs(x) < 1e-5
+        return np.where(small, tau * (1.0 + (x * x).real / 6.0), (np.sinh(x) / (mu or 1.0)).real)
+    return tau * (1.0 + (x * x).real / 6.0) if abs(x) < 1e-5 else (m.sinh(x) / mu).real
 
 
 def _nowhere(t: float) -> tuple[float, float, float]:
@@ -131,20 +135,26 @@ class Piecewise:
 
     def state(self, t: float) -> tuple[float, float]:
         """y and y' (right limit) at a time not before the start."""
-        while self._now < t or (
-            self._now == t and self._pieces[-1][0] < t
-        ):  # what begins at t is known there
-            self._advance()
-        k = bisect.bisect_right(self._pieces, t, key=lambda piece: piece[0]) - 1
-        t0, y0, v0, closed = self._pieces[max(k, 0)]
-        if closed:
-            return self._side(t, +1)[:2]
-        return self.free.at(t0, y0, v0, t)[:2]
+        y, v = self(np.array([t]))
+        return float(y[0, 0]), float(v[0, 0])
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """The same for times (m,), in arrays of shape (m, 1)."""
-        states = np.array([self.state(float(t)) for t in times]).reshape(-1, 2)
-        return states[:, :1], states[:, 1:]
+        t = np.asarray(times, dtype=float)
+        self._reach(float(np.max(t, initial=self.start[0])))
+        begins = np.array([piece[0] for piece in self._pieces])
+        of = np.maximum(np.searchsorted(begins, t, side="right") - 1, 0)
+        t0, y0, v0, closed = np.array(self._pieces)[of].T
+        states, flies = np.empty((2, len(t))), closed == 0.0
+        states[:, flies] = self.free.at(t0[flies], y0[flies], v0[flies], t[flies], np)[:2]
+        for k in np.flatnonzero(closed):
+            states[:, k] = self._side(float(t[k]), +1)[:2]
+        return states[0][:, None], states[1][:, None]
+
+    def _reach(self, t: float) -> None:
+        """Work the motion out up to t, and what begins there."""
+        while self._now < t or (self._now == t and self._pieces[-1][0] < t):
+            self._advance()
 
     def _advance(self) -> None:
         """To the next event, or over one scan interval without one."""
