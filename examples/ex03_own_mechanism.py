@@ -1,8 +1,17 @@
-"""A mechanism of one's own: a sphere in a bowl that moves up and down, q = (x, y), by both methods."""
+"""A mechanism of one's own
+========================
+
+A sphere in a bowl that moves up and down, q = (x, y), from its equations to a film: mass and force, the gap to
+the bowl with its derivatives, and what it looks like. Two methods that know nothing of each other give the same
+motion.
+
+Source: the distance of a point from a circle; Newton's law of impact with a coefficient of restitution of 0.6.
+"""
 
 import math
 
 from lagrangian import Contacts, Scene, System
+from lagrangian.drawing import Circle, Line
 from lcpstep import EventDriven, Moreau, simulate
 
 GRAVITY = 9.81
@@ -28,6 +37,14 @@ def gap_t(t, q, v, p, out):
     out[0] = y / math.sqrt(x * x + y * y) * p[2] * p[3] * math.cos(p[3] * t)
 
 
+def drawing(t, q):
+    """Shapes in the plane from time and coordinates: the bowl, and the sphere whose contact 0 flashes when struck."""
+    middle = 0.5 + 0.02 * math.sin(20.0 * t)
+    angles = [math.pi * (1.0 + k / 40) for k in range(41)]
+    wall = [(0.525 * math.cos(a), middle + 0.525 * math.sin(a)) for a in angles]
+    return [Line(wall, fixed=True), Circle((q[0], q[1]), 0.025, contacts=(0,))]
+
+
 def bowl() -> Scene:
     """Mass [kg], radius [m], amplitude [m] and frequency [rad/s] of the bowl are the parameters."""
     parameters = {"m": 0.2, "radius": 0.5, "amplitude": 0.02, "omega": 20.0}
@@ -39,7 +56,9 @@ def bowl() -> Scene:
         t_span=(0.0, 2.0),
         parameters=parameters,
         period=2.0 * math.pi / parameters["omega"],
-        name="bowl",
+        coordinates=["x [m]", "y [m]"],
+        drawing=drawing,
+        name="sphere in a bowl",
     )
 
 
@@ -53,3 +72,4 @@ def distance_of_methods(h: float = 1e-4, until: float = 0.5) -> float:
 
 if __name__ == "__main__":
     print(f"{distance_of_methods():.1e} m apart in the first half second")
+    simulate(bowl(), EventDriven()).animate("own-mechanism.gif", seconds=4.0)

@@ -79,8 +79,13 @@ class LinearContacts(Pickled):
                 f"contacts.G: expected {len(q)} columns, one per coordinate, got shape {G.shape}"
             )
         if self.friction is not None:
-            self.friction.sliding(t, q, v, p)
+            self.friction.sliding(t, q, v, p, self.n_c)
         return G @ q + np.asarray(self.offset) - s[:, 0], G @ v - s[:, 1]
+
+    def normals(self, t: float, q: Array, v: Array, p: Array) -> Array:
+        """G as an array, the same at all states."""
+        G: Any = self.G
+        return np.asarray(G.toarray() if self.sparse else G)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,5 +141,9 @@ class Contacts(Pickled):
         if self.bias is not None:
             checks.evaluate("contacts.bias", self.bias, at, (self.n_c,))
         if self.friction is not None:
-            self.friction.sliding(*at)
+            self.friction.sliding(*at, self.n_c)
         return g, u
+
+    def normals(self, t: float, q: Array, v: Array, p: Array) -> Array:
+        """G at a state, (n_c, n_q)."""
+        return checks.evaluate("contacts.jacobian", self.jacobian, (t, q, v, p), (self.n_c, len(q)))

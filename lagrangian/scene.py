@@ -88,6 +88,9 @@ class Scene(Pickled):
         self.system.trial(*at)
         if self.contacts is not None:
             self._check_start(*self.contacts.state(*at))
+            if self.contacts.friction is not None:
+                fixed = isinstance(self.contacts, LinearContacts)
+                self.contacts.friction.check_directions(at, self.contacts.normals, fixed)
         if self.joints is not None:
             self._check_joints(*joint_state(self.joints, *at))
         check_derivatives(self, [at[:3]])

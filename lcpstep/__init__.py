@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from lagrangian.lazy import lazily
 
 if TYPE_CHECKING:
+    from lcpstep.accuracy.study import study
     from lcpstep.continuing import continued
     from lcpstep.diagnostics import Energy, energy
     from lcpstep.errors import (
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from lcpstep.simulation import simulate
     from lcpstep.stepping.located import Located
     from lcpstep.stepping.moreau import Moreau
-    from lcpstep.studies import study
     from lcpstep.trajectory import Kind, Status, Trajectory
 else:
     __getattr__ = lazily(
@@ -40,7 +40,7 @@ else:
             "lcpstep.simulation": "simulate",
             "lcpstep.stepping.located": "Located",
             "lcpstep.stepping.moreau": "Moreau",
-            "lcpstep.studies": "study",
+            "lcpstep.accuracy.study": "study",
             "lcpstep.trajectory": "Kind Status Trajectory",
         },
     )

@@ -24,6 +24,7 @@ from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
 from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
+from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.uncompiled import CalledBack
 
 Array = NDArray[np.float64]
@@ -91,6 +92,18 @@ def tangent_model(scene: Scene) -> kernels.Model:
     return _models(scene, _system(scene), friction=_tangents(scene))[0]
 
 
+def coefficients(scene: Scene) -> Coefficients:
+    """The coefficients of friction of a scene's contacts, zero where it has none."""
+    friction = None if scene.contacts is None else scene.contacts.friction
+    if friction is None:
+        return Coefficients(np.zeros(scene.n_c), None, np.array(scene.p), scene.n_q, scene.n_c, None)
+    mu, called_back = friction.mu, None
+    if callable(mu):
+        made, called_back = c_functions(scene, friction={"mu": mu})
+        mu = made["friction"]["mu"]
+    return Coefficients(mu, friction.mu_s, np.array(scene.p), scene.n_q, scene.n_c, called_back)
+
+
 def _models(scene: Scene, own: dict[str, Any], **constraints: dict[str, Any]) -> list[kernels.Model]:
     """A model for each kind of constraints, its functions C functions: compiled, or around Python."""
     functions, called_back = c_functions(scene, system=own, **constraints)
@@ -115,7 +128,7 @@ def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[s
 def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, int]:
     addresses = {}
     for name, f in given.items():
-        ndim = 1 if name in ("force", "gap", "gap_t", "bias") else 2
+        ndim = 1 if name in ("force", "gap", "gap_t", "bias", "mu") else 2
         try:
             addresses[name] = callbacks.address(f, ndim)
         except NotCompiled as why:
@@ -138,7 +151,9 @@ def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     """
     raised, times = fault(), list(times)
     states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
-    if raised is not None:
+    if (
+        raised is not None and len(raised.v) == scene.n_q
+    ):  # coefficients of friction have sliding velocities there
         states = [(raised.t, raised.q, raised.v)]
     try:
         for t, x, x_t in states:

@@ -8,9 +8,9 @@ import pytest
 
 from lagrangian import scenes
 from lcpstep import Moreau
-from lcpstep.analysis.work_precision import Study, checksum
+from lcpstep.accuracy.study import study
+from lcpstep.accuracy.work_precision import Study, checksum
 from lcpstep.errors import SweepStopped
-from lcpstep.studies import study
 from lcpstep.sweep import MANIFEST, sweep
 from tests.analysis.test_sweeps import squares
 
@@ -44,7 +44,9 @@ def numbers(results):
 
 def words(caplog):
     """What sweeps and studies said; kernels may tell that they are being compiled."""
-    return [x.getMessage() for x in caplog.records if x.name in ("lcpstep.sweep", "lcpstep.studies")]
+    return [
+        x.getMessage() for x in caplog.records if x.name in ("lcpstep.sweep", "lcpstep.accuracy.question")
+    ]
 
 
 def spoil(file, damage):
@@ -128,4 +130,4 @@ def test_a_file_that_was_never_a_study_is_refused_and_left_alone(tmp_path):
 @pytest.fixture(autouse=True)
 def heard(caplog):
     caplog.set_level(logging.WARNING, logger="lcpstep.sweep")
-    caplog.set_level(logging.WARNING, logger="lcpstep.studies")
+    caplog.set_level(logging.WARNING, logger="lcpstep.accuracy.question")

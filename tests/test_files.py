@@ -10,13 +10,13 @@ import pytest
 
 from lagrangian import scenes
 from lcpstep import Moreau
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.study import study
+from lcpstep.accuracy.work_precision import Study
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, FAILED
 from lcpstep.dataset import labelled, save
 from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import replacing
-from lcpstep.studies import study
 from lcpstep.sweep import Store
 
 resource = pytest.importorskip("resource")

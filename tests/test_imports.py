@@ -78,7 +78,7 @@ def test_names_that_are_not_there_are_said():
 
 def test_functions_keep_their_names_when_modules_have_been_imported():
     program = """
-import lcpstep.simulation, lcpstep.studies, lcpstep.continuing, lcpstep.diagnostics
+import lcpstep.simulation, lcpstep.accuracy.study, lcpstep.continuing, lcpstep.diagnostics
 from lcpstep import continued, energy, simulate, study
 print(*(callable(f) and f is getattr(lcpstep, f.__name__) for f in (continued, energy, simulate, study)))
 """

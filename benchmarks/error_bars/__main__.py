@@ -22,7 +22,6 @@ from benchmarks.error_bars.truth import (
     MEASURES,
     METHODS,
     Truth,
-    errors,
     method_of,
     rubbing,
     sizes,
@@ -89,9 +88,10 @@ def on_one(d: Description, index: int, rng: Any) -> Iterator[Outcome]:
     found = []
     for name in METHODS if true else ():
         found.append(one(Outcome(index, d.family, name), scene, method_of(name, d, rng), true))
-    scene, h = rubbing(d, rng), step(d, rng)
-    if scene is not None and (true := truth_of_friction(scene, h)) is not None:
-        found.append(one(Outcome(index, d.family, FRICTION), scene, Moreau(h), true))
+    scene, moreau = rubbing(d, rng), Moreau(step(d, rng))
+    if scene is not None and (true := truth_of_friction(scene, moreau.h)) is not None:
+        for name, method in zip(FRICTION, (moreau, method_of("EventDriven", d, rng)), strict=True):
+            found.append(one(Outcome(index, d.family, name), scene, method, true))
     yield from (x for x in found if x is not None)
 
 
@@ -108,17 +108,16 @@ def one(start: Outcome, scene: Any, method: Method, true: Truth) -> Outcome | No
     start.reason, start.seconds = run.error.reason, between - begin
     if start.until < AT_ONCE:
         return start
-    bars, found = told(run.error), errors(run, true.of(run), run.error.until)
-    unsure = errors(true.by_steps, true.by_events, run.error.until)
-    of = sizes(run)
+    found, unsure = true.told(run)
+    bars, of = told(run.error, found.known), sizes(run)
     for m in MEASURES:
-        larger = max(bars[m], found[m])
+        larger = max(bars[m], found.of[m])
         kind = "judged"
         if larger <= ROUNDING * of[m]:
             kind = "rounding"
-        elif not (np.isfinite(found[m]) and unsure[m] <= KNOWN * larger):
+        elif not (np.isfinite(found.of[m]) and unsure[m] <= KNOWN * larger):
             kind = "not known"
-        start.measures[m] = Judged(kind, bars[m], found[m], unsure[m])
+        start.measures[m] = Judged(kind, bars[m], found.of[m], unsure[m])
     return start
 
 

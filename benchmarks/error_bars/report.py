@@ -11,7 +11,7 @@ import numpy as np
 
 from benchmarks.error_bars.truth import FRICTION, MEASURES, METHODS
 
-ROWS = (*METHODS, FRICTION)
+ROWS = (*METHODS, *FRICTION)
 WITHIN = 2.0  # the factor that a bar may be off
 SLOW = 0.01  # CPU seconds of a run from which on costs are compared: below it both are overhead
 

@@ -22,7 +22,7 @@ from benchmarks.work_precision.report import markdown
 from benchmarks.work_precision.siconos import MoreauJean
 from lagrangian import LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, study
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.work_precision import Study
 
 HERE = Path(__file__).parent
 SPREAD = (0.9, 1.0, 1.11)

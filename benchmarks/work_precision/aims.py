@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from benchmarks.work_precision.cost import StepCost
 from benchmarks.work_precision.tables import error_at, table
-from lcpstep.analysis.orders import cost_of
-from lcpstep.analysis.work_precision import Level, Study
+from lcpstep.accuracy.orders import cost_of
+from lcpstep.accuracy.work_precision import Level, Study
 
 OWN, POSITION = "Moreau", "sup_position"
 WANTED = (1e-3, 1e-5, 1e-7, 1e-9)

@@ -15,8 +15,8 @@ import numpy as np
 from benchmarks.stepping.timing import clocked, ratio, take_turns
 from lagrangian import Scene, scenes
 from lcpstep import Located, Moreau, simulate
-from lcpstep.analysis.errors import Difference
-from lcpstep.analysis.reference import find_reference
+from lcpstep.accuracy.errors import Difference
+from lcpstep.accuracy.reference import find_reference
 
 SECONDS = 0.05  # each timing repeats its run for about so long, so that the clock's ticks do not count
 

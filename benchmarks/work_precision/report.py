@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from benchmarks.work_precision.aims import OWN, summary
 from benchmarks.work_precision.cost import StepCost
 from benchmarks.work_precision.tables import error_at, table
-from lcpstep.analysis.orders import Cost
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.orders import Cost
+from lcpstep.accuracy.work_precision import Study
 
 ERRORS = (1e-3, 1e-5, 1e-7)
 TIMES = (1e-3, 1e-2, 1e-1)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.work_precision import Study
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:

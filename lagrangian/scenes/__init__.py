@@ -10,6 +10,7 @@ from lagrangian.scenes.beads import (
     inelastic_collapse,
     newtons_cradle,
 )
+from lagrangian.scenes.belts import mass_on_belt, mass_on_shaken_belt
 from lagrangian.scenes.bouncing_ball import bouncing_ball, dyadic_ball, elastic_ball
 from lagrangian.scenes.bowl import bowl
 from lagrangian.scenes.cam_follower import cam_follower
@@ -29,9 +30,10 @@ from lagrangian.scenes.impact_oscillator import chaotic_oscillator, impact_oscil
 from lagrangian.scenes.kane_pendulum import kane_pendulum
 from lagrangian.scenes.pendulum import pendulum_stop
 from lagrangian.scenes.piles import block_on_feet, heavy_on_light, stack
-from lagrangian.scenes.rocking_block import rocking_block
+from lagrangian.scenes.rocking_block import rocking_block, sliding_rocking_block
 from lagrangian.scenes.rough_contacts import falling_rod, woodpecker
 from lagrangian.scenes.slider_crank import slider_crank
+from lagrangian.scenes.superball import superball
 from lagrangian.scenes.table import ball_on_table, chattering_table, jumping_table
 
 CATALOGUE: dict[str, Entry] = {
@@ -160,6 +162,26 @@ CATALOGUE: dict[str, Entry] = {
         hazard="creeping, or a sign that flips for ever",
         answer="half cycles of amplitude falling by 2 mu N/k; stops within the dead zone at a known place",
     ),
+    "mass-on-belt": Entry(
+        mass_on_belt,
+        hazard="carried along, the mass trembles about the velocity of the belt, or is let go at the wrong place",
+        answer="even belt: arcs of circles, carried to x = mu, then a circle that just touches the belt's velocity",
+    ),
+    "mass-on-shaken-belt": Entry(
+        mass_on_shaken_belt,
+        hazard="turns of the sliding fall inside a step",
+        answer="Den Hartog's motion without a stop, and its multipliers, in closed form",
+    ),
+    "superball": Entry(
+        superball,
+        hazard="the tangent has no restitution, or friction acts with the force of a step and not as an impulse",
+        answer="one bounce undoes the other: velocity and spin in closed form; energy constant",
+    ),
+    "sliding-rocking-block": Entry(
+        sliding_rocking_block,
+        hazard="sticking, sliding and impacts of two corners, of which none may be missed",
+        answer="two equations while a corner slides; momentum against friction and weight",
+    ),
     "slipping-wheel": Entry(
         slipping_wheel,
         hazard="the change from slipping to rolling falls inside a step",
@@ -232,44 +254,12 @@ WITH_MODES: dict[str, Entry] = {  # systems with modes: no contacts, so not for 
 SCENES: dict[str, Entry] = CATALOGUE | WITH_MODES  # all, by name
 
 __all__ = [
-    "CATALOGUE",
-    "SCENES",
-    "WITH_MODES",
-    "Entry",
-    "ball_on_table",
-    "bilinear_oscillator",
-    "block_on_feet",
-    "bouncing_ball",
-    "bowl",
-    "cam_follower",
-    "chaotic_oscillator",
-    "chattering_table",
-    "column",
-    "coulomb_oscillator",
-    "double_pendulum",
-    "driven_bilinear_oscillator",
-    "dry_friction_oscillator",
-    "dyadic_ball",
-    "elastic_ball",
-    "elastic_chain",
-    "elastic_gas",
-    "falling_gas",
-    "galperin",
-    "grazing",
-    "heavy_on_light",
-    "hybrid_abs",
-    "impact_oscillator",
-    "inelastic_collapse",
-    "jumping_table",
-    "kane_pendulum",
-    "newtons_cradle",
-    "pendulum_stop",
-    "rocking_block",
-    "slider_crank",
-    "sliding_block",
-    "slipping_wheel",
-    "slope_landing",
-    "stack",
-    "stick_slip_oscillator",
-    "sticking_oscillator",
-]
+    "CATALOGUE", "SCENES", "WITH_MODES", "Entry", "ball_on_table", "bilinear_oscillator", "block_on_feet",
+    "bouncing_ball", "bowl", "cam_follower", "chaotic_oscillator", "chattering_table", "column",
+    "coulomb_oscillator", "double_pendulum", "driven_bilinear_oscillator", "dry_friction_oscillator", "dyadic_ball",
+    "elastic_ball", "elastic_chain", "elastic_gas", "falling_gas", "falling_rod", "galperin", "grazing",
+    "heavy_on_light", "hybrid_abs", "impact_oscillator", "inelastic_collapse", "jumping_table", "kane_pendulum",
+    "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block", "slider_crank",
+    "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack", "stick_slip_oscillator",
+    "sticking_oscillator", "superball", "woodpecker",
+]  # fmt: skip

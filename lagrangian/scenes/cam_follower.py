@@ -21,7 +21,8 @@ from lagrangian.contacts import LinearContacts
 from lagrangian.profiles import Arc, CamProfile, rotating_cam
 from lagrangian.scene import Scene
 from lagrangian.scenes.catalogue import checked
-from lagrangian.scenes.piecewise import Free, Piecewise
+from lagrangian.scenes.free import Free
+from lagrangian.scenes.piecewise import Piecewise
 from lagrangian.system import Harmonic, LinearSystem
 
 HALF_TURN = math.pi / 2.0  # cam angle at t = 0: the start of the lift, which is the first corner

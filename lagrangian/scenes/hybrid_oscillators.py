@@ -17,6 +17,7 @@ import numpy as np
 from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.hybrid import FALLING, Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.scenes.belts import stick_slip
 from lagrangian.scenes.catalogue import checked
 from lagrangian.scenes.dry_friction import coulomb_oscillator
 
@@ -244,14 +245,5 @@ def stick_slip_oscillator(
 
 
 def _stick_slip(times: Array, belt: float, static: float, kinetic: float, x0: float) -> Array:
-    """Carried by the belt, then an arc of a circle about (kinetic, 0), and so on."""
-    a = static - kinetic
-    theta = math.atan2(belt, a)
-    slip, period = math.pi + 2.0 * theta, math.pi + 2.0 * theta + 2.0 * a / belt
-    since = np.asarray(times, dtype=float) - (static - x0) / belt  # the first slip
-    tau = np.where(since < 0.0, since, since % period)
-    slipping = (tau >= 0.0) & (tau < slip)
-    angle, radius = tau - theta, math.hypot(a, belt)
-    carried = np.where(tau < 0.0, static + belt * tau, 2.0 * kinetic - static + belt * (tau - slip))
-    x = np.where(slipping, kinetic + radius * np.cos(angle), carried)
-    return np.stack([x, np.where(slipping, -radius * np.sin(angle), belt)], axis=1)
+    """`stick_slip` as states (x, x')."""
+    return np.stack(stick_slip(times, belt, static, kinetic, x0), axis=1)

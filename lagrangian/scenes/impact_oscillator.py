@@ -15,7 +15,8 @@ from lagrangian.checks import Array
 from lagrangian.contacts import LinearContacts
 from lagrangian.scene import Scene
 from lagrangian.scenes.catalogue import checked
-from lagrangian.scenes.piecewise import Free, Piecewise
+from lagrangian.scenes.free import Free
+from lagrangian.scenes.piecewise import Piecewise
 from lagrangian.system import Harmonic, LinearSystem
 
 

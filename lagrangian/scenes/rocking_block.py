@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lagrangian.checks import Array
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.friction import Coulomb
@@ -24,6 +25,7 @@ from lagrangian.scenes.catalogue import checked
 from lagrangian.system import Harmonic, LinearSystem, System
 
 FLIGHTS = 4000  # more than any block slender enough to rock makes before its flights fall below rounding
+SWING = 1001  # angles at which the friction needed is looked for
 SMALLEST = 1e-17  # rate, relative to the first, at which it stands
 
 
@@ -75,7 +77,8 @@ def rocking_block(
     Parameters
     ----------
     b, h : half width and half height [m]
-    mu : friction of the corners, for the form "corners"; large, so that they do not slide
+    mu : friction of the corners, for the form "corners"; from `friction_needed` on they do not slide, and the motion
+        is known in closed form
     """
     alpha, R = math.atan2(b, h), math.hypot(b, h)
     if not (b > 0.0 and h > 0.0 and g > 0.0):
@@ -118,24 +121,74 @@ def rocking_block(
         q = np.stack([side + across, up, theta], axis=1)
         return q, np.stack([-up * rate, across * rate, rate], axis=1)
 
-    q0, v0 = (x[0] for x in exact(np.zeros(1)))
-    return Scene(
-        system=LinearSystem(M=np.diag([1.0, 1.0, R**2 / 3.0]), force=Harmonic(constant=[0.0, -g, 0.0])),
-        contacts=Contacts(
-            2,
-            corner_gaps,
-            corner_jacobian,
-            bias=corner_bias,
-            restitution=0.0,
-            friction=Coulomb(mu, corner_tangent),
-        ),
-        q0=q0,
-        v0=v0,
-        p=[b, h],
-        exact=exact,
-        coordinates=["x [m]", "y [m]", "angle [rad]"],
-        **common,
+    start = [x[0] for x in exact(np.zeros(1))]
+    known = exact if mu > friction_needed(theta0, b, h) else None
+    return _on_corners(b, h, g, mu, start, exact=known, **common)
+
+
+@checked
+def sliding_rocking_block(
+    b: float = 0.1,
+    h: float = 0.4,
+    theta0: float = 0.15,
+    v0: float = 0.3,
+    mu: float = 0.15,
+    g: float = 9.81,
+    t_end: float = 2.0,
+) -> Scene:
+    """Block let go at the angle theta0 [rad] while its corner slides with v0 [m/s]; it rocks, slides and sticks.
+
+    Until its corner stops, or it stands, the normal force follows from the angle: two equations are left. Its impacts
+    obey Moreau's law, without restitution. Source of the model: H. Yim, A. Chopra, J. Penzien, Rocking response of
+    rigid blocks to earthquakes, Earthquake Engineering and Structural Dynamics 8 (1980) 565.
+    """
+    for name, x in (("b", b), ("h", h), ("g", g), ("mu", mu)):
+        checks.positive(name, x)
+    if not 0.0 < theta0 < math.atan2(b, h):
+        raise ValueError(f"theta0: expected an angle in (0, {math.atan2(b, h):.6g}), got {theta0!r}")
+    s, c = math.sin(theta0), math.cos(theta0)
+    return _on_corners(
+        b, h, g, mu, [[b * c - h * s - b, b * s + h * c, theta0], [v0, 0.0, 0.0]],
+        t_span=(0.0, t_end), name="sliding-rocking-block",
+        parameters={"b": b, "h": h, "theta0": theta0, "v0": v0, "mu": mu, "g": g},
+    )  # fmt: skip
+
+
+def _on_corners(b: float, h: float, g: float, mu: float, start: list[Any], **named: Any) -> Scene:
+    """A block of 1 kg on its two lower corners."""
+    inertia = (b**2 + h**2) / 3.0
+    contacts = Contacts(
+        2,
+        corner_gaps,
+        corner_jacobian,
+        bias=corner_bias,
+        restitution=0.0,
+        friction=Coulomb(mu, corner_tangent),
     )
+    return Scene(
+        system=LinearSystem(M=np.diag([1.0, 1.0, inertia]), force=Harmonic(constant=[0.0, -g, 0.0])),
+        contacts=contacts,
+        q0=start[0],
+        v0=start[1],
+        p=[b, h],
+        coordinates=["x [m]", "y [m]", "angle [rad]"],
+        **named,
+    )
+
+
+def friction_needed(theta0: float, b: float, h: float) -> float:
+    """The coefficient of friction from which on the corners of a block let go at theta0 do not slide.
+
+    While it turns about a corner, a = theta'' e + theta'^2 n of the middle gives the ratio of the forces, and the
+    velocities before and after an impact that of the impulses. Later, smaller swings ask for less.
+    """
+    alpha, c, r = math.atan2(b, h), 0.75, impact_ratio(b, h)  # lengths in R = 1, and g = 1
+    psi = alpha - theta0 * np.linspace(0.0, 1.0, SWING)  # angle of the diagonal from the vertical
+    turn = c * np.sin(psi)
+    rate2 = 2.0 * c * (np.cos(alpha - theta0) - np.cos(psi))
+    across = turn * np.cos(psi) - rate2 * np.sin(psi)
+    up = 1.0 - turn * np.sin(psi) - rate2 * np.cos(psi)
+    return max(float(np.max(np.abs(across / up))), h * (1.0 - r) / (b * (1.0 + r)))
 
 
 def impact_ratio(b: float, h: float) -> float:

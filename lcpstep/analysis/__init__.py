@@ -1,4 +1,4 @@
-"""What motions have in common and what sets them apart: errors, references, horizons, proofs."""
+"""What motions have in common and what sets them apart: orbits, attractors, diagrams, basins, proofs."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from lcpstep.audit import motion
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.windows import Windows
+from lcpstep.events import EventDriven
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
@@ -93,7 +94,9 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
         return motion.Oscillation(oscillator_of(m), s.t, y, w), s.t, s.mode[:-1], (0.0, ROUNDING)
     if isinstance(dense, Moved):
         s = dense.s
-        error = (TOLERANCES * method.atol, TOLERANCES * method.rtol)
+        error = (
+            (TOLERANCES * method.atol, TOLERANCES * method.rtol) if by_tolerance(method) else (0.0, ROUNDING)
+        )
         if dense.constant:
             return motion.parabolas(s.t, s.q, s.v, dense.F[:-1, 0]), s.t, None, (0.0, ROUNDING)
         return motion.by_steps(s.t, s.q, dense.F[:-1], s.length[:-1]), s.t, None, error
@@ -106,6 +109,11 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     q, _ = run.at(times.ravel())
     inner = q.reshape(len(times), INNER, -1)
     return motion.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
+
+
+def by_tolerance(method: Any) -> bool:
+    """Whether the motion between kept states is known to a tolerance; steps of one size know theirs exactly."""
+    return isinstance(method, EventDriven)
 
 
 def between(run: Trajectory, jumps: Mask) -> Array:

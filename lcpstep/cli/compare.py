@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.analysis.contest import Contest, Entrant, contest
+from lcpstep.accuracy.contest import Contest, Entrant, contest
 from lcpstep.cli.common import (
     DONE,
     FAILED,

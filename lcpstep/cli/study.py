@@ -10,10 +10,10 @@ from typing import Any
 
 from lagrangian import Scene
 from lcpstep import EventDriven, Located, Moreau, study
-from lcpstep.analysis.errors import MEASURES
-from lcpstep.analysis.reference import find_reference
-from lcpstep.analysis.solvers import LEVELS, compare_solvers
-from lcpstep.analysis.work_precision import Study
+from lcpstep.accuracy.errors import MEASURES
+from lcpstep.accuracy.reference import find_reference
+from lcpstep.accuracy.solvers import LEVELS, compare_solvers
+from lcpstep.accuracy.work_precision import Study
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
     DONE,

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.partners import Alike
+from lcpstep.errorbar.partners import Alike, Apart
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
@@ -25,6 +25,12 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 LEAST, MOST = 199, 599  # breaks besides the events
 GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+JUMP = (
+    10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
+)
+TINY = float(np.finfo(float).tiny)
+GRADES = 12  # times an interval after an event is halved towards it
+BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
@@ -46,15 +52,30 @@ class Distance:
 
 def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
     """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone."""
-    few = len(run.t) <= MOST
-    wanted = np.linspace(float(run.t[0]), end, LEAST if few else MOST)
+    steps = _telling(run)
     if not every:
-        kept = run.t[run.t <= end]
-        return kept if len(kept) <= MOST else kept[np.unique(np.searchsorted(kept, wanted, side="right") - 1)]
-    events = event_times(run, other)
-    middles = 0.5 * (events[1:] + events[:-1])[:: 1 + len(events) // MOST]
-    t = np.unique(np.concatenate([wanted, events, middles, run.t if few else wanted]))
+        return steps[steps <= end]
+    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, LEAST)
+    t = np.unique(np.concatenate([even, events, _after(events, run), steps]))
     return t[(t >= run.t[0]) & (t <= end)]
+
+
+def _telling(run: Trajectory) -> Array:
+    """Kept times, or as many as are to be looked at: they lie as near to each other as time and velocities go on."""
+    if len(run.t) <= MOST:
+        return run.t
+    turns = np.abs(np.diff(run.v, axis=0)).sum(axis=1)
+    share = np.minimum(turns, JUMP * turns.mean())
+    going = np.cumsum(np.diff(run.t) / (run.t[-1] - run.t[0]) + share / max(share.sum(), TINY))
+    places = np.searchsorted(going, np.linspace(0.0, going[-1], MOST))
+    return run.t[np.unique(np.append(places, len(run.t) - 1))]
+
+
+def _after(events: Array, run: Trajectory) -> Array:
+    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
+    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // MOST], run.t[-1:]])
+    halves = 0.5 ** np.arange(1, 2 + min(GRADES, MOST // len(some)))
+    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
 
 
 def event_times(run: Trajectory, other: Trajectory) -> Array:
@@ -62,11 +83,21 @@ def event_times(run: Trajectory, other: Trajectory) -> Array:
     return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
 
 
-def at(run: Trajectory, t: Array) -> tuple[Array, Array]:
-    """States at times in any order, asked for once: some runs are run again for those between kept ones."""
-    times, place = np.unique(t, return_inverse=True)
-    k = np.searchsorted(run.t, times, side="right") - 1
-    q, v = (run.q[k], run.v[k]) if np.array_equal(run.t[k], times) else run.at(times)
+def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
+    """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
+    events = event_times(run, other)
+    short = np.flatnonzero(np.diff(events) < BRIEF * span)
+    return np.column_stack([events[short], events[short + 1]])
+
+
+def at(run: Trajectory, t: Array, every: bool) -> tuple[Array, Array]:
+    """States at times in their order, which are kept ones where not every state was kept."""
+    if not every:
+        k = np.searchsorted(run.t, t, side="right") - 1
+        return run.q[k], run.v[k]
+    later = np.diff(t, prepend=-math.inf) > 0.0
+    q, v = run.at(t[later])
+    place = np.cumsum(later) - 1
     return q[place], v[place]
 
 
@@ -88,51 +119,70 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
         kept = (run.t[k] > events[end]) & (run.t[k] < until)
         after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
         told = until > events[end]
-        apart = np.max(np.abs(at(run, after[told])[1] - at(other, after[told])[1]), axis=1)
         found = np.full(end.shape, math.inf)
-        found[told] = np.where(apart <= SAME * np.broadcast_to(jump, end.shape)[told], after[told], math.inf)
+        differ = moving_apart(run, other)(after[told], np.broadcast_to(jump, end.shape)[told])
+        found[told] = np.where(differ, math.inf, after[told])
         soonest = np.min(found, axis=0)
         return np.where(np.isfinite(soonest), soonest, math.nan)
 
     return again
 
 
+def moving_apart(run: Trajectory, other: Trajectory) -> Apart:
+    """Whether velocities differ at times by more than a share of jumps."""
+
+    def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
+        times, place = np.unique(
+            t, return_inverse=True
+        )  # some runs are run again for those between kept ones
+        apart = np.abs(run.at(times)[1] - other.at(times)[1])
+        return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
+
+    return differ
+
+
 def distance(
-    m: Model, runs: tuple[Trajectory, Trajectory], every: bool, t: Array, windows: Array, around: float
-) -> Distance:  # fmt: skip
-    """Distances of two runs; the largest of velocities without windows and what is `around` them."""
-    n, n_q = len(t), runs[0].scene.n_q
-    times = np.concatenate([t, (t[:-1, None] + np.diff(t)[:, None] * GAUSS).ravel() if every else t[:0]])
-    one, other = (at(x, times) for x in runs)
+    m: Model,
+    runs: tuple[Trajectory, Trajectory],
+    every: bool,
+    t: Array,
+    windows: Array,
+    around: float,
+    falls: float,
+) -> Distance:
+    """Distances of two runs at breaks t; the largest of velocities without windows and what is `around` them.
+
+    falls : see `fall` [m/s]
+    """
+    n_q, length = runs[0].scene.n_q, float(t[-1] - t[0])
+    times = _with_nodes(t) if every else t
+    one, other = (at(x, times, every) for x in runs)
     energies = [energy(m, times, *x) for x in (one, other)]
     apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
-    far, fast = (np.max(np.abs(x), axis=0) for x in one)
-    floor = ROUNDING * EPS * np.array([*(far + np.max(np.abs(t)) * fast), *fast, np.max(np.abs(energies[0]))])
-    struck = _between(windows, around, times)[:, None]
-    largest = _largest(np.where(struck & (np.arange(2 * n_q + 1) >= n_q), 0.0, apart), n) + floor
-    integral = _integral(t, apart) + floor * (t - t[0])[:, None]
+    far, fast = (np.abs(x).max(axis=0) for x in one)
+    floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
+    integral = _integral(t, apart, every) + floor * (t - t[0])[:, None]
     if not every and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
+    windows = np.concatenate([windows, brief(*runs, length)])
+    apart[_between(windows, around, times), n_q:] = 0.0
+    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * every] + floor
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
-    length = AT_REST * fall(m, runs[0]) * float(t[-1] - t[0])
-    length += STILL * float(np.max(floor[:n_q], initial=0.0))
-    size = 0.5 * float(np.max(np.ptp(one[0][:n], axis=0), initial=0.0))
-    return Distance(position, velocity, power, max(size, length))
+    least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
+    size = 0.5 * float(np.ptp(one[0], axis=0).max())
+    return Distance(position, velocity, power, max(size, least))
 
 
-def _largest(x: Array, n: int) -> Array:
-    """Largest values until each of n times, of those at the times and at the nodes between them."""
-    peaks = x[:n].copy()
-    if len(x) > n:
-        peaks[1:] = np.maximum(peaks[1:], np.max(x[n:].reshape(n - 1, len(GAUSS), -1), axis=1))
-    return np.asarray(np.maximum.accumulate(peaks))
+def _with_nodes(t: Array) -> Array:
+    """Times (n,), and after each but the last the nodes between it and the next."""
+    between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
+    return np.append(between.ravel(), t[-1])
 
 
-def _integral(t: Array, x: Array) -> Array:
+def _integral(t: Array, x: Array, every: bool) -> Array:
     """Integral up to each time, by the nodes between times, or by the times where there are none."""
-    n = len(t)
-    means = 0.5 * (x[1:n] + x[: n - 1]) if len(x) == n else x[n:].reshape(n - 1, len(GAUSS), -1).mean(axis=1)
+    means = 0.5 * (x[1::3] + x[2::3] if every else x[1:] + x[:-1])
     return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
 
 

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.companions import Companion, companions, followed, in_words
-from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks
+from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks, moving_apart
 from lcpstep.errorbar.partners import Pairs, Partners, partners
-from lcpstep.kernels.model import Model
 from lcpstep.model import model
 from lcpstep.recording import Kept
 from lcpstep.stepping.moreau import Moreau
@@ -73,26 +72,32 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
     return ErrorBar(start, position, velocity, energy, missing, missing, at, reason, at, ())
 
 
-def against(run: Trajectory, every: bool, found: Found, limit: float = math.inf) -> ErrorBar:
-    """The bar from a companion that measures and others that look for the same events, up to a limit."""
+def against(
+    run: Trajectory, every: bool, found: Found, limit: float = math.inf, resolution: float | None = None
+) -> ErrorBar:
+    """The bar from a companion that measures and others that look for the same events, up to a limit.
+
+    resolution : within what time impacts of a contact are one; default: what the run resolves [s]
+    """
     other = found[0][1]
+    resolution = resolved(run) if resolution is None else resolution
     until, reason = _reached(run), ""
     for c, x in found:
         if _reached(x) < until:
             until = _reached(x)
             reason = f"{in_words(c.method)} ends there, {x.message}"
     m = model(run.scene)
-    logs = [_matched(m, run, x, every, until) for _, x in found]
+    falls = fall(m, run)
+    logs = [_matched(run, x, every, until, resolution, falls) for _, x in found]
     for (c, _), pairs in zip(found, logs, strict=True):
         if pairs.differs < until:
             until = pairs.differs
             reason = f"there the run and {in_words(c.method)} see different events, {pairs.reason}"
-    around = ROUNDING * float(np.max(np.abs(run.t)))
-    around += 0.5 * resolved(run) if isinstance(run.method, Moreau) else 0.0
+    around = ROUNDING * float(np.max(np.abs(run.t))) + 0.5 * resolution
     t = looks(run, other, every, min(limit, until - around if reason else until))
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
-    apart = distance(m, (run, other), every, t, logs[0].windows, around)
+    apart = distance(m, (run, other), every, t, logs[0].windows, around, falls)
     texts = tuple(in_words(c.method) for c, _ in found)
     horizon = _lost(t, apart) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
@@ -116,11 +121,15 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
     return times, impulses
 
 
-def _matched(m: Model, run: Trajectory, other: Trajectory, every: bool, until: float) -> Partners:
+def _matched(
+    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, falls: float
+) -> Partners:
     """Partners of the impacts of two runs; a jump is none that is rounding of what moves, or would."""
-    still = STILL * (float(np.max(np.abs(run.v))) + fall(m, run))
-    same = alike(run, other, resolved(run)) if every else None
-    return partners(run.impacts, other.impacts, until, resolved(run), still, same)
+    still = STILL * (float(np.max(np.abs(run.v))) + falls)
+    if not every:
+        return partners(run.impacts, other.impacts, until, resolution, still)
+    same, differ = alike(run, other, resolution), moving_apart(run, other)
+    return partners(run.impacts, other.impacts, until, resolution, still, same, differ)
 
 
 def resolved(run: Trajectory) -> float:

@@ -21,19 +21,25 @@ from lcpstep.trajectory import Kind
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 Alike = Callable[[Array, Array], Array]
+Apart = Callable[[Array, Array], NDArray[np.bool_]]
 WEAK = 0.02  # of the largest jump: the error of the motion shows what a weaker impact without partner does
 ALIKE = 0.5  # of the larger jump, by which those of partners may differ
 NEAR = 0.5  # of the time to the next impact of the contact
 SLIGHT = 1e-3  # of the time over which impacts fall, that those of a weak pair may be apart to be left out
 MARGIN = 4.0  # largest differences of partners' times, by which an impact may fall beyond the end of a run
+LATE = 4.0  # times the median difference of partners' times: such partners are asked whether they are some
 
 
 class Suspect(NamedTuple):
-    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it."""
+    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it.
+
+    since : when the contact did something else in one of the runs, shortly before; its time where it did not [s]
+    """
 
     time: float
     jump: float
     reason: str
+    since: float = math.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +62,7 @@ class Blows:
 
 
 class Pairs(NamedTuple):
-    """Pairs of blows (k,): from the first to the last impact, differences of time and impulse; whether weak.
+    """Pairs of blows (k,): from the first to the last impact, differences of time and impulse, jumps; whether weak.
 
     rows : places of their impacts in the first log, and `many` (k,) how many belong to each
     """
@@ -65,6 +71,7 @@ class Pairs(NamedTuple):
     stop: Array
     time: Array
     impulse: Array
+    jump: Array
     weak: NDArray[np.bool_]
     rows: Places
     many: Places
@@ -73,22 +80,28 @@ class Pairs(NamedTuple):
     def none(cls) -> Pairs:
         """No pairs."""
         numbers, places = np.zeros(0), np.zeros(0, dtype=np.intp)
-        return cls(numbers, numbers, numbers, numbers, np.zeros(0, dtype=bool), places, places)
+        return cls(numbers, numbers, numbers, numbers, numbers, np.zeros(0, dtype=bool), places, places)
 
     @classmethod
-    def of(cls, a: Blows, b: Blows, i: Places, j: Places, weak: float) -> Pairs:
+    def joined(cls, a: Blows, b: Blows, i: Places, j: Places, weak: float) -> Pairs:
         """The blows i of one run and j of the other."""
         chosen = np.isin(np.repeat(np.arange(len(a.count)), a.count), i)
+        jump = np.maximum(a.jump[i], b.jump[j])
         return cls(
             np.minimum(a.first[i], b.first[j]), np.maximum(a.last[i], b.last[j]), np.abs(a.first[i] - b.first[j]),
-            np.abs(a.impulse[i] - b.impulse[j]), np.maximum(a.jump[i], b.jump[j]) <= weak, a.rows[chosen],
-            a.count[i],
+            np.abs(a.impulse[i] - b.impulse[j]), jump, jump <= weak, a.rows[chosen], a.count[i],
         )  # fmt: skip
 
     @property
     def of_row(self) -> Places:
         """The pair that each of the rows belongs to."""
         return np.repeat(np.arange(len(self.many)), self.many)
+
+    def of(self, chosen: NDArray[np.bool_]) -> Pairs:
+        """Some of them."""
+        of_row = chosen[self.of_row]
+        columns = [x[of_row] if name == "rows" else x[chosen] for name, x in self._asdict().items()]
+        return Pairs(*columns)
 
     def windows(self, resolution: float) -> Array:
         """Times in which one run has struck and the other has not, with as much before and after, (l, 2) [s]."""
@@ -115,8 +128,9 @@ class Partners(NamedTuple):
 
 
 def partners(
-    a: Any, b: Any, end: float, resolution: float, still: float = 0.0, alike: Alike | None = None
-) -> Partners:
+    a: Any, b: Any, end: float, resolution: float, still: float = 0.0, alike: Alike | None = None,
+    apart: Apart | None = None,
+) -> Partners:  # fmt: skip
     """Match two impact logs.
 
     Parameters
@@ -126,6 +140,7 @@ def partners(
     still : jumps below it are rounding [m/s]
     alike : from when on two runs move alike again after events, given by their times and jumps (k,); nan where they
         do not. Such events do not count as different
+    apart : whether two runs have other velocities at times (k,), by more than a share of jumps (k,)
     """
     a, b = (np.asarray(log) for log in (a, b))  # record arrays look their fields up slowly
     struck = [np.flatnonzero((log["kind"] == Kind.IMPACT) & (log["time"] <= end)) for log in (a, b)]
@@ -139,18 +154,54 @@ def partners(
             for log, jump, k in zip((a, b), jumps, struck, strict=True)
         )
         i, j, differing = matched(one, other, weak, resolution)
-        found = Pairs.of(one, other, i, j, weak)
-        late = end - MARGIN * float(np.max(found.time, initial=resolution))
-        suspects += [
-            x._replace(reason=f"{x.reason} at contact {contact}") for x in differing if x.time < late
-        ]
-        windows += [np.array([[x.time, end]]) for x in differing if x.time >= late]
+        found, alone = _credible(Pairs.joined(one, other, i, j, weak), resolution, apart)
+        margin = MARGIN * float(np.max(found.time, initial=resolution))
+        times = np.concatenate([log["time"][log["contact"] == contact] for log in (a, b)])
+        for x in differing + alone:
+            if x.time < end - margin:
+                since = _since(x.time, times, found.stop, margin)
+                suspects.append(x._replace(reason=f"{x.reason} at contact {contact}", since=since))
+            else:
+                windows.append(np.array([[x.time, end]]))
         windows.append(_tails((a, b), contact, found.start, (one, other), end))
         pairs.append(found)
     all_pairs = Pairs(*(np.concatenate(x) for x in zip(*pairs, strict=True)))
     first, harmless = _first(suspects, alike)
     windows += [all_pairs.windows(resolution), harmless]
     return Partners(all_pairs, np.concatenate(windows), first.time, first.reason)
+
+
+def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pairs, list[Suspect]]:
+    """Pairs without those that are no partners, and these impacts: between partners one run alone has struck.
+
+    Where velocities are alike between two impacts far from each other, each belongs to one that the other run logged
+    at another contact: walls that meet, or two of one surface, may be named in either way.
+    """
+    if apart is None or not len(pairs.time):
+        return pairs, []
+    late = np.flatnonzero(
+        (pairs.time > LATE * np.sort(pairs.time)[len(pairs.time) // 2]) & (pairs.time > resolution)
+    )
+    if not len(late):
+        return pairs, []
+    good = np.ones(len(pairs.time), dtype=bool)
+    good[late] = apart((pairs.start + 0.5 * pairs.time)[late], pairs.jump[late])
+    lost, words = pairs.of(~good), "an impact without partner"
+    alone = [
+        Suspect(float(t), float(jump), words)
+        for x in (lost.start, lost.start + lost.time)
+        for t, jump in zip(x, lost.jump, strict=True)
+    ]
+    return pairs.of(good), alone
+
+
+def _since(time: float, times: Array, stops: Array, margin: float) -> float:
+    """When a contact did something before an event without partner, and after its last impact that has one.
+
+    One run may rest where the other strikes once more: their velocities differ from when the first has come to rest.
+    """
+    after = float(np.max(stops[stops < time], initial=-math.inf))
+    return float(np.min(times[(times > max(after, time - margin)) & (times <= time)], initial=time))
 
 
 def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
@@ -160,7 +211,7 @@ def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array
     if suspects and alike is not None:
         again = alike(*(np.array([getattr(x, name) for x in suspects]) for name in ("time", "jump")))
     harmful = [x for x, time in zip(suspects, again, strict=True) if not math.isfinite(time)]
-    harmless = [(x.time, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
+    harmless = [(x.since, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
     first = harmful[0] if harmful else Suspect(math.inf, 0.0, "")
     return first, np.array(harmless).reshape(-1, 2)
 
@@ -217,11 +268,16 @@ def _room(time: Array, resolution: float) -> Array:
 
 
 def _tails(logs: tuple[Any, Any], contact: int, last: Array, both: tuple[Blows, Blows], end: float) -> Array:
-    """From the last impacts of chattering sequences that have partners to where the sequences end in both runs."""
+    """From the last impacts of chattering sequences that have partners to where the sequences end in both runs.
+
+    A sequence begins where the contact has closed, opened or come to rest before.
+    """
     struck, found = np.concatenate([x.first for x in both]), []
     for log in logs:
-        for stop in log["time"][(log["kind"] == Kind.ACCUMULATION) & (log["contact"] == contact)]:
-            before = last[last <= stop]
+        own = log[log["contact"] == contact]
+        turns = own["time"][own["kind"] != Kind.IMPACT]
+        for stop in own["time"][own["kind"] == Kind.ACCUMULATION]:
+            before = np.concatenate([last[last <= stop], turns[turns < stop]])
             since = np.max(before) if len(before) else np.min(struck[struck <= stop], initial=stop)
             found.append((since, min(stop, end)))
     return np.array(found).reshape(-1, 2)

@@ -18,6 +18,12 @@ REASONS: dict[tuple[str, str, str], str] = {
         "states",
     ): "order two, times the growth of errors from impact to impact",
     (MOREAU, "bouncing-ball", "rest"): "at rest to rounding, not exactly",
+    (MOREAU, "superball", "states"): "each impact is late by up to a step, and the phase drifts",
+    (
+        MOREAU,
+        "mass-on-shaken-belt",
+        "states",
+    ): "the sliding turns about at the ends of steps only",
     (MOREAU, "elastic-ball", ""): "each impact is late by up to a step, and the phase drifts",
     (
         MOREAU,

@@ -6,11 +6,22 @@ from collections.abc import Callable, Iterable
 
 from lagrangian.scenes import CATALOGUE
 from lcpstep.errors import UnknownName
-from lcpstep.hard import balls, beads, cams, chaos, friction, oscillators, pendulums, piles, tables
+from lcpstep.hard import (
+    balls,
+    beads,
+    cams,
+    chaos,
+    friction,
+    oscillators,
+    pendulums,
+    piles,
+    stick_slip,
+    tables,
+)
 from lcpstep.hard.check import CHECKS, Row, run_check
 from lcpstep.hard.methods import METHODS
 
-FAMILIES = (balls, tables, oscillators, pendulums, beads, piles, cams, friction, chaos)
+FAMILIES = (balls, tables, oscillators, pendulums, beads, piles, cams, friction, stick_slip, chaos)
 
 
 def table(

@@ -12,6 +12,7 @@ COLOURS = "tab20"
 def basins(data: Any, title: str = "") -> Any:
     """Figure of a basin dataset: one colour an attractor, white for none, grey for the obstacle."""
     from matplotlib import colormaps
+
     from lcpstep.plot.figures import Figure
 
     label = data["label"].values

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.analysis.contest import Contest
+from lcpstep.accuracy.contest import Contest
 from lcpstep.plot.work_precision import whole_decades
 
 # Lines and marks tell them apart without colours

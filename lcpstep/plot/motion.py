@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
-from lcpstep.compare import Comparison
+from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot.words import method_words
 from lcpstep.trajectory import Kind, Trajectory

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.analysis.work_precision import UNFIT, Level, Study
+from lcpstep.accuracy.work_precision import UNFIT, Level, Study
 
 MARKERS = "osD^vPX*<>"
 FLOOR = "known of the reference"  # below it errors are the reference's own

@@ -81,15 +81,27 @@ class Located:
         from lcpstep.model import require
 
         check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
-        require(scene, "Located", joints=True, friction=False)
+        if scene.contacts is not None and scene.contacts.friction is not None:
+            return self.run_with_friction(scene, kept, progress)
         variant = "a tolerance" if self.tolerance is not None else f"order={self.order!r}"
         joints = self.order == 2 and self.tolerance is None
-        require(scene, f"Located with {variant}", joints=joints, friction=True)
+        require(scene, f"Located with {variant}", joints=joints, friction=False)
         if self.order == "exact":
             require_linear(scene)
         from lcpstep.stepping.pieces.run import LocatedRun
 
         return LocatedRun(self, scene, kept).finish(progress)
+
+    def run_with_friction(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
+        """The motion of a scene with friction."""
+        from lcpstep.model import require
+
+        if self.order == "exact" or self.tolerance is not None:
+            variant = "a tolerance" if self.tolerance is not None else "order='exact'"
+            require(scene, f"Located with {variant}", joints=True, friction=False)
+        from lcpstep.stepping.rubbing.run import RubbingRun
+
+        return RubbingRun(self, scene, kept).finish(progress)
 
 
 def require_linear(scene: Scene) -> None:

@@ -46,7 +46,7 @@ class Attempts(Control):
     m, plan, s, rows, record    as the loop has them; the matrices of the plan are those of the part at hand
     times, n_times, next_time   states asked for, which are kept here and not by the loop
     restitution                 the scene's own, (n_c,)
-    q, v, force, g, u, closed, impulse    the state at the start of the step
+    q, v, force, g, u, closed, impulse    the state (marks of what sticks follow `closed`) at the start of the step
     steps, row, event, asked    counters there
     one_q, one_v                where the one step led
     part_q, part_v, part_g, part_u        the state at the start of the part at hand
@@ -85,7 +85,7 @@ class Attempts(Control):
     def place_saved(self) -> None:
         """Where the state at the start of steps and parts is kept."""
         n_q, n_c = self.s.n_q, self.s.n_c
-        self.kept = np.zeros(SAVED * n_q + 5 * n_c + self.rows.n), np.zeros(n_c, dtype=np.intp)
+        self.kept = np.zeros(SAVED * n_q + 5 * n_c + self.rows.n), np.zeros(2 * n_c, dtype=np.intp)
         self.steps_before = self.row = self.event = self.asked = 0
         self.q, self.closed = doubles(self.kept[0]), indices(self.kept[1])
         self.v, self.force = after(self.q, n_q), after(self.q, 2 * n_q)
@@ -225,7 +225,7 @@ class Attempts(Control):
         copy(self.force, self.s.force, self.s.n_q)
         copy(self.g, self.s.g, self.s.n_c)
         copy(self.u, self.s.u, self.s.n_c)
-        copy_indices(self.closed, self.s.closed, self.s.n_c)
+        copy_indices(self.closed, self.s.closed, 2 * self.s.n_c)
         copy(self.impulse, self.s.impulse, self.rows.n)
         self.steps_before = self.s.steps
         self.row, self.event, self.asked = self.record.row, self.record.event, self.record.next_time
@@ -239,7 +239,7 @@ class Attempts(Control):
         copy(self.s.force, self.force, self.s.n_q)
         copy(self.s.g, self.g, self.s.n_c)
         copy(self.s.u, self.u, self.s.n_c)
-        copy_indices(self.s.closed, self.closed, self.s.n_c)
+        copy_indices(self.s.closed, self.closed, 2 * self.s.n_c)
         copy(self.s.impulse, self.impulse, self.rows.n)
         self.s.steps, self.s.iteration = self.steps_before, 0
         self.record.row, self.record.event, self.record.next_time = self.row, self.event, self.asked

@@ -15,7 +15,7 @@ from lagrangian import Scene
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
-from lcpstep.model import models
+from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.moreau_by_tolerance import Attempts
@@ -155,21 +155,21 @@ class MoreauRun(StepRun):
         if code == Status.NEWTON_FAILED:
             words = f"Newton's iteration did not converge within {MAX_ITERATIONS} steps"
             return f"{words} {self.where}; try a smaller h"
+        if code == Status.NOT_FINITE and self.rows.coefficients.fault():
+            return f"{self.rows.coefficients.fault()} {self.where}"
         return super().why(code)
 
 
 def rows(scene: Scene, joints: Model, tangents: Model, projected: bool) -> Rows:
     """Joints and tangents of a scene, with the rows of a step."""
-    n_c, contacts = scene.n_c, scene.contacts
+    n_c, contacts, r_T = scene.n_c, scene.contacts, np.zeros(scene.n_c)
     friction = None if contacts is None else contacts.friction
-    mu, r_T = np.zeros(n_c), np.zeros(n_c)
     if contacts is not None and friction is not None:
-        mu = np.array(friction.mu)
-        r_T = np.array(contacts.restitution if friction.restitution is None else friction.restitution)
+        r_T = friction.tangential(contacts.restitution)
     n = n_c + tangents.n_c + joints.n_c
     warm = n == n_c and not projected
-    problem = ContactProblem(mu, friction is not None, n, warm)
-    return Rows(joints, tangents, n_c, tangents.n_c, r_T, projected, problem)
+    problem = ContactProblem(np.zeros(n_c), friction is not None, n, warm)
+    return Rows(joints, tangents, n_c, tangents.n_c, coefficients(scene), r_T, projected, problem)
 
 
 def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool) -> Plan:

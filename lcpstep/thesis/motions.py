@@ -10,10 +10,10 @@ import numpy as np
 
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, Moreau, simulate
+from lcpstep.accuracy.compare import Comparison, compare
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.orbits import PeriodicOrbit, periodic_orbit
 from lcpstep.analysis.starts import random_starts
-from lcpstep.compare import Comparison, compare
 from lcpstep.maps import sections
 from lcpstep.plot.motion import portraits, time_series
 from lcpstep.plot.orbits import motion_panel, state_panel

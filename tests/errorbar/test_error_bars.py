@@ -11,7 +11,7 @@ from scipy.sparse import identity
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate, study
-from lcpstep.analysis.reference import find_reference
+from lcpstep.accuracy.reference import find_reference
 from lcpstep.cli import main
 from lcpstep.errorbar import companions, estimate
 from lcpstep.errors import LcpStepError

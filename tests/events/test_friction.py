@@ -52,6 +52,10 @@ def at_end(scene, *methods):
         scenes.sliding_block(),
         scenes.slope_landing(),
         scenes.slope_landing(slope=0.9, mu=0.3),
+        scenes.mass_on_belt(x0=-2.5, v0=0.9, belt=0.5, mu=0.1, t_end=20.0),
+        scenes.mass_on_shaken_belt(),
+        scenes.superball(),
+        scenes.superball(v0=3.0, mu=0.1),
     ],
     ids=lambda s: s.name,
 )

@@ -13,7 +13,7 @@ from scipy.special import ellipj, ellipk
 
 from lagrangian import System, scenes
 from lcpstep import simulate
-from lcpstep.analysis.reference import TIGHTEST
+from lcpstep.accuracy.reference import TIGHTEST
 from lcpstep.trajectory import Kind
 from tests.events.test_exact import follower, oscillator
 from tests.exact import Body, motion, table

@@ -10,6 +10,7 @@ from benchmarks.judge.case import judged
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
 from tests.judge.kept import KEPT
+from tests.judge.kept_lately import LATELY
 from tests.judge.open import OPEN
 
 QUICK = ("event-driven", "located", "moreau")
@@ -20,9 +21,9 @@ def new(findings):
     return [x for x in findings if x.kind not in OPEN.get(x.method, ())]
 
 
-@pytest.mark.parametrize("name", KEPT)
+@pytest.mark.parametrize("name", [*KEPT, *LATELY])
 def test_what_was_wrong_once_is_right(name):
-    d, methods = KEPT[name]
+    d, methods = (KEPT | LATELY)[name]
     assert judged(d, methods, share=1.0).findings == []
 
 

@@ -12,10 +12,11 @@ from lagrangian.scenes import beads, chain, dry_friction, table
 from lagrangian.scenes.bouncing_ball import impact_times, rest_time
 from lagrangian.scenes.cam_follower import NOSE_END, NOSE_START, detachment_rpm
 from lagrangian.scenes.double_pendulum import REFERENCE_IMPACTS, REFERENCE_STATES, REFERENCE_TIMES
+from lagrangian.scenes.free import Free
 from lagrangian.scenes.grazing import touch
 from lagrangian.scenes.kane_pendulum import energy_change
 from lagrangian.scenes.pendulum import rod, stop_times
-from lagrangian.scenes.piecewise import Free, Piecewise
+from lagrangian.scenes.piecewise import Piecewise
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from tests.exact import IMPACT, RELEASE, Body, motion
 from tests.exact import table as table_to_fifty_digits

@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
-from lcpstep.analysis.errors import Difference
+from lcpstep.accuracy.errors import Difference
 from lcpstep.trajectory import Kind
 
 

@@ -321,3 +321,15 @@ def test_impacts_taken_in_turn_within_a_step_are_those_found_one_by_one(force):
         np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(in_turn.q[-1], one_by_one.q[-1], rtol=0, atol=1e-11)
     np.testing.assert_allclose(in_turn.v[-1], one_by_one.v[-1], rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("order", [2, 4, "exact"])
+def test_a_body_leaves_its_wall_at_speed_while_the_force_on_another_vanishes(order):
+    """Three masses that know nothing of each other; the forces on the first and the last begin at zero."""
+    scene = Scene(
+        system=LinearSystem(M=np.eye(3), force=Harmonic(sine=(1.0, 0.0, -1.0), omega=1.0)),
+        contacts=LinearContacts(np.diag([-1.0, 1.0, -1.0])), q0=np.zeros(3), v0=(0.0, 0.1, 0.0), t_span=(0.0, 2.0),
+    )  # fmt: skip
+    m = simulate(scene, Located(0.01, order))
+    np.testing.assert_allclose(m.q[-1], [0.0, 0.2, np.sin(2.0) - 2.0], rtol=0, atol=2e-6)
+    assert m.impacts.contact.tolist() == [2]

@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
+
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
+    from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -23,18 +26,53 @@ def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
     return divide_by_mass(s.contacts, side, q, v, s.M, s.work, a)
 
 
-def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
-    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
-    n, n_c, n_j, r = s.n_q, s.n_c, s.n_j, s.n_r
+def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`.
+
+    False where a coefficient of friction is none.
+    """
+    measure_rates(s, t, y)
+    if not s.measured or s.moving:
+        measure_biases(s, t, y)
+    if not s.measured:
+        respond(s)
+        s.measured = s.constant
+    return measure_friction(s, t, y)
+
+
+def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
+    """Rows and their rates."""
+    if s.measured and not s.moving:
+        return
+    n, n_j, k = s.n_q, s.n_j, s.n_j + s.n_c
     q, v, side = y, after(y, n), s.clock.inside(t)
     if n_j > 0:
-        bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
         gap_rates(s.joints, side, q, v, s.R, s.rate)
-    bias(s.contacts, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
     gap_rates(s.contacts, side, q, v, after(s.R, n_j * n), after(s.rate, n_j))
-    k = n_j + n_c
-    bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
     gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
+
+
+def measure_biases(s: Rubbing, t: float, y: Doubles) -> None:
+    """Accelerations of the rows that the state alone makes."""
+    n_j, k = s.n_j, s.n_j + s.n_c
+    q, v, side = y, after(y, s.n_q), s.clock.inside(t)
+    if n_j > 0:
+        bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
+    bias(s.contacts, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
+    bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
+
+
+def renew_mass(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The factor of the mass matrix at a state; False where it is singular."""
+    if not s.contacts.mass.given:
+        return True
+    mass(s.contacts, s.clock.inside(t), y, after(y, s.n_q), s.M)
+    return positive_definite(s.M, s.n_q)
+
+
+def respond(s: Rubbing) -> None:
+    """The Delassus matrix of the rows, and what an impulse on each of them does."""
+    n, r = s.n_q, s.n_r
     for i in range(r):
         row = after(s.MR, i * n)
         copy(row, after(s.R, i * n), n)
@@ -43,11 +81,26 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> None:
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
 
 
+def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
+    """Coefficients of friction at the sliding velocities, which on the way to zero do not change their sign."""
+    if not s.coefficients.varies:
+        return True
+    q, v = y, after(y, s.n_q)
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        s.slip[c] = product(s.R, v, i, s.n_q) + s.rate[i]
+        sticks = s.mode[c] == STICKS or s.mode[c] == LEANS
+        if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
+            s.slip[c] = 0.0
+    return s.coefficients.measure(s.clock.inside(t), q, s.slip)
+
+
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
     if not free_motion(s, t, y, s.a_free):
         return False
-    measure_rows(s, t, y)
+    if not measure_rows(s, t, y):
+        return False
     measure_gaps(s, t, y)
     measure_velocities(s, after(y, s.n_q))
     total = 0.0

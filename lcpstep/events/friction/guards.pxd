@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport gap_size, measure_gaps, measure_rows, size_of
+from lcpstep.events.friction.equations cimport gap_size, measure_gaps, measure_rates, size_of
 from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
 from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
@@ -12,6 +12,7 @@ cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
 cdef double RESOLVED, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
+cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(found=bint)
 cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil

@@ -13,7 +13,7 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import gap_size, measure_gaps, measure_rows, size_of
+    from lcpstep.events.friction.equations import gap_size, measure_gaps, measure_rates, size_of
     from lcpstep.events.friction.held import list_multipliers, right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
@@ -35,9 +35,14 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
     if not right_hand_side(s, t, y, s.dy):
         return False
     if s.n_held == 0:
-        measure_rows(s, t, y)
-    measure_gaps(s, t, y)
+        measure_rates(s, t, y)
     list_multipliers(s)
+    return read(s, t, y)
+
+
+def read(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The same where rows and multipliers are known."""
+    measure_gaps(s, t, y)
     v, total = after(y, s.n_q), 0.0
     for c in range(s.n_c):
         i, k = s.n_j + c, GUARDS * c
@@ -49,10 +54,10 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
         if is_held(s, i):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
-        if s.mode[c] == SLIDES and s.mu[c] > 0.0:
+        if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1:
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
-            most = s.mu[c] * s.multiplier[i]
+            most = s.mu_s[c] * s.multiplier[i]
             s.value[k + 1] = most - s.multiplier[i + s.n_c]
             s.value[k + 2] = most + s.multiplier[i + s.n_c]
         total += s.value[k] + s.value[k + 1] + s.value[k + 2]
@@ -78,7 +83,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
             s.band[k] = max(NOISE * gap_size(s, c), -2.0 * s.value[k])  # deeper than it is now
         else:
             s.band[k] = forces
-            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu[c])
+            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c])
             if s.mode[c] == SLIDES:
                 s.band[k + 1] = NOISE * size_of(s, i + s.n_c, s.v)
         for g in range(k, k + GUARDS):

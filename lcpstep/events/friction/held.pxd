@@ -1,4 +1,7 @@
-from lcpstep.events.friction.equations cimport add_impulse, free_motion, measure_gaps, measure_rows
+cimport cython
+from lcpstep.events.friction.equations cimport (
+    add_impulse, free_motion, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
+)
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after
@@ -17,5 +20,9 @@ cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
 cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
 cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
+@cython.locals(zero=bint)
+cdef bint is_on_rows(Rubbing s) noexcept nogil
+cdef bint take_rows(Rubbing s, double t) noexcept nogil
+cdef void push_by_change(Rubbing s, double* x) noexcept nogil
 cdef void project(Rubbing s, double t) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil

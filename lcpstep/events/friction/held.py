@@ -17,8 +17,12 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import (
         add_impulse,
         free_motion,
+        measure_friction,
         measure_gaps,
+        measure_rates,
         measure_rows,
+        renew_mass,
+        respond,
     )
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.vectors import clear, copy, product
@@ -32,7 +36,7 @@ def pull(s: Rubbing, i: int) -> float:
     """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
     c = i - s.n_j
     if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
-        return -s.direction[c] * s.mu[c]
+        return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
     return 0.0
 
 
@@ -148,8 +152,7 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if not free_motion(s, t, y, a):
         return False
     if s.n_held > 0:
-        measure_rows(s, t, y)
-        if not hold_again(s):
+        if not measure_rows(s, t, y) or not (s.constant or hold_again(s)):
             return False
         constrain(s, a, s.bias)
     copy(dy, after(y, n), n)
@@ -169,25 +172,48 @@ def list_multipliers(s: Rubbing) -> None:
 
 def project(s: Rubbing, t: float) -> None:
     """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero."""
-    n = s.n_q
-    for level in range(3):  # positions twice, velocities once
-        x = s.q if level < 2 else s.v
-        if not free_motion(s, t, s.y, s.a_free):
-            return
-        measure_rows(s, t, s.y)
-        if level < 2:
-            measure_gaps(s, t, s.y)
-        if not hold_again(s):
-            return
+    for _ in range(2):
+        measure_gaps(s, t, s.y)
+        if is_on_rows(s) or not take_rows(s, t):
+            break
         for m in range(s.n_held):
             i = s.held[m]
-            if level == 2:
-                s.change[m] = -product(s.R, s.v, i, n) - s.rate[i]
-            else:
-                s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
-        solve_held(s, s.change)
-        for m in range(s.n_held):
-            push(s, s.held[m], s.change[m], x)
+            s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
+        push_by_change(s, s.q)
+    if not take_rows(s, t):
+        return
+    for m in range(s.n_held):
+        i = s.held[m]
+        s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
+    push_by_change(s, s.v)
+
+
+def is_on_rows(s: Rubbing) -> bool:
+    """Whether the gaps of all rows held are exactly zero."""
+    zero = True
+    for m in range(s.n_held):
+        i = s.held[m]
+        zero = zero and (i >= s.n_j + s.n_c or s.gap[i] == 0.0)
+    return zero
+
+
+def take_rows(s: Rubbing, t: float) -> bool:
+    """Rows, rates and factors of the rows held at the base state; False where these have become dependent."""
+    if s.constant:
+        measure_rates(s, t, s.y)
+        return True
+    if not renew_mass(s, t, s.y):
+        return False
+    measure_rates(s, t, s.y)
+    respond(s)
+    return measure_friction(s, t, s.y) and hold_again(s)
+
+
+def push_by_change(s: Rubbing, x: Doubles) -> None:
+    """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
+    solve_held(s, s.change)
+    for m in range(s.n_held):
+        push(s, s.held[m], s.change[m], x)
 
 
 def stop_rows(s: Rubbing) -> None:

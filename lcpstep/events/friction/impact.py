@@ -71,6 +71,7 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         if s.mode[c] == OPEN and s.touches[c] == 1 and s.before[c] <= s.terms[c]:
             s.mode[c] = SLIDES
         s.free[c] = 1
+    s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
     eliminate_joints(s)
     fill(s, n_a, n_f)
@@ -143,15 +144,15 @@ def close(s: Rubbing, c: int) -> None:
     i = s.n_j + s.n_c + c
     slip = s.velocity[i]
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = SLIDES if s.mu[c] == 0.0 or abs(slip) > still(s, i) else STICKS
-    if s.mode[c] == SLIDES and s.mu[c] > 0.0 and hold_modes(s):
+    s.mode[c] = SLIDES if s.coefficients.rough[c] == 0 or abs(slip) > still(s, i) else STICKS
+    if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1 and hold_modes(s):
         copy(s.dv, s.v, s.n_q)
         constrain(s, s.dv, s.rate)
         if (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip <= 0.0:
             s.mode[c] = STICKS
     if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
         for d in range(s.n_c):
-            s.mode[d] = STICKS if s.mode[d] != OPEN and s.mu[d] > 0.0 else s.mode[d]
+            s.mode[d] = STICKS if s.mode[d] != OPEN and s.coefficients.rough[d] == 1 else s.mode[d]
         hold_modes(s)
     copy(s.account, s.impulse, s.n_r)
     stop_rows(s)

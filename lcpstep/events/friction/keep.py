@@ -42,7 +42,7 @@ def pay(s: Rubbing, c: int) -> None:
     """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it."""
     i = s.n_c + c
     normal, friction = s.impulse[c] + s.owed[c], s.impulse[i] + s.owed[s.n_c + c]
-    if normal >= 0.0 and abs(friction) <= s.mu[c] * normal:
+    if normal >= 0.0 and abs(friction) <= s.mu_s[c] * normal:
         s.impulse[c], s.impulse[i] = normal, friction
         s.owed[c] = s.owed[s.n_c + c] = 0.0
 

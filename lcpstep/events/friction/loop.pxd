@@ -4,7 +4,6 @@ from lcpstep.events.friction.impact cimport close_small, forget_terms, jump, sti
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey
 from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.events.friction.step cimport step
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs

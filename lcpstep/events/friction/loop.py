@@ -22,7 +22,6 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, obey
     from lcpstep.events.friction.state import NOISE, Rubbing
-    from lcpstep.events.friction.step import step
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import abs
@@ -76,7 +75,7 @@ def go_on(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
         elif s.clock.t0 >= s.clock.high:
             code = turn_corner(s)
         else:
-            code = step(s, record, tally)
+            code = s.proceed(record, tally)
     return code
 
 

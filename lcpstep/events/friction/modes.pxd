@@ -14,6 +14,8 @@ cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 cdef double EDGE
 
 cdef Py_ssize_t decide(Rubbing s) noexcept nogil
+@cython.locals(some=bint, moves=bint)
+cdef bint begin_to_slide(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
@@ -24,4 +26,5 @@ cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept n
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+cdef bint turned(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil

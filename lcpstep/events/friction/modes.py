@@ -51,19 +51,35 @@ def decide(s: Rubbing) -> int:
     copy(s.a, s.a_free, s.n_q)
     hold_joints(s)
     constrain(s, s.a, s.bias)
-    n_a, n_f = list_unknowns(s)
-    if n_a == 0:
-        return DONE
     eliminate_joints(s)
-    fill(s, n_a, n_f)
-    m = n_a + n_f
-    for a in range(m):
-        i = row_of(s, a, n_a)
-        s.problem.rate[a] = product(s.R, s.a, i, s.n_q) + s.bias[i]
-    code = find_forces(s, n_a, n_f)
-    if code == DONE:
-        read_modes(s, n_a, n_f)
-    return code
+    for c in range(s.n_c):
+        s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
+    while True:
+        n_a, n_f = list_unknowns(s)
+        if n_a == 0:
+            return DONE
+        fill(s, n_a, n_f)
+        for a in range(n_a + n_f):
+            i = row_of(s, a, n_a)
+            s.problem.rate[a] = product(s.R, s.a, i, s.n_q) + s.bias[i]
+        code = find_forces(s, n_a, n_f)
+        if code != DONE:
+            return code
+        if not (s.coefficients.two and begin_to_slide(s, n_a, n_f)):
+            read_modes(s, n_a, n_f)
+            return DONE
+
+
+def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Give those that the forces found do not keep from sliding the coefficient of what slides; are there any?"""
+    some = False
+    for f in range(n_f):
+        c, rate = s.problem.ids[s.problem.carrier[f]], acceleration(s, n_a + f, n_a, n_f)
+        moves = abs(rate) > NOISE * size_of_terms(s, n_a + f, n_a, n_f)
+        if moves and s.problem.mu[c] != s.mu[c]:
+            s.problem.mu[c] = s.mu[c]
+            some = True
+    return some
 
 
 def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
@@ -94,7 +110,7 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
     for f in range(n_f):
         k = s.problem.carrier[f]
         c, force, rate = s.problem.ids[k], s.problem.impulse[n_a + f], acceleration(s, n_a + f, n_a, n_f)
-        limit = s.mu[c] * s.problem.impulse[k]
+        limit = s.problem.mu[c] * s.problem.impulse[k]
         if s.new_mode[c] == OPEN:
             continue
         if limit > 0.0 and abs(force) < limit * (1.0 - EDGE):
@@ -160,7 +176,7 @@ def stand(s: Rubbing) -> bool:
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == STICKS:
-            most = (1.0 - EDGE) * s.mu[c] * s.multiplier[i]
+            most = (1.0 - EDGE) * s.mu_s[c] * s.multiplier[i]
             stands = stands and abs(s.multiplier[i + s.n_c]) < most
     for c in range(s.n_c):
         s.mode[c] = s.mode[c] if stands else s.new_mode[c]
@@ -179,9 +195,14 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
             log(s, record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:
             log(s, record, tally, t, c, SLIP, 0.0, slip, 0.0)
-        elif was == SLIDES and now == SLIDES and s.mu[c] > 0.0 and s.direction[c] != s.was_direction[c]:
+        elif was == SLIDES and now == SLIDES and turned(s, c):
             log(s, record, tally, t, c, REVERSE, slip, slip, 0.0)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
+
+
+def turned(s: Rubbing, c: int) -> bool:
+    """Whether contact c slides the other way than when last told."""
+    return s.coefficients.rough[c] == 1 and s.direction[c] != s.was_direction[c]
 
 
 def force_noise(s: Rubbing) -> float:

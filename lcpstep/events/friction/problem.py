@@ -44,7 +44,7 @@ def list_unknowns(s: Rubbing) -> tuple[int, int]:
     for c in range(s.n_c):
         if s.mode[c] != OPEN:
             s.problem.ids[n_a] = c
-            if s.free[c] == 1 and s.mu[c] > 0.0:
+            if s.free[c] == 1 and s.coefficients.rough[c] == 1:
                 s.problem.carrier[n_f] = n_a
                 n_f += 1
             n_a += 1

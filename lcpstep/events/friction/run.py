@@ -16,24 +16,23 @@ from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.events.general.run import FIRST_STEP, MOST_ROWS, Moved, quadrature
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.clock import Clock
-from lcpstep.model import models
+from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
 
 
-def start(scene: Scene, method: Any) -> Smooth:
-    """The state at the start of the span; `method` has rtol and atol."""
+def start(scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any) -> Any:
+    """The state at the start of the span, of that kind of motion, which may ask for more than tolerances."""
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
     friction = given.friction
-    tangential = given.restitution if friction.restitution is None else friction.restitution
     scan = scan_interval(scene, contacts, 0.0)
     clock = Clock(scene.t_span, scene.corners, scene.period)
-    s = Smooth(
-        contacts, joints, tangents, friction.mu, tangential, clock, scene.t_span[1], scan, method.rtol,
-        method.atol, *quadrature(),
+    s = kind(
+        contacts, joints, tangents, coefficients(scene), friction.tangential(given.restitution), clock,
+        scene.t_span[1], scan, rtol, atol, *quadrature(), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -44,12 +43,16 @@ class FrictionRun(running.EventRun):
     """A run with contacts that stick and slide."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
-        self.system = start(scene, method)
+        self.system = self.start(scene, method)
         width = 7, 2 * scene.n_q
         rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
         columns = 2 * scene.n_c + scene.n_j
         recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
         super().__init__(method, scene, kept, recorder)
+
+    def start(self, scene: Scene, method: Any) -> Any:
+        """The motion at the start of the span."""
+        return start(scene, Smooth, method.rtol, method.atol)
 
     @property
     def now(self) -> float:
@@ -97,6 +100,8 @@ class FrictionRun(running.EventRun):
             return f"no forces of the closed contacts {closed} keep them from passing {where}"
         if code in (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE):
             return f"{self.paradox(code)} {where}"
+        if code == Status.NOT_FINITE and self.system.coefficients.fault():
+            return f"{self.system.coefficients.fault()} {where}"
         return f"{super().why(code)}; closed contacts {closed}"
 
     def paradox(self, code: int) -> str:
@@ -104,9 +109,8 @@ class FrictionRun(running.EventRun):
         c = int(self.system.culprit)
         critical = self.system.critical_friction(c)
         limit = f" (critical at this state: {critical:.9g})" if critical > 0.0 else ""
-        friction: Any = self.scene.contacts and self.scene.contacts.friction
         words = {
             Status.PAINLEVE_INCONSISTENT: "no force keeps it from passing the surface",
             Status.PAINLEVE_INDETERMINATE: "it may as well stay closed as open",
         }[Status(code)]
-        return f"contact {c} slides with mu = {np.atleast_1d(friction.mu)[c]:g}{limit}, and {words}"
+        return f"contact {c} slides with mu = {self.system.coefficient(c):g}{limit}, and {words}"

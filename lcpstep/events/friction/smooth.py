@@ -7,6 +7,9 @@ import cython
 if not cython.compiled:
     from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.step import step
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import Doubles
 
 
@@ -16,3 +19,7 @@ class Smooth(Rubbing):
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v'); False where it is not finite, or the rows cannot be held."""
         return right_hand_side(self, t, y, dy)
+
+    def proceed(self, record: Record, tally: Tally) -> int:
+        """A step that meets the tolerance, up to the first event within it; a status."""
+        return step(self, record, tally)

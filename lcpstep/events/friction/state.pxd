@@ -1,12 +1,15 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
 from lcpstep.kernels.clock cimport Clock, RESOLUTION
+from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport after, indices_after
 
-cdef Py_ssize_t GUARDS, BEGIN
+cdef Py_ssize_t GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
 
 
@@ -15,12 +18,14 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Model contacts, joints, tangents
     cdef readonly Clock clock
     cdef readonly ContactProblem problem
+    cdef readonly Coefficients coefficients
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_nodes
     cdef public Py_ssize_t next, culprit
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
+    cdef bint constant, moving, measured
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -51,6 +56,8 @@ cdef class Rubbing(RungeKutta):
     cdef double* account
     cdef double* shifted_rate
     cdef double* mu
+    cdef double* mu_s
+    cdef double* slip
     cdef double* tangential
     cdef double* direction
     cdef double* was_direction
@@ -70,3 +77,4 @@ cdef class Rubbing(RungeKutta):
     cdef double* band
     cdef double* samples
     cdef Py_ssize_t* armed
+    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

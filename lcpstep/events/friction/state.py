@@ -12,14 +12,18 @@ import cython
 import numpy as np
 
 from lcpstep.events.friction.codes import BEGIN
+from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
     from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
     from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import after, indices_after
 
 GUARDS = (
@@ -33,12 +37,15 @@ class Rubbing(RungeKutta):
 
     contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
+    constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
     R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  D, S : (n_r, n_r)  Delassus matrix, the same on the joints
     rate, bias, gap, velocity : (n_r,)   of rows at the state last measured
-    mu, tangential : (n_c,)      coefficients of friction; restitution on the tangent
+    mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
+    slip : (n_c,)                sliding velocities that these depend on
+    tangential : (n_c,)          restitution on the tangent
     mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
@@ -52,7 +59,7 @@ class Rubbing(RungeKutta):
 
     Parameters
     ----------
-    contacts, joints, tangents : Model;  mu, tangential : (n_c,)
+    contacts, joints, tangents : Model;  coefficients : Coefficients;  tangential : (n_c,)
     clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
     """
 
@@ -61,7 +68,7 @@ class Rubbing(RungeKutta):
         contacts: Model,
         joints: Model,
         tangents: Model,
-        mu: Any,
+        coefficients: Coefficients,
         tangential: Any,
         clock: Clock,
         t_end: float,
@@ -77,7 +84,12 @@ class Rubbing(RungeKutta):
         self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
-        self.scan, self.problem = Scan(), ContactProblem(np.array(mu), True, r, False)
+        self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
+        self.constant = self.constant and not coefficients.varies
+        self.moving, self.measured = contacts.motion.given or joints.motion.given, False
+        self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
+        self.coefficients = coefficients
+        self.coefficients.use(self.problem.mu)
         self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
@@ -109,15 +121,17 @@ class Rubbing(RungeKutta):
         self.impulse = after(self.multiplier, r)
         self.account = after(self.impulse, r)
         self.shifted_rate = after(self.account, r)
-        self.per_contact = np.zeros(7 * n_c)
-        self.given = np.array([mu, tangential], dtype=float)
-        self.mu, self.tangential = doubles(self.given), after(doubles(self.given), n_c)
+        self.per_contact = np.zeros(8 * n_c)
+        self.given = np.array(tangential, dtype=float)
+        self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking
+        self.tangential = doubles(self.given)
         self.direction = doubles(self.per_contact)
         self.was_direction = after(self.direction, n_c)
         self.new_direction = after(self.direction, 2 * n_c)
         self.terms = after(self.direction, 3 * n_c)
         self.before = after(self.direction, 4 * n_c)
         self.owed = after(self.direction, 5 * n_c)
+        self.slip = after(self.direction, 7 * n_c)
         self.marks = np.zeros(7 * n_c + r, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)
@@ -135,9 +149,17 @@ class Rubbing(RungeKutta):
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
 
+    def proceed(self, record: Record, tally: Tally) -> int:
+        """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
+        return NOT_FINITE
+
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
         return [c for c in range(self.n_c) if self.mode[c] != 0]
+
+    def coefficient(self, c: int) -> float:
+        """The coefficient of friction with which contact c slides."""
+        return float(self.mu[c])
 
     def critical_friction(self, c: int) -> float:
         """The coefficient of friction beyond which contact c, sliding as it does, jams; 0 where none does."""

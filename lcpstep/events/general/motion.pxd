@@ -4,9 +4,12 @@ from lcpstep.kernels.dynamics cimport gap_rounding
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, inf, max, min
 
+cdef double UNTOLD
+
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil
 cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef void arrive(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double rounding_of_gap(Mechanism s, Py_ssize_t c) noexcept nogil

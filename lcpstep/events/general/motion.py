@@ -11,6 +11,8 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
+UNTOLD = 4.0 * 2.0**-52  # of a time: what of it cannot be told
+
 
 def rebase(s: Mechanism, t: float) -> None:
     """Begin a new piece at time t with the state q, v."""
@@ -37,6 +39,23 @@ def lift(s: Mechanism, c: int) -> None:
     for j in range(s.n_q):
         s.q[j] -= s.MR[i * s.n_q + j] * s.contact.gap[c] / s.D[i * s.n_r + i]
     s.contact.gap[c] = 0.0
+
+
+def arrive(s: Mechanism, c: int) -> None:
+    """Put q onto the surface of contact c, which it misses by less than a time can tell: along its own way.
+
+    So gaps that close at one instant, as in the apex of a wedge along which a body slides, go on closing together.
+    """
+    g, u = s.contact.gap[c], s.contact.speed[c]
+    if s.contact.rate[c] == 0.0 and u < 0.0 and abs(g) <= -UNTOLD * (abs(s.t0) + s.length) * u:
+        for j in range(s.n_q):
+            s.q[j] -= s.v[j] * g / u
+        for d in range(s.n_c):
+            if s.contact.closed[d] == 0:
+                s.contact.gap[d] = s.contact.gap[d] - (s.contact.speed[d] - s.contact.rate[d]) * g / u
+        s.contact.gap[c] = 0.0
+    else:
+        lift(s, c)
 
 
 def gap_tolerance(s: Mechanism, c: int) -> float:

@@ -24,7 +24,7 @@ if not cython.compiled:
     from lcpstep.events.general.held import constrain, hold_again, note, parted, project
     from lcpstep.events.general.hops import carry, find_landings, reach_corner, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted, store_dense
-    from lcpstep.events.general.motion import lift, press_between, rebase
+    from lcpstep.events.general.motion import arrive, press_between, rebase
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
@@ -95,7 +95,7 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         s.next = OBEY
         return DONE
     s.next = JUMP
-    lift(s, c)
+    arrive(s, c)
     if kind == LANDS:
         s.contact.speed[c] = min(u, 0.0)
     elif kind == NEVER_LEFT:

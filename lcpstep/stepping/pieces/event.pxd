@@ -15,3 +15,4 @@ cdef Py_ssize_t event(Model m, Plan plan, Work w, Record record, double t, Py_ss
 cdef void straighten(Model m, Plan plan, Work w, Py_ssize_t d) noexcept nogil
 cdef void straighten_all(Model m, Work w, Py_ssize_t n_s) noexcept nogil
 cdef double height(Model m, Work w, Py_ssize_t c) noexcept nogil
+cdef void remeasure(Model m, Plan plan, Work w) noexcept nogil

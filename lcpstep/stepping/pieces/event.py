@@ -95,3 +95,21 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
 def height(m: Model, w: Work, c: int) -> float:
     """The gap c of a flat contact at rest, from the coordinates."""
     return product(m.G, w.q, c, w.n_q) + m.offset[c]
+
+
+def remeasure(m: Model, plan: Plan, w: Work) -> None:
+    """Gaps of open contacts well off their obstacles and their velocities from the state, where they have drifted.
+
+    They are carried on from piece to piece beside it; what rounding makes of each impact adds up where no impact of
+    their own puts them right.
+    """
+    for c in range(w.n_c):
+        if w.status[c] == OPEN and w.grounded[c] == 0 and w.gap[c] > plan.slack:
+            g, u, place, speed = m.offset[c], 0.0, abs(m.offset[c]), 0.0
+            for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
+                x, y = m.G[c * w.n_q + i] * w.q[i], m.G[c * w.n_q + i] * w.v[i]
+                g, u, place, speed = g + x, u + y, place + abs(x), speed + abs(y)
+            if g > plan.slack and abs(g - w.gap[c]) > ROUNDING * place:
+                w.gap[c] = g
+            if abs(u - w.rate[c]) > ROUNDING * speed:
+                w.rate[c] = u

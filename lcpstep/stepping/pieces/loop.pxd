@@ -10,6 +10,7 @@ from lcpstep.stepping.pieces.codes cimport (
     TOO_MANY_EVENTS,
 )
 from lcpstep.stepping.pieces.corners cimport find_corners, obstacles_move
+from lcpstep.stepping.pieces.event cimport remeasure
 from lcpstep.stepping.pieces.glide cimport glide
 from lcpstep.stepping.pieces.jointed cimport joints_failed
 from lcpstep.stepping.pieces.keep cimport keep, keep_now
@@ -49,5 +50,5 @@ cdef class Steps:
 cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
 @cython.locals(code=Py_ssize_t)
 cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept nogil
-cdef void begin_step(Work w) noexcept nogil
+cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil
 cdef bint finite(Work w) noexcept nogil

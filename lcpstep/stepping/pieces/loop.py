@@ -32,6 +32,7 @@ if not cython.compiled:
         TOO_MANY_EVENTS,
     )
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
+    from lcpstep.stepping.pieces.event import remeasure
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.jointed import joints_failed
     from lcpstep.stepping.pieces.keep import keep, keep_now
@@ -123,7 +124,7 @@ class Steps:
                     glide(self.m, self.plan, self.w, self.record, t0, first, end)
                     if self.w.steps >= last:
                         return FINISHED
-                begin_step(self.w)
+                begin_step(self.m, self.plan, self.w)
             t = t0 + self.plan.h * (self.w.steps - first)
             code = self.step(t)
             if code != FINISHED:
@@ -235,9 +236,11 @@ def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
     return code
 
 
-def begin_step(w: Work) -> None:
+def begin_step(m: Model, plan: Plan, w: Work) -> None:
     """Nothing has happened in this step yet, but for what happened at the very end of the last one."""
     end = w.sigma
+    if plan.plain and (w.events > 0 or w.closed_now > 0):
+        remeasure(m, plan, w)
     if w.events > 0:
         w.settled = w.stalled = 0.0
         for i in range(w.n_q):

@@ -1,3 +1,5 @@
+cimport cython
+
 from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -10,7 +12,7 @@ from lcpstep.stepping.pieces.codes cimport (
 from lcpstep.stepping.pieces.impulses cimport strike
 from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.loop cimport Steps, finite
-from lcpstep.stepping.pieces.magnitudes cimport speed_terms
+from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.piece cimport penetrates
 from lcpstep.stepping.pieces.polynomial cimport (
     NODES, WEIGHTS, Polynomial, acceleration, biases, expand, force_at, on_surface, state_at,
@@ -41,4 +43,5 @@ cdef Py_ssize_t follow(
     Model m, Plan plan, Work w, Polynomial z, Record record, double t, double tau, bint ends
 ) noexcept nogil
 cdef void slide(Model m, Work w, double t) noexcept nogil
+@cython.locals(again=bint)
 cdef Py_ssize_t touch(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil

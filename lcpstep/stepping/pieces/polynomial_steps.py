@@ -30,7 +30,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.loop import Steps, finite
-    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.piece import penetrates
     from lcpstep.stepping.pieces.polynomial import (
         NODES,
@@ -189,7 +189,8 @@ def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
     still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
     if c != CORNER and w.rate[c] >= -still:
         w.gap[c], w.grounded[c] = 0.0, GROUND
-        if w.rate[c] <= still or w.sigma - w.last[c] <= SLOW * plan.h:
+        again = w.sigma - w.last[c] <= SLOW * plan.h
+        if w.rate[c] <= still or (again and w.rate[c] <= SLOW * plan.h * acceleration_terms(m, w, c)):
             stick(w, record, c, t)
             turn(m, plan, w, c, 0.0, False)
         w.last[c] = w.sigma

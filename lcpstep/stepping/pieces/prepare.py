@@ -110,13 +110,13 @@ def displacement(scene: Scene, m: Model, h: float) -> float:
 
 def driven(scene: Scene, m: Model, method: Located) -> float:
     """How far forces push in a step, as stiff springs let them [m]; harmonic ones at their largest."""
-    s, h = scene.system, min(method.h, longest(scene, m, method))
+    h = min(method.h, longest(scene, m, method))
     q0, v0 = (np.array(x, dtype=float) for x in (scene.q0, scene.v0))
     a = Point(m).acceleration(scene.t_span[0], q0, v0)
     if m.linear:
         M, f = m.arrays["M"], m.arrays["M"] @ a
-        if isinstance(s, LinearSystem) and isinstance(s.force, Harmonic):
-            f = sum(map(np.abs, s.force.terms(scene.n_q)))
+        if isinstance(scene.system, LinearSystem) and isinstance(scene.system.force, Harmonic):
+            f = sum(np.abs(m.arrays[term]) for term in ("constant", "cosine", "sine"))
         implicit = h if method.order == 2 else 0.0
         A = M + 0.5 * implicit * m.arrays["C"] + 0.25 * implicit**2 * m.arrays["K"]
         a = np.abs(np.linalg.inv(A)) @ np.abs(f)

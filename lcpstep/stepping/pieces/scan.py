@@ -97,7 +97,7 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
         touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0
         if touches and (found == NOBODY or w.rate[c] < w.rate[found]):
             found = c
-    if found != NOBODY:
+    if found != NOBODY or end == 0.0:
         return found, 0.0
     copy(z.gap_from, w.gap, n_c)
     copy(z.rate_from, w.rate, n_c)

@@ -1,6 +1,7 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport after
+from lcpstep.pointers cimport after, indices_after
+from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.stepping.constraints.joint_rows cimport Elimination
 
@@ -19,6 +20,7 @@ cdef class State:
     cdef double* u
     cdef double* impulse
     cdef Py_ssize_t* closed
+    cdef Py_ssize_t* sticks
     cdef double* next_q
     cdef double* next_v
     cdef double* next_force
@@ -41,6 +43,7 @@ cdef class Rows:
     cdef object numbers, looked_at, repair
     cdef readonly Model joints, tangents
     cdef readonly ContactProblem problem
+    cdef readonly Coefficients coefficients
     cdef readonly Py_ssize_t n_c, n_t, n_j, n
     cdef readonly bint projected, turning
     cdef Elimination elimination
@@ -54,6 +57,7 @@ cdef class Rows:
     cdef double* J_t
     cdef double* p
     cdef double* sliding
+    cdef double* at_rest
     cdef double* tangent_restitution
     cdef Py_ssize_t* failed
     cdef Py_ssize_t* near

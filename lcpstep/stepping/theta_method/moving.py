@@ -9,9 +9,10 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.model import Model
-    from lcpstep.pointers import after
+    from lcpstep.pointers import after, indices_after
     from lcpstep.stepping.constraints.joint_rows import Elimination
 
 VECTORS, SQUARES = 11, 4  # of n_q numbers, and of n_q^2
@@ -23,6 +24,7 @@ class State:
     n_q, n_c
     q, v, force      (n_q,) force: F(t), of a general system f(t, q, v)
     g, u, closed     (n_c,) gaps and their velocities; 0 open, 1 struck in the last step, 2 closed for several steps
+    sticks           (n_c,) 1 for contacts that the last step kept from sliding
     impulse          (n,) of all rows since the last kept state
     next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
     q_between, v_between                  a state within it
@@ -37,11 +39,12 @@ class State:
     def __init__(self, q: Any, v: Any, n_c: int, n: int) -> None:
         self.n_q, self.n_c, n_q = len(q), n_c, len(q)
         self.arrays = {"q": np.array(q), "v": np.array(v), "impulse": np.zeros(n)}
-        self.arrays |= {"g": np.zeros(n_c), "u": np.zeros(n_c), "closed": np.zeros(n_c, dtype=np.intp)}
+        self.arrays |= {"g": np.zeros(n_c), "u": np.zeros(n_c), "marks": np.zeros(2 * n_c, dtype=np.intp)}
         self.work, self.order = np.zeros((VECTORS + SQUARES * n_q) * n_q), np.zeros(n_q, dtype=np.intp)
         self.q, self.v = doubles(self.arrays["q"]), doubles(self.arrays["v"])
         self.g, self.u = doubles(self.arrays["g"]), doubles(self.arrays["u"])
-        self.closed, self.impulse = indices(self.arrays["closed"]), doubles(self.arrays["impulse"])
+        self.closed, self.impulse = indices(self.arrays["marks"]), doubles(self.arrays["impulse"])
+        self.sticks = indices_after(self.closed, n_c)
         self.steps = self.problems = self.forces = self.iteration = 0
         self.force = doubles(self.work)
         self.next_force = after(self.force, n_q)
@@ -65,6 +68,7 @@ class Rows:
     """Joints and tangents of a scene, and the rows of a step: all normals first, then tangents, then joints.
 
     joints, tangents       models, their rows in the place of the contacts': see `lcpstep.model`
+    coefficients           of friction
     n_c, n_t, n_j, n       contacts, tangents (none or n_c), joints, and all of them
     projected, turning     positions are repaired; joints' rows change
     H : (n, n_q)           rows of the velocities: H v + H_t is the rate; T and J: those of tangents and of joints
@@ -72,7 +76,7 @@ class Rows:
     J_start : (n_j, n_q)   at the start of the step
     D : (n_j, n_q)         directions of the joints' forces
     p : (n,)               impulses
-    sliding : (n_t,)       sliding velocities at the start of the step
+    sliding : (n_t,)       sliding velocities at the start of the step;  at_rest : the same, 0 of what sticks
     tangent_restitution : (n_c,)
     failed : (n_j,)        1 for joints that contradict others
     problem                of the contacts, with `ids`, the rows that take part
@@ -82,7 +86,8 @@ class Rows:
 
     Parameters
     ----------
-    joints, tangents : Model;  n_c, n_t : int;  tangent_restitution : (n_c,);  projected : bool
+    joints, tangents : Model;  n_c, n_t : int;  coefficients : Coefficients;  tangent_restitution : (n_c,)
+    projected : bool
     problem : ContactProblem for n rows
     """
 
@@ -92,6 +97,7 @@ class Rows:
         tangents: Model,
         n_c: int,
         n_t: int,
+        coefficients: Coefficients,
         tangent_restitution: Any,
         projected: bool,
         problem: ContactProblem,
@@ -99,19 +105,21 @@ class Rows:
         n_q, n_j = joints.n_q, joints.n_c
         n = n_c + n_t + n_j
         self.joints, self.tangents, self.problem = joints, tangents, problem
+        self.coefficients = coefficients
+        self.coefficients.use(self.problem.mu)
         self.n_c, self.n_t, self.n_j, self.n = n_c, n_t, n_j, n
         self.projected, self.turning = projected, not joints.flat
         self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
-        self.numbers = np.zeros((n + 2 * n_j) * n_q + n + n_t)
+        self.numbers = np.zeros((n + 2 * n_j) * n_q + n + 2 * n_t)
         self.H = doubles(self.numbers)
         self.T, self.J = after(self.H, n_c * n_q), after(self.H, (n_c + n_t) * n_q)
         self.J_start = after(self.H, n * n_q)
         self.D = after(self.J_start, n_j * n_q)
         self.H_t = after(self.D, n_j * n_q)
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
-        self.sliding = after(self.H_t, n)
+        self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
         self.elimination = Elimination(n_j, n_c)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)

@@ -1,8 +1,9 @@
 cimport cython
 from lcpstep.kernels.dynamics cimport gap_rates
-from lcpstep.kernels.linear cimport solve
+from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
+from lcpstep.kernels.stiction cimport AT_REST, solve_steps, terms
 from lcpstep.pointers cimport abs, after, max
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities
@@ -18,8 +19,10 @@ cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH
 cdef Py_ssize_t impulses(
     Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
 ) noexcept nogil
+cdef bint solve(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
+cdef void note_sticking(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t take_part(
-    Py_ssize_t* ids, Py_ssize_t* carrier, double* mu, Py_ssize_t n_a, Py_ssize_t n_c, Py_ssize_t n_t, Py_ssize_t n_j
+    Py_ssize_t* ids, Py_ssize_t* carrier, Py_ssize_t* rough, Py_ssize_t n_a, Py_ssize_t n_c, Py_ssize_t n_t, Py_ssize_t n_j
 ) noexcept nogil
 cdef void round_off(Rows c, double* v, Py_ssize_t n_k, Py_ssize_t n_q) noexcept nogil
 cdef bint usable(double* W, Py_ssize_t* ids, Py_ssize_t n_k, Py_ssize_t n) noexcept nogil

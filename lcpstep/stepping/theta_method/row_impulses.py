@@ -14,8 +14,9 @@ from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, 
 if not cython.compiled:
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.linear import solve
+    from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.stiction import AT_REST, solve_steps, terms
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
@@ -65,18 +66,41 @@ def impulses(
         if external and not solved:
             return NEED_LCP
         s.problems += 1
-        if not solved and not solve_contacts(c.problem, n_a, n_f):
+        if not solved and not solve(s, c, n_a, n_f, impact):
             return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
     return FINISHED
 
 
-def take_part(ids: Indices, carrier: Indices, mu: Doubles, n_a: int, n_c: int, n_t: int, n_j: int) -> int:
+def solve(s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool:
+    """Impulses of the contacts from their rates; False where there are none."""
+    if n_f == 0 or not c.coefficients.two:
+        return solve_contacts(c.problem, n_a, n_f)
+    if impact:
+        c.coefficients.use(c.problem.mu)
+        return solve_contacts(c.problem, n_a, n_f)
+    return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f)
+
+
+def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
+    """Which contacts do not slide at the end of the step."""
+    for i in range(s.n_c):
+        s.sticks[i] = 0
+    for f in range(n_f):
+        i = c.problem.ids[c.problem.carrier[f]]
+        u = c.T_t[i] + product(c.T, s.next_v, i, s.n_q)
+        size = abs(c.T_t[i]) + terms(c.problem, n_a, n_f, f)
+        for j in range(s.n_q):
+            size += abs(c.T[i * s.n_q + j] * s.next_v[j])
+        s.sticks[i] = 1 if c.p[i] > 0.0 and abs(u) <= AT_REST * size else 0
+
+
+def take_part(ids: Indices, carrier: Indices, rough: Indices, n_a: int, n_c: int, n_t: int, n_j: int) -> int:
     """List after the normals of active contacts the tangents of the n_f frictional ones, and all joints; n_f."""
     n_f = 0
     if n_t > 0:
         for k in range(n_a):
-            if mu[ids[k]] > 0.0:
+            if rough[ids[k]] == 1:
                 carrier[n_f] = k
                 ids[n_a + n_f] = n_c + ids[k]
                 n_f += 1
@@ -143,7 +167,7 @@ def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -
             out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
     else:
         copy(out, row, s.n_q)
-        solve(s.A, s.pivots, out, s.n_q)
+        solve_equations(s.A, s.pivots, out, s.n_q)
 
 
 def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:

@@ -8,7 +8,7 @@ from lcpstep.stepping.theta_method.implicit cimport linearise
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.repair cimport project
-from lcpstep.stepping.theta_method.row_impulses cimport apply, apply_once, impulses, joints_hold, take_part
+from lcpstep.stepping.theta_method.row_impulses cimport apply, apply_once, impulses, joints_hold, note_sticking, take_part
 
 cdef Py_ssize_t FINISHED, IMPACT, JOINTS_FAILED, NEWTON_FAILED, NOT_FINITE, RELEASE, STICK
 cdef Py_ssize_t MAX_ITERATIONS
@@ -25,7 +25,7 @@ cdef Py_ssize_t step(
 ) noexcept nogil
 cdef void position(Plan plan, State s) noexcept nogil
 cdef void predicted_rates(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil
-cdef void tangent_rates(State s, Rows c, double t, double t_next) noexcept nogil
+cdef bint tangent_rates(State s, Rows c, double t, double t_next) noexcept nogil
 cdef void free_velocity(Model m, Plan plan, State s, double t_next) noexcept nogil
 @cython.locals(released=bint)
 cdef void log_events(Model m, State s, Rows c, Record record, double t_next) noexcept nogil

@@ -43,7 +43,14 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.repair import project
-    from lcpstep.stepping.theta_method.row_impulses import apply, apply_once, impulses, joints_hold, take_part
+    from lcpstep.stepping.theta_method.row_impulses import (
+        apply,
+        apply_once,
+        impulses,
+        joints_hold,
+        note_sticking,
+        take_part,
+    )
 
 
 def take_step(
@@ -111,12 +118,12 @@ def step(
     """One step with n_a active contacts into next_q, next_v, and the impulses."""
     n_f = 0
     if c.n > c.n_c:
-        n_f = take_part(c.problem.ids, c.problem.carrier, c.problem.mu, n_a, c.n_c, c.n_t, c.n_j)
+        n_f = take_part(c.problem.ids, c.problem.carrier, c.coefficients.rough, n_a, c.n_c, c.n_t, c.n_j)
     n_k = n_a + n_f + c.n_j
     if n_a > 0:
         predicted_rates(m, plan, s, c, t_next)
-    if n_f > 0:
-        tangent_rates(s, c, t, t_next)
+    if n_f > 0 and not tangent_rates(s, c, t, t_next):
+        return NOT_FINITE
     if c.n_j > 0:
         gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
     if n_k == 0:
@@ -146,6 +153,8 @@ def step(
         s.iteration += 1
         if s.iteration >= MAX_ITERATIONS:
             return NEWTON_FAILED
+    if c.coefficients.two:
+        note_sticking(s, c, n_a, n_f)
     position(plan, s)
     if c.n_j == 0:
         return FINISHED
@@ -169,12 +178,17 @@ def predicted_rates(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> N
     gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
 
 
-def tangent_rates(s: State, c: Rows, t: float, t_next: float) -> None:
-    """Sliding velocities at the start of the step; T and T_t at its end, where it is predicted."""
+def tangent_rates(s: State, c: Rows, t: float, t_next: float) -> bool:
+    """Sliding velocities at the start of the step; T and T_t at its end, where it is predicted.
+
+    False where they have no coefficients of friction.
+    """
     gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
     for i in range(c.n_t):
         c.sliding[i] = product(c.T, s.v, i, s.n_q) + c.T_t[i]
+        c.at_rest[i] = 0.0 if s.sticks[i] == 1 else c.sliding[i]
     gap_rates(c.tangents, t_next, s.next_q, s.v, c.T, c.T_t)
+    return c.coefficients.measure(t, s.q, c.at_rest)
 
 
 def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:

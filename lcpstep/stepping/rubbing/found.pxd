@@ -1,0 +1,27 @@
+cimport cython
+from lcpstep.events.friction.equations cimport measure_rates, size_of
+from lcpstep.events.friction.guards cimport first_fall, read
+from lcpstep.events.friction.held cimport list_multipliers
+from lcpstep.events.friction.state cimport GUARDS, NOISE
+from lcpstep.events.hybrid.roots cimport DEGREE, NONE, taylor
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, after, min
+from lcpstep.stepping.rubbing.strides cimport Strides
+
+cdef Py_ssize_t OPEN, SLIDES, SECANTS
+cdef double NOWHERE
+
+cdef bint note_base(Strides s, double t) noexcept nogil
+cdef void widen_bands(Strides s) noexcept nogil
+cdef bint note(Strides s, double t, double* y, double* dy, double* value, double* slope) noexcept nogil
+cdef bint read_guards(Strides s, double t, double* y) noexcept nogil
+cdef bint note_arrival(Strides s, double t, double h) noexcept nogil
+@cython.locals(least=double, place=double)
+cdef Py_ssize_t first_event(Strides s, double h) noexcept nogil
+cdef void arm(Strides s) noexcept nogil
+@cython.locals(moves=bint)
+cdef double curve(Strides s, Py_ssize_t g, double h) noexcept nogil
+cdef void elevate(Strides s) noexcept nogil
+@cython.locals(crossed=bint)
+cdef double locate(Strides s, Py_ssize_t g, double h) noexcept nogil

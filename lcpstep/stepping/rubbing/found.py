@@ -1,0 +1,167 @@
+"""The first event within a step with friction, and its time, as kernels.
+
+Over a step each guard (`events.friction.guards`) is a polynomial of degree three at most: gaps and sliding velocities
+from their values and slopes at the ends, forces from their values there and, with order four, between. Where its
+Bernstein coefficients keep one sign it has no zero. A zero that it has is put right by steps of that length, secants
+from one to the next, so that the guard is zero in the motion that is taken.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import OPEN, SLIDES
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import measure_rates, size_of
+    from lcpstep.events.friction.guards import first_fall, read
+    from lcpstep.events.friction.held import list_multipliers
+    from lcpstep.events.friction.state import GUARDS, NOISE
+    from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after, min
+    from lcpstep.stepping.rubbing.strides import Strides
+
+SECANTS = 60
+NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
+
+
+def note_base(s: Strides, t: float) -> bool:
+    """Rates, forces and guards at the base state; False where one is not finite, or rows cannot be held."""
+    if not s.rates(t, s.y, s.K):
+        return False
+    s.evaluations += 1
+    list_multipliers(s)
+    copy(s.leaving, s.multiplier, s.n_r)
+    if not note(s, t, s.y, s.K, s.begin_value, s.begin_slope):
+        return False
+    widen_bands(s)
+    return True
+
+
+def widen_bands(s: Strides) -> None:
+    """Sliding velocities that rounding of the forces makes within a step have no sign: slip begins with none."""
+    for c in range(s.n_c):
+        if s.mode[c] == SLIDES:
+            i, g, size = s.n_j + s.n_c + c, GUARDS * c + 1, 0.0
+            for j in range(s.n_q):
+                size += abs(s.R[i * s.n_q + j] * s.a_free[j])
+            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * size)
+            s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+
+
+def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
+    """Guards at a state whose rates and forces are known, and slopes of gaps and sliding velocities."""
+    if not read_guards(s, t, y):
+        return False
+    copy(value, s.value, GUARDS * s.n_c)
+    v, a = after(y, s.n_q), after(dy, s.n_q)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == OPEN:
+            slope[GUARDS * c] = product(s.R, v, i, s.n_q) + s.rate[i]
+        elif s.mode[c] == SLIDES:
+            turn = product(s.R, a, i + s.n_c, s.n_q) + s.bias[i + s.n_c]
+            slope[GUARDS * c + 1] = s.direction[c] * turn
+    return True
+
+
+def read_guards(s: Strides, t: float, y: Doubles) -> bool:
+    """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
+    if s.n_held == 0:
+        measure_rates(s, t, y)
+    return read(s, t, y)
+
+
+def note_arrival(s: Strides, t: float, h: float) -> bool:
+    """Guards at the end of the step just made, and of the forces between with order four."""
+    if not note(s, t + h, s.y_new, s.arrival, s.end_value, s.end_slope):
+        return False
+    if s.order == 4 and s.n_held > 0:
+        copy(s.multiplier, s.middle, s.n_r)
+        read(s, t + 0.5 * h, s.y_stage)
+        copy(s.middle_value, s.value, GUARDS * s.n_c)
+    return True
+
+
+def first_event(s: Strides, h: float) -> int:
+    """The first guard that acts within the step of size h, or -1; when, into `found`, as a fraction of h."""
+    s.guard, s.found = -1, 2.0
+    for g in range(GUARDS * s.n_c):
+        least = curve(s, g, h)
+        if least > (0.0 if s.armed[g] == 1 else -s.band[g]):
+            continue
+        elevate(s)
+        place = first_fall(s, g)
+        if place != NONE and place < s.found:
+            s.guard, s.found = g, place
+            _, slope, _ = taylor(s.scan.c, place, s.scan.half)
+            s.slope = slope / h
+    return s.guard
+
+
+def arm(s: Strides) -> None:
+    """Note the guards that have come out of their band at the end of the step."""
+    for g in range(GUARDS * s.n_c):
+        if s.end_value[g] > s.band[g]:
+            s.armed[g] = 1
+
+
+def curve(s: Strides, g: int, h: float) -> float:
+    """Bernstein coefficients of guard g over the step, of degree three; the least of them."""
+    b, c = s.scan.c, g // GUARDS
+    b[0], b[3] = s.begin_value[g], s.end_value[g]
+    moves = (
+        s.mode[c] == OPEN if g % GUARDS == 0 else s.mode[c] == SLIDES and g % GUARDS == 1 and s.mu[c] > 0.0
+    )
+    if moves and s.order == 4:
+        b[1] = b[0] + h * s.begin_slope[g] / 3.0
+        b[2] = b[3] - h * s.end_slope[g] / 3.0
+    else:
+        between = 0.5 * (b[0] + b[3])
+        if moves:
+            between = b[0] + 0.5 * h * s.begin_slope[g]
+        elif s.order == 4 and s.n_held > 0:
+            between = 2.0 * s.middle_value[g] - between
+        b[1] = (b[0] + 2.0 * between) / 3.0
+        b[2] = (b[3] + 2.0 * between) / 3.0
+    return min(min(b[0], b[1]), min(b[2], b[3]))
+
+
+def elevate(s: Strides) -> None:
+    """The same polynomial in the form that roots are sought in."""
+    b = s.scan.c
+    for degree in range(3, DEGREE):
+        b[degree + 1] = b[degree]
+        for j in range(degree, 0, -1):
+            share = j / (degree + 1.0)
+            b[j] = share * b[j - 1] + (1.0 - share) * b[j]
+
+
+def locate(s: Strides, g: int, h: float) -> float:
+    """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE."""
+    t0, tau = s.clock.t0, s.found * h
+    if tau <= 0.0:
+        return 0.0
+    low, high = 0.0, h
+    crossed, slope = s.end_value[g] < 0.0, s.slope
+    before, value_before = h, s.end_value[g]
+    for _ in range(SECANTS):
+        if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
+            return NOWHERE
+        value = s.value[g]
+        if value > 0.0:
+            low = tau
+        else:
+            high, crossed = tau, True
+        if before != tau and value != value_before and before != h:
+            slope = (value - value_before) / (tau - before)
+        new = tau - value / slope if slope < 0.0 else 0.5 * (low + high)
+        if not low <= new <= high:
+            new = 0.5 * (low + high) if crossed else h
+        before, value_before = tau, value
+        if value == 0.0 or abs(new - tau) <= 2.0 * RESOLUTION * (abs(t0) + tau):
+            return tau if crossed or value <= s.band[g] else NOWHERE
+        tau = new
+    return tau if crossed else NOWHERE

@@ -1,0 +1,40 @@
+"""A run of `Located` of a scene with friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lagrangian import Scene
+from lcpstep.events.friction.run import FrictionRun, start
+from lcpstep.stepping.rubbing.steps import RubbingSteps
+from lcpstep.stepping.steps import divided
+
+if TYPE_CHECKING:
+    from lcpstep.stepping.located import Located
+
+ROUNDING = (
+    1e-12  # absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
+)
+
+
+class RubbingRun(FrictionRun):
+    """A run by steps of one size, the last one shortened where they do not divide the span."""
+
+    method: Located
+
+    def start(self, scene: Scene, method: Located) -> RubbingSteps:
+        """The motion at the start of the span."""
+        parts = list(divided(scene.t_span, method.h))
+        h, n = parts[0][0], parts[-1][3]
+        order = int(method.order)
+        system: RubbingSteps = start(
+            scene, RubbingSteps, ROUNDING, ROUNDING, order, h, float(scene.t_span[0]), n
+        )
+        return system
+
+    @property
+    def ahead(self) -> np.ndarray:
+        """Times at which a callback may be what has failed [s]."""
+        return np.linspace(self.now, min(self.now + self.method.h, self.scene.t_span[1]), len(super().ahead))

@@ -1,0 +1,8 @@
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.stepping.rubbing.stride cimport stride
+from lcpstep.stepping.rubbing.strides cimport Strides
+
+
+cdef class RubbingSteps(Strides):
+    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -1,0 +1,27 @@
+cimport cython
+from lcpstep.events.friction.equations cimport measure
+from lcpstep.events.friction.held cimport hold_modes, project
+from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
+from lcpstep.events.friction.modes cimport decide
+from lcpstep.events.friction.state cimport GUARDS
+from lcpstep.events.friction.step cimport find_standing, meet, stop
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport min
+from lcpstep.stepping.rubbing.found cimport NOWHERE, arm, first_event, locate, note_arrival, note_base
+from lcpstep.stepping.rubbing.strides cimport Strides
+
+cdef Py_ssize_t OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+cdef double LOOK_AHEAD, FURTHER
+
+@cython.locals(by_force=bint)
+cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t failed(Strides s) noexcept nogil
+cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
+cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
+cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
+cdef double keep_between(Strides s, Record record, double t, double tau) noexcept nogil
+cdef void press(Strides s, double a, double b) noexcept nogil
+cdef void arrive_with(Strides s, double t) noexcept nogil
+cdef void end_step(Strides s, Record record, Tally tally) noexcept nogil

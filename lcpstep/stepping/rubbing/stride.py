@@ -1,0 +1,163 @@
+"""A step with friction, up to the first event within it, as kernels; the counterpart of `events.friction.step`."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.friction.codes import OBEY, OPEN, STICKS
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import measure
+    from lcpstep.events.friction.held import hold_modes, project
+    from lcpstep.events.friction.keep import keep, keep_event, store_dense
+    from lcpstep.events.friction.modes import decide
+    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.events.friction.step import find_standing, meet, stop
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import min
+    from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
+    from lcpstep.stepping.rubbing.strides import Strides
+
+# Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
+# is seen of it there
+LOOK_AHEAD, FURTHER = 1e-4, 10.0
+
+
+def stride(s: Strides, record: Record, tally: Tally) -> int:
+    """What is left of the step, up to the first event within it; what comes next into `next`. A status."""
+    t0, goal = s.clock.t0, s.goal(tally.steps)
+    if goal <= t0:
+        end_step(s, record, tally)
+        return DONE
+    s.culprit = -1
+    border = min(goal, s.clock.high)
+    h = border - t0
+    if not s.going and not note_base(s, t0):
+        return failed(s)
+    s.going = False
+    if not s.step(t0, h) or not note_arrival(s, t0, h):
+        return failed(s)
+    g = first_event(s, h)
+    if g < 0:
+        arm(s)
+        take_over(s, record, border, h)
+        arrive_with(s, border)
+        if border >= goal:
+            end_step(s, record, tally)
+        return DONE
+    tau = locate(s, g, h)
+    if tau == NOWHERE:
+        return pass_by(s, record, s.found * h)
+    c = g // GUARDS
+    by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
+    if by_force:
+        code = look_ahead(s, c, h, tau)
+        if code != DONE:
+            return code
+        if tau > 0.0 and not s.step(t0, tau):
+            return failed(s)
+    take_over(s, record, border if tau >= h else min(s.clock.after(tau), border), tau)
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    if by_force:
+        s.next = OBEY
+    elif s.mode[c] == OPEN:
+        meet(s, c)
+    else:
+        stop(s, c)
+    return DONE
+
+
+def failed(s: Strides) -> int:
+    """Why there was no step."""
+    return PAINLEVE_INCONSISTENT if s.culprit >= 0 else NOT_FINITE
+
+
+def pass_by(s: Strides, record: Record, tau: float) -> int:
+    """Go on to where an event was expected that there is none of, and look again from there."""
+    if not s.step(s.clock.t0, tau):
+        return failed(s)
+    take_over(s, record, s.clock.after(tau), tau)
+    keep_event(s, record, s.clock.t0)
+    return DONE
+
+
+def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
+    """The modes just after the force of contact c has left its cone, or turned to pulling; a status."""
+    t0, ahead = s.clock.t0, LOOK_AHEAD * h
+    while True:
+        if not s.step(t0, tau + ahead) or not measure(s, t0 + tau + ahead, s.y_new):
+            return failed(s)
+        find_standing(s)
+        code = decide(s)
+        if code != DONE or s.new_mode[c] != s.mode[c] or ahead >= h:
+            break
+        ahead *= FURTHER
+    hold_modes(s)  # the old ones, for the rest of the step
+    return code
+
+
+def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
+    """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    if tau > 0.0:
+        pressed = keep_between(s, record, t, tau)
+        press(s, pressed, 1.0)
+        copy(s.y, s.y_new, s.n)
+    s.clock.start_at(t)
+    if tau > 0.0 and s.n_held > 0:
+        project(s, t)
+    while record.wants(t, t >= s.t_end):  # the end of the span
+        keep(s, record, record.times[record.next_time], s.y)
+        record.next_time += 1
+
+
+def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
+    """Keep the states asked for before the end t of the step, and its dense output; where impulses are summed to."""
+    pressed = 0.0
+    s.length = tau
+    if record.dense_size > 0 or record.wants(t, False):
+        s.complete(s.clock.t0, tau)
+    while record.wants(t, False):
+        place = (record.times[record.next_time] - s.clock.t0) / tau
+        copy(s.seen, s.y, s.n)
+        if place > 0.0:
+            press(s, pressed, place)
+            s.at(place, s.seen)
+            pressed = place
+        keep(s, record, record.times[record.next_time], s.seen)
+        record.next_time += 1
+    store_dense(s, record)
+    return pressed
+
+
+def press(s: Strides, a: float, b: float) -> None:
+    """Add the impulses of the forces between two places in the step."""
+    if s.n_held == 0:
+        return
+    for i in range(s.n_r):
+        k = i - s.n_j if i >= s.n_j else 2 * s.n_c + i  # contacts are kept first, then tangents and joints
+        change = s.push[i] if b >= 1.0 else s.pressed(i, b)
+        s.impulse[k] = s.impulse[k] + (change - s.pressed(i, a) if a > 0.0 else change)
+
+
+def arrive_with(s: Strides, t: float) -> None:
+    """What is known where a step has ended is known where the next one begins, unless it begins at a corner."""
+    s.going = t < s.clock.high
+    if s.going:
+        copy(s.K, s.arrival, s.n)
+        copy(s.leaving, s.arriving, s.n_r)
+        copy(s.begin_value, s.end_value, GUARDS * s.n_c)
+        copy(s.begin_slope, s.end_slope, GUARDS * s.n_c)
+
+
+def end_step(s: Strides, record: Record, tally: Tally) -> None:
+    """A step has ended; its state is kept where it is asked for."""
+    tally.steps += 1
+    if record.is_due(tally.steps):
+        if record.keeps_events():
+            keep_event(s, record, s.clock.t0)
+        else:
+            keep(s, record, s.clock.t0, s.y)

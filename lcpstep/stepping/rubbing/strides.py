@@ -1,0 +1,141 @@
+"""The smooth motion of steps with friction, as kernels: of order two or four, and its dense output.
+
+    2   q' = q + h v + h^2 a / 2,  v' = v + h (a + a') / 2          velocity Verlet, a' taken at v + h a
+    4   Runge-Kutta's classical method
+
+Each ends with the acceleration where it arrives, with which the next one begins. Impulses of contacts are integrated
+along with the motion, by the same weights. Between its ends a step is the cubic that has their values and slopes.
+
+Sources: W. Swope et al., J. Chem. Phys. 76 (1982) 637; E. Hairer, S. Norsett, G. Wanner, Solving Ordinary
+Differential Equations I (Springer 1993), sections II.1 and II.6.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.events.friction.held import list_multipliers
+    from lcpstep.events.friction.smooth import Smooth
+    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.kernels.vectors import add, clear, copy, finite
+    from lcpstep.pointers import after, min
+
+ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
+
+
+class Strides(Smooth):
+    """A motion with friction by steps of one size.
+
+    order                2 or 4
+    h, t_start, n_steps  steps: their size, when the first begins, how many there are
+    going                whether rates, forces, guards and their slopes at the base state are known
+    leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
+    push : (n_r,)                         their impulses over it
+    begin_value, begin_slope, end_value, end_slope, middle_value : (3 n_c,)    guards there, and their rates of change
+    arrival : (n,)       rates at the end of the step last made
+
+    Parameters
+    ----------
+    given    as of `Rubbing`
+    order, h, t_start, n_steps   as above
+    """
+
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given[:-4])
+        self.order, self.h, self.t_start, self.n_steps = given[-4:]
+        self.going = False
+        g = GUARDS * self.n_c
+        self.arrival = after(self.K, ARRIVAL * self.n)
+        self.ends = np.zeros(4 * self.n_r + 5 * g)
+        self.leaving = doubles(self.ends)
+        self.arriving = after(self.leaving, self.n_r)
+        self.middle = after(self.leaving, 2 * self.n_r)
+        self.push = after(self.leaving, 3 * self.n_r)
+        self.begin_value = after(self.leaving, 4 * self.n_r)
+        self.begin_slope = after(self.begin_value, g)
+        self.end_value = after(self.begin_value, 2 * g)
+        self.end_slope = after(self.begin_value, 3 * g)
+        self.middle_value = after(self.begin_value, 4 * g)
+
+    def step(self, t: float, h: float) -> bool:
+        """A step of size h from y at t to y_new; False where it is not finite, or rows cannot be held."""
+        return verlet(self, t, h) if self.order == 2 else classical(self, t, h)
+
+    def complete(self, t: float, h: float) -> bool:
+        """Dense output of the step that `step` has just made, in the form of the other Runge-Kutta method."""
+        n = self.n
+        clear(self.F, 7 * n)
+        for i in range(n):
+            delta = self.y_new[i] - self.y[i]
+            self.F[i] = delta
+            self.F[n + i] = h * self.K[i] - delta
+            self.F[2 * n + i] = 2.0 * delta - h * (self.arrival[i] + self.K[i])
+        self.length = h
+        return True
+
+    def pressed(self, i: int, x: float) -> float:
+        """The impulse of row i up to the fraction x of the step: the same cubic."""
+        h, all_ = self.length, self.push[i]
+        out, in_ = h * self.leaving[i] - all_, 2.0 * all_ - h * (self.leaving[i] + self.arriving[i])
+        return x * (all_ + (1.0 - x) * (out + x * in_))
+
+    def goal(self, steps: int) -> float:
+        """The time at which the step after so many ends."""
+        if steps + 1 >= self.n_steps:
+            return self.t_end
+        return min(self.t_start + self.h * (steps + 1), self.t_end)
+
+
+def verlet(s: Strides, t: float, h: float) -> bool:
+    """A step of order two."""
+    n, a = s.n_q, after(s.K, s.n_q)
+    q_new, v_new = s.y_new, after(s.y_new, n)
+    for i in range(n):
+        q_new[i] = s.y[i] + h * (s.y[n + i] + 0.5 * h * a[i])
+        v_new[i] = s.y[n + i] + h * a[i]
+    if not s.rates(t + h, s.y_new, s.arrival):
+        return False
+    for i in range(n):
+        v_new[i] = s.y[n + i] + 0.5 * h * (a[i] + s.arrival[n + i])
+        s.arrival[i] = v_new[i]
+    arrive(s)
+    for i in range(s.n_r):
+        s.push[i] = 0.5 * h * (s.leaving[i] + s.arriving[i])
+    s.evaluations += 1
+    return finite(s.y_new, s.n)
+
+
+def classical(s: Strides, t: float, h: float) -> bool:
+    """A step of order four."""
+    n, r = s.n, s.n_r
+    clear(s.middle, r)
+    for i in range(r):
+        s.push[i] = h / 6.0 * s.leaving[i]
+    for stage in range(1, 4):
+        length = h if stage == 3 else 0.5 * h
+        for i in range(n):
+            s.y_stage[i] = s.y[i] + length * s.K[(stage - 1) * n + i]
+        if not s.rates(t + length, s.y_stage, after(s.K, stage * n)):
+            return False
+        list_multipliers(s)
+        add(s.push, h / 6.0 if stage == 3 else h / 3.0, s.multiplier, r)
+        if stage < 3:
+            add(s.middle, 0.5, s.multiplier, r)
+    for i in range(n):
+        s.y_new[i] = s.y[i] + h / 6.0 * (s.K[i] + 2.0 * (s.K[n + i] + s.K[2 * n + i]) + s.K[3 * n + i])
+    s.evaluations += 4
+    if not s.rates(t + h, s.y_new, s.arrival):
+        return False
+    arrive(s)
+    return finite(s.y_new, n)
+
+
+def arrive(s: Strides) -> None:
+    """Take note of the forces where a step ends."""
+    list_multipliers(s)
+    copy(s.arriving, s.multiplier, s.n_r)
