@@ -24,6 +24,7 @@ from lcpstep.cli.common import (
     scene_arguments,
     scene_with_contacts,
 )
+from lcpstep.cli.studies import work_bar
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulation import Method
 
@@ -83,13 +84,11 @@ def run_study(options: argparse.Namespace) -> int:
     methods = [METHODS[name](options, span) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
     interrupt.keeps(options, lambda: str(file) if file and file.exists() else "")
-    from tqdm import tqdm
-
-    with tqdm(bar_format="{desc}", disable=None, leave=False) as bar:
+    with work_bar("reference") as name_stage:
         try:
             result = study(
                 scene, methods, h=options.h, tolerances=options.tolerances, measures=options.measures,
-                horizon=options.horizon, repeats=options.repeats, save=file, progress=bar.set_description_str,
+                horizon=options.horizon, repeats=options.repeats, save=file, progress=name_stage,
             )  # fmt: skip
         except StudyInterrupted as stopped:
             interrupt.answer()

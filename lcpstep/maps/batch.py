@@ -21,6 +21,7 @@ from lcpstep.maps.task import (
     INSIDE as INSIDE,
 )  # in place of a `Status`: the start lies inside of the obstacle
 from lcpstep.maps.task import UNREACHED, Task
+from lcpstep.pace import counted
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Kind, Status
@@ -203,7 +204,7 @@ def _task(
 
 def one_by_one(scene: Scene, method: Method, task: Task, strict: bool) -> None:
     """The task by `simulate`, one run and one period at a time."""
-    for i in range(len(task.starts)):
+    for i in counted(range(len(task.starts))):
         x = task.starts[i].copy()
         g, _ = scene.gap(task.t_start, x[: scene.n_q], x[scene.n_q :])
         code = int(Status.DONE)
