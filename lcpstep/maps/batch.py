@@ -79,7 +79,9 @@ class Targets:
 
 
 def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None:
-    """Refuse a scene without a period, and say what would give it one."""
+    """Refuse a scene without a period, and say what would give it one; TypeError for what is no scene."""
+    if not isinstance(scene, (Scene, HybridScene)):
+        raise TypeError(f"scene: expected a lagrangian.Scene or HybridScene, got {scene!r}")
     if math.isfinite(scene.period):
         return
     drive = scene.parameters.get("amplitude")
