@@ -118,11 +118,12 @@ def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def _report(result: Study, options: argparse.Namespace) -> None:
+    """Files and table; of a study that was interrupted without picture and fits, which whoever waits waits for."""
     files = []
     if options.out is not None and result.levels:
         files = [options.out / "study.json", options.out / "study.csv"]
         result.save(files[1])
-        if not options.no_picture:
+        if result.finished and not options.no_picture:
             from lcpstep.plot.work_precision import work_precision
 
             files.append(options.out / "study.png")
