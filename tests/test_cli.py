@@ -64,7 +64,7 @@ def test_compare_offers_what_treats_friction(capsys, scene, reference):
     status, out, _ = run(capsys, "compare", scene, "--h", 1e-3, "--no-pictures")
     assert status == DONE
     assert reference in out
-    assert out.count("left out: ") == 2
+    assert "left out: " not in out
 
 
 def test_angles_are_not_metres(capsys):
