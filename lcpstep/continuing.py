@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from lagrangian import HybridScene, LinearContacts, LinearSystem, Scene, checks
 from lagrangian.scene import ROUNDING
+from lcpstep.answer import Answer
 from lcpstep.errors import LcpStepError
 from lcpstep.lcp import solve_lcp
 from lcpstep.model import dense
@@ -67,9 +68,12 @@ def continued(run: Trajectory | HybridTrajectory, *, t_end: float) -> Scene | Hy
 
     Raises
     ------
+    TypeError   run is none
     ValueError   t_end is not after the end of the run, or no state of the run was kept
     LcpStepError   no position near satisfies all joints and contacts
     """
+    if not isinstance(run, Answer):
+        raise TypeError(f"run: expected a Trajectory, got {run!r}")
     if isinstance(run.scene, HybridScene):
         return _continued_modes(run, t_end)
     if len(run.t) == 0:

@@ -257,4 +257,8 @@ def _values(where: str, given: Any) -> list[Any]:
 
 def read_file(file: str | Path) -> ParameterStudy:
     """A study from a file; FileNotFoundError where there is none."""
+    if not Path(file).is_file():
+        raise FileNotFoundError(
+            f"file: there is no file {str(file)!r}; docs/parameter-studies.md has one to start from"
+        )
     return ParameterStudy.read(Path(file).read_text(), Path(file).name)

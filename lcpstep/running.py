@@ -18,7 +18,7 @@ from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.model import culprit
-from lcpstep.pace import Pace
+from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory
 
@@ -64,6 +64,7 @@ class Portions(ABC):
 
     def finish(self, progress: Callable[[float], None]) -> Any:
         """Run to the end of the span, or to where it cannot go on."""
+        begin, end = self.scene.t_span
         try:
             code = self.begin()
             while code == BUFFER_FULL or (code == Status.DONE and not self.over):
@@ -71,6 +72,7 @@ class Portions(ABC):
                 cause()  # an interrupt that a callback heard goes on its way
                 self.empty()
                 progress(self.now)
+                tell(self.now - begin, end - begin)
             raised, result = cause(), self.trajectory(code)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None

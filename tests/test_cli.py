@@ -102,8 +102,11 @@ def test_simulate_saves_the_motion(capsys, tmp_path):
         (["simulate", "bouncing-ball", "--h", "0"], "h: expected a positive number"),
         (
             ["simulate", "bouncing-ball", "--t-end", "0.1", "--picture", "no/such/folder/x.png"],
-            "No such file",
+            "--picture: there is no folder 'no/such/folder'; make it first",
         ),
+        (["simulate", "bouncing-ball", "--picture", "x.foo"], "--picture: expected a name that ends in .png"),
+        (["simulate", "bouncing-ball", "--film", "x.avi"], "--film: expected a name that ends in .gif"),
+        (["run", "missing.toml"], "there is no file 'missing.toml'"),
         (["simulate", "bouncing-ball", "--h", "nan"], "h: expected a finite number"),
         (["simulate", "bouncing-ball", "--theta", "1.5"], "theta: expected a value in [0, 1]"),
         (["simulate", "bouncing-ball", "--lcp", "lemkes"], "did you mean 'lemke'"),

@@ -32,6 +32,7 @@ LONG = {
     "thesis": "",
     "lyapunov": "cam-follower --rpm 660 --periods 100000000",
     "run": "study.toml",
+    "explore": "bouncing-ball --no-browser --port 50617",
     "map": "logistic --parameter r --range 2.8 4 --points 4000000 --out out",
 }
 ENDS_AT_ONCE = {"scenes", "new"}

@@ -108,7 +108,7 @@ def test_parameters_that_the_scene_does_not_have(folder, capsys):
     status, _, err = run(capsys, "run", "study.toml")
     assert status == USAGE
     assert "unknown parameter of bouncing-ball 'restitutions'; did you mean 'restitution'" in err
-    assert "No such file" in run(capsys, "run", "nothing.toml")[2]
+    assert "there is no file 'nothing.toml'" in run(capsys, "run", "nothing.toml")[2]
     (folder / "study.toml").write_text('scene = "hybrid-abs"')
     assert "has modes; parameter studies take scenes with contacts" in run(capsys, "run", "study.toml")[2]
 

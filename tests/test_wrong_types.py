@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, HybridSystem, LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Moreau, energy, load, simulate, study
+from lcpstep import EventDriven, Moreau, continued, energy, load, simulate, study
+from lcpstep.analysis.attractors import attractors
+from lcpstep.analysis.basins import basins
+from lcpstep.analysis.orbits import periodic_orbit
 from lcpstep.cli import main
 
 BALL = scenes.bouncing_ball(t_end=0.1)
@@ -38,6 +41,11 @@ def scene(**more):
         (lambda: study(BALL, [Moreau()], repeats="a"), "repeats: expected at least 1"),
         (lambda: study(BALL, [Moreau()], repeats=1.5), "repeats: expected at least 1"),
         (lambda: energy(3), "trajectory: expected a Trajectory"),
+        (lambda: continued(3, t_end=1.0), "run: expected a Trajectory"),
+        (lambda: attractors(3, EventDriven(), [[0, 0]]), "scene: expected a lagrangian.Scene"),
+        (lambda: basins(3, [0, 0], [1, 1]), "scene: expected a lagrangian.Scene"),
+        (lambda: basins(BALL, [0, 0], [1, 1]), "scene: 'bouncing-ball' has no period, and so no basins"),
+        (lambda: periodic_orbit(3, [0, 0]), "scene: expected a lagrangian.Scene"),
         (lambda: load(3), "path: expected the name of a file"),
         (lambda: RUN.save(3), "path: expected the name of a file"),
         (lambda: RUN.animate(3), "path: expected the name of a file"),

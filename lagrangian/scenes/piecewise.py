@@ -13,7 +13,6 @@ nothing cancels; so chattering is followed until its hops are shorter than the r
 
 from __future__ import annotations
 
-import bisect
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -88,20 +87,26 @@ class Piecewise:
 
     def state(self, t: float) -> tuple[float, float]:
         """y and y' (right limit) at a time not before the start."""
-        while self._now < t or (
-            self._now == t and self._pieces[-1][0] < t
-        ):  # what begins at t is known there
-            self._advance()
-        k = bisect.bisect_right(self._pieces, t, key=lambda piece: piece[0]) - 1
-        t0, y0, v0, closed = self._pieces[max(k, 0)]
-        if closed:
-            return self._side(t, +1)[:2]
-        return self.free.at(t0, y0, v0, t)[:2]
+        y, v = self(np.array([t]))
+        return float(y[0, 0]), float(v[0, 0])
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """The same for times (m,), in arrays of shape (m, 1)."""
-        states = np.array([self.state(float(t)) for t in times]).reshape(-1, 2)
-        return states[:, :1], states[:, 1:]
+        t = np.asarray(times, dtype=float)
+        self._reach(float(np.max(t, initial=self.start[0])))
+        begins = np.array([piece[0] for piece in self._pieces])
+        of = np.maximum(np.searchsorted(begins, t, side="right") - 1, 0)
+        t0, y0, v0, closed = np.array(self._pieces)[of].T
+        states, flies = np.empty((2, len(t))), closed == 0.0
+        states[:, flies] = self.free.at(t0[flies], y0[flies], v0[flies], t[flies], np)[:2]
+        for k in np.flatnonzero(closed):
+            states[:, k] = self._side(float(t[k]), +1)[:2]
+        return states[0][:, None], states[1][:, None]
+
+    def _reach(self, t: float) -> None:
+        """Work the motion out up to t, and what begins there."""
+        while self._now < t or (self._now == t and self._pieces[-1][0] < t):
+            self._advance()
 
     def _advance(self) -> None:
         """To the next event, or over one scan interval without one."""

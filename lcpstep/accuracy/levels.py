@@ -18,6 +18,7 @@ from lcpstep.accuracy.reference import Reference
 from lcpstep.accuracy.work_precision import Level, Study
 from lcpstep.errorbar.companions import KNOWN
 from lcpstep.errors import LcpStepError
+from lcpstep.pace import counted
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Status, Trajectory
 
@@ -39,7 +40,7 @@ def measured(
     errors: dict[str, list[float]] = {m: [] for m in measures}
     counts: list[tuple[int, int, int]] = []
     bars: dict[str, float] = {}
-    for k, one in enumerate(near):
+    for k, one in enumerate(counted(near)):
         with_bar = k == len(near) // 2 and isinstance(one, KNOWN)
         try:
             run = simulate(scene, one, error=with_bar)

@@ -24,9 +24,11 @@ from lcpstep.accuracy.question import curves_of, earlier, levels_of, question_of
 from lcpstep.accuracy.reference import find_reference
 from lcpstep.accuracy.work_precision import Level, Study
 from lcpstep.errors import StudyInterrupted, UnknownName
+from lcpstep.pace import counted
 from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
 
+FEW_STEPS = 4000.0  # that take as long as comparing two motions
 SPREAD = (0.87, 0.93, 1.0, 1.07, 1.15)
 
 
@@ -131,19 +133,25 @@ def _fill(
     result.uncertainty = found.uncertainty(measures, result.compared_until)
     allow_for_rounding(scene, found, result)
     allow_for_growth(found, grown, result)
-    for name, methods in curves.items():
-        for method in methods:
-            say(f"{name}, {' = '.join(map(str, dial(method)))}")
-            level = done.get((name, repr(method)))
-            if level is None:
-                level = measured(scene, name, method, found, measures, result, repeats, spread, size)
-            result.levels.append(level)
-            note = f"{name}: {level.message}"
-            if level.status != Status.DONE.name and note not in result.notes:
-                result.notes.append(note)
-            if save is not None:
-                result.save(save)
+    levels = [(name, method) for name, methods in curves.items() for method in methods]
+    for name, method in counted(levels, [weight(scene, method) for _, method in levels]):
+        say(f"{name}, {' = '.join(map(str, dial(method)))}")
+        level = done.get((name, repr(method)))
+        if level is None:
+            level = measured(scene, name, method, found, measures, result, repeats, spread, size)
+        result.levels.append(level)
+        note = f"{name}: {level.message}"
+        if level.status != Status.DONE.name and note not in result.notes:
+            result.notes.append(note)
+        if save is not None:
+            result.save(save)
     _remarks(result)
+
+
+def weight(scene: Scene, method: Method) -> float:
+    """About how much of the time a level takes, for who waits: a constant and its steps."""
+    which, value = dial(method)
+    return 1.0 + (float(np.ptp(scene.t_span)) / value / FEW_STEPS if which == "h" else 0.0)
 
 
 def _remarks(result: Study) -> None:

@@ -213,7 +213,7 @@ class Study:
         rows = [head] + [_row(x, shown) for x in self.levels]
         widths = [max(len(r[k]) for r in rows) for k in range(len(head))]
         lines = ["  ".join(c.ljust(w) for c, w in zip(r, widths, strict=True)).rstrip() for r in rows]
-        for method, fits in self.orders().items():
+        for method, fits in self.orders().items() if self.finished else ():
             lines += [f"order of {method} in {e}: {fit}" for e, fit in fits.items()]
         for method in self.methods:
             lines += [f"error over error bar of {method}: {text}" for text in [self._bars(method)] if text]

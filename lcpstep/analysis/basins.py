@@ -35,7 +35,7 @@ from lcpstep.analysis.neighbourhoods import neighbourhoods
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.events import EventDriven
-from lcpstep.maps.batch import INSIDE, Targets, periods
+from lcpstep.maps.batch import INSIDE, Targets, periodic, periods
 from lcpstep.simulation import Method
 from lcpstep.sweep import Arrays, sweep
 
@@ -95,6 +95,7 @@ def basins(
     ValueError   an empty or reversed rectangle, a grid without cells, more than one coordinate
     SweepStopped   the executor died; finished parts are kept in `out`
     """
+    periodic(scene, "basins")
     if scene.n_x != 2:
         raise ValueError(
             f"scene: expected two states, {scene.name!r} has {scene.n_x}: {', '.join(scene.labels)}"

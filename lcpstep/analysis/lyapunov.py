@@ -116,7 +116,7 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress 
     """
     state = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
-    growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST)
+    growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST, n)
     while growth.done < n:
         portion = min(pace.goal(growth.done), n) - growth.done
         images, derivatives = along(P, state, portion, 0 if growth.done else drop)

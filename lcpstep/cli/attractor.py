@@ -14,7 +14,16 @@ from lcpstep.analysis.attractors import POINTS, Attractors, attractors
 from lcpstep.analysis.likeness import Likeness, likeness, sample
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.cli.common import DONE, event_driven, moreau
-from lcpstep.cli.studies import CAM_BOX, files, finish, method_of, stopped, study_arguments, study_scene
+from lcpstep.cli.studies import (
+    CAM_BOX,
+    files,
+    finish,
+    method_of,
+    stopped,
+    study_arguments,
+    study_scene,
+    work_bar,
+)
 from lcpstep.dataset import labelled, provenance
 from lcpstep.plot import attractors as pictures
 from lcpstep.plot.words import method_words, scene_words
@@ -76,16 +85,19 @@ def run_attractor(options: argparse.Namespace) -> int:
             points=options.points,
         )  # fmt: skip
 
-    found = search(method)
+    with work_bar("attractors"):
+        found = search(method)
     rows = {method_words(method): found.found}
     compared: dict[str, Likeness] = {}
     if options.compare and found.found:
         x = found.found[0].points[-1]
-        stepped = sample(scene, moreau(options), x, options.compare)
-        exact = sample(scene, event_driven(options), x, options.compare)
+        with work_bar("by both methods"):
+            stepped = sample(scene, moreau(options), x, options.compare)
+            exact = sample(scene, event_driven(options), x, options.compare)
         compared = likeness(stepped, exact, seed=options.seed)
         other = event_driven(options) if isinstance(method, Moreau) else moreau(options)
-        rows[method_words(other)] = search(other).found
+        with work_bar("by the other method"):
+            rows[method_words(other)] = search(other).found
     title = f"{scene_words(scene)}: attractors, {options.starts} random starts, section at phase {options.phase:g}"
     corners = np.atleast_1d(np.asarray(scene.corners)) / scene.period
     figure = pictures.attractors(rows, title, [float(c) for c in corners], scene.labels)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -19,6 +20,7 @@ from lcpstep.files import replacing
 
 DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
 DPI = 150  # of pictures
+REFRESH = 0.1  # of a bar [s]
 
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
@@ -188,9 +190,12 @@ def progress_bar(scene: Scene | HybridScene, title: str) -> Iterator[Callable[[f
     t_start, t_end = scene.t_span
     form = "{desc}: {percentage:3.0f}% |{bar}| {n:.3g}/{total:.3g} s [{elapsed}<{remaining}]"
     with tqdm(total=t_end - t_start, desc=title, bar_format=form, disable=None, leave=False) as bar:
+        shown = 0.0
 
         def progress(t: float) -> None:
-            bar.n = t - t_start
-            bar.refresh()
+            nonlocal shown
+            if time.monotonic() - shown >= REFRESH:
+                bar.n, shown = min(t, t_end) - t_start, time.monotonic()
+                bar.refresh()
 
         yield progress

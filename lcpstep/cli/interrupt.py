@@ -1,6 +1,6 @@
 """Ctrl-C in a command: it ends within about a second, says what was kept and how to go on; exit status 130.
 
-Loops return to Python every fifth of a second (`lcpstep.pace`); there the interrupt is raised and ends them, and the
+Loops return to Python every tenth of a second (`lcpstep.pace`); there the interrupt is raised and ends them, and the
 command saves what it has. What does not return is the compiler at work, or one long call of a foreign library. These
 let other threads run, and one that watches ends the process where the command does not answer. A second Ctrl-C ends
 it at once, whatever it is about to save.

@@ -23,7 +23,16 @@ from lcpstep.analysis.returns import TOLERANCE, return_time
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt, proofs
 from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, parameters_of, save_figure
-from lcpstep.cli.studies import PARTS, files, finish, method_of, stopped, study_arguments, study_scene
+from lcpstep.cli.studies import (
+    PARTS,
+    files,
+    finish,
+    method_of,
+    stopped,
+    study_arguments,
+    study_scene,
+    work_bar,
+)
 from lcpstep.errors import UnknownName
 from lcpstep.maps import EventMap, SwitchMap, iterate
 from lcpstep.maps.event import KINDS
@@ -88,13 +97,12 @@ def run_orbit(options: argparse.Namespace) -> int:
     if options.draw:
         dataset.check_new(drawn, options.overwrite)
     guess = options.guess
-    if guess is None:
-        guess = (
-            PeriodMap(scene, method, options.phase)
-            .follow(scene.x0, options.transient + 1, options.transient)
-            .final[0]
-        )
-    orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
+    with work_bar("transient") as name_stage:
+        if guess is None:
+            settled = PeriodMap(scene, method, options.phase)
+            guess = settled.follow(scene.x0, options.transient + 1, options.transient).final[0]
+        name_stage("orbit")
+        orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
     _print(orbit)
     if options.draw:
         drawn.parent.mkdir(parents=True, exist_ok=True)
@@ -119,7 +127,10 @@ def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
         P = EventMap(scene, method, options.event, options.contact, tuple(options.cyclic))
         where = f"{options.event} of contact {options.contact}"
     x = P.entry() if options.guess is None else options.guess
-    found = periodic_point(P, iterate(P, x, options.transient)[-1], options.periods)
+    with work_bar("transient") as name_stage:
+        x = iterate(P, x, options.transient)[-1]
+        name_stage("orbit")
+        found = periodic_point(P, x, options.periods)
     period = sum(P.duration(y) for y in found.points)
     print(f"{'stable' if found.stable else 'unstable'}; period {period:.12g}, residual {found.residual:.2g}")
     if isinstance(P, EventMap) and options.cyclic:
@@ -168,18 +179,26 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
 
 @contextmanager
 def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progress]:
-    """A bar over the points of a branch; each is appended to a file of its own as it is found."""
+    """A bar over the range of the parameter; each point of the branch is appended to a file as it is found."""
     from tqdm import tqdm
+
+    low, high = options.range
+    seen: list[float] = []
+    form = "{desc}: {percentage:3.0f}% of the range |{bar}| {postfix} [{elapsed}<{remaining}]"
 
     file = options.out / PARTS / "branch.csv"
     file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("w") as lines, tqdm(desc="branch", unit="point", disable=None, leave=False) as bar:
+    with (
+        file.open("w") as lines,
+        tqdm(desc="branch", total=high - low, bar_format=form, disable=None, leave=False) as bar,
+    ):
 
         def progress(p: float, x: NDArray[np.float64], multipliers: NDArray[np.complex128]) -> None:
             lines.write(",".join(repr(float(y)) for y in (p, *x, *np.abs(multipliers))) + "\n")
             lines.flush()
+            seen[:] = [min([p, *seen]), max([p, *seen])]
             bar.set_postfix_str(f"{parameter} = {p:.6g}", refresh=False)
-            bar.update()
+            bar.update(min(seen[1] - seen[0], high - low) - bar.n)
 
         yield progress
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -43,6 +44,8 @@ METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
 DEFAULTS: dict[str, Any] = {"h": 1e-4, "theta": 0.5, "lcp": "lemke", "order": "2"}
 TAKES = {"moreau": ("h", "theta", "lcp"), "located": ("h", "order"), "event-driven": ()}
 SAVED = (".npz", ".nc", ".csv")
+DRAWN = (".png", ".pdf", ".svg")
+FILMED = (".gif", ".html", ".mp4")
 
 
 def add(commands: Any) -> None:
@@ -92,6 +95,7 @@ def run_simulate(options: argparse.Namespace) -> int:
     _refuse_what_does_not_apply(options)
     method = METHODS[options.method](options)
     options.out = _checked_name(options.out)
+    _check_pictures(options)
     try:
         with progress_bar(scene, options.method) as progress:
             run = simulate(scene, method, keep=options.every, progress=progress, error=options.error)
@@ -135,6 +139,23 @@ def _checked_name(file: Path | None) -> Path | None:
     if file.exists():
         raise FileExistsError(f"--out: {file} exists already")
     return file
+
+
+def _check_pictures(options: argparse.Namespace) -> None:
+    """ValueError for a picture or a film that could not be written after the run."""
+    for name, file, endings in (("picture", options.picture, DRAWN), ("film", options.film, FILMED)):
+        if file is None:
+            continue
+        if file.suffix not in endings:
+            raise ValueError(
+                f"--{name}: expected a name that ends in {', '.join(endings)}, got {str(file)!r}"
+            )
+        if not file.parent.is_dir():
+            raise ValueError(f"--{name}: there is no folder {str(file.parent)!r}; make it first")
+    if options.film is not None and options.film.suffix == ".mp4" and shutil.which("ffmpeg") is None:
+        raise ValueError(
+            f"--film: {options.film} needs ffmpeg, which is not on the PATH; install it, or write .gif or .html"
+        )
 
 
 def _ended(run: Trajectory | HybridTrajectory) -> dict[str, Any]:

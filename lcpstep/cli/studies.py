@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from lcpstep import dataset
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
     FAILED,
+    REFRESH,
     event_driven,
     moreau,
     save_figure,
@@ -24,6 +26,7 @@ from lcpstep.cli.common import (
 )
 from lcpstep.dataset import Progress
 from lcpstep.errors import SweepStopped
+from lcpstep.pace import telling
 from lcpstep.simulation import Method
 
 CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
@@ -106,6 +109,31 @@ def keeps_parts(options: argparse.Namespace) -> None:
         return f"{count} finished parts in {folder}" if count else ""
 
     interrupt.keeps(options, kept)
+
+
+@contextmanager
+def work_bar(title: str) -> Iterator[Callable[[str], None]]:
+    """A bar with the time left over each stage of what is done meanwhile, on a terminal only; ten times a second.
+
+    What it gives names the stage.
+    """
+    from tqdm import tqdm
+
+    form = "{desc}: {percentage:3.0f}% |{bar}| [{elapsed}<{remaining}]"
+    with tqdm(desc=title, total=1.0, bar_format=form, disable=None, leave=False) as bar:
+        latest = (0.0, 0.0)  # share done, and when that was shown
+
+        def told(done: float, total: float) -> None:
+            nonlocal latest
+            share, now = min(done / total, 1.0), time.monotonic()
+            if share < latest[0]:  # another stage
+                bar.reset(1.0)
+            if share < latest[0] or now - latest[1] >= REFRESH:
+                bar.n, latest = share, (share, now)
+                bar.refresh()
+
+        with nullcontext() if bar.disable else telling(told):
+            yield bar.set_description_str
 
 
 @contextmanager

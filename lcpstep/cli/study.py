@@ -24,6 +24,7 @@ from lcpstep.cli.common import (
     scene_arguments,
     scene_with_contacts,
 )
+from lcpstep.cli.studies import work_bar
 from lcpstep.errors import StudyInterrupted
 from lcpstep.simulation import Method
 
@@ -83,13 +84,11 @@ def run_study(options: argparse.Namespace) -> int:
     methods = [METHODS[name](options, span) for name in dict.fromkeys(options.methods)]
     file = None if options.out is None else options.out / "study.json"
     interrupt.keeps(options, lambda: str(file) if file and file.exists() else "")
-    from tqdm import tqdm
-
-    with tqdm(bar_format="{desc}", disable=None, leave=False) as bar:
+    with work_bar("reference") as name_stage:
         try:
             result = study(
                 scene, methods, h=options.h, tolerances=options.tolerances, measures=options.measures,
-                horizon=options.horizon, repeats=options.repeats, save=file, progress=bar.set_description_str,
+                horizon=options.horizon, repeats=options.repeats, save=file, progress=name_stage,
             )  # fmt: skip
         except StudyInterrupted as stopped:
             interrupt.answer()
@@ -119,11 +118,12 @@ def run_solvers(scene: Scene, options: argparse.Namespace) -> int:
 
 
 def _report(result: Study, options: argparse.Namespace) -> None:
+    """Files and table; of a study that was interrupted without picture and fits, which whoever waits waits for."""
     files = []
     if options.out is not None and result.levels:
         files = [options.out / "study.json", options.out / "study.csv"]
         result.save(files[1])
-        if not options.no_picture:
+        if result.finished and not options.no_picture:
             from lcpstep.plot.work_precision import work_precision
 
             files.append(options.out / "study.png")

@@ -21,6 +21,7 @@ from lcpstep.maps.task import (
     INSIDE as INSIDE,
 )  # in place of a `Status`: the start lies inside of the obstacle
 from lcpstep.maps.task import UNREACHED, Task
+from lcpstep.pace import counted
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Kind, Status
@@ -78,7 +79,9 @@ class Targets:
 
 
 def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None:
-    """Refuse a scene without a period, and say what would give it one."""
+    """Refuse a scene without a period, and say what would give it one; TypeError for what is no scene."""
+    if not isinstance(scene, (Scene, HybridScene)):
+        raise TypeError(f"scene: expected a lagrangian.Scene or HybridScene, got {scene!r}")
     if math.isfinite(scene.period):
         return
     drive = scene.parameters.get("amplitude")
@@ -203,7 +206,7 @@ def _task(
 
 def one_by_one(scene: Scene, method: Method, task: Task, strict: bool) -> None:
     """The task by `simulate`, one run and one period at a time."""
-    for i in range(len(task.starts)):
+    for i in counted(range(len(task.starts))):
         x = task.starts[i].copy()
         g, _ = scene.gap(task.t_start, x[: scene.n_q], x[scene.n_q :])
         code = int(Status.DONE)

@@ -53,7 +53,7 @@ class Follower:
             self.flight(given),
             task._replace(strict=strict),
         )
-        pace, over = Pace(PORTION), False
+        pace, over = Pace(PORTION, total=task.periods * len(task.starts)), False
         while not over:
             over = follow(runs, pace.goal(runs.taken))
             cause()  # an interrupt of the keyboard, while a function of the user's was at work

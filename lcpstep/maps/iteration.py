@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 
@@ -40,7 +41,7 @@ def iterate(P: Map, x: ArrayLike, n: int) -> Array:
     ValueError   n is not positive, x is no vector of finite numbers, or P changes its shape
     """
     points = [checks.vector("x", x)]
-    for _ in range(checks.count("n", n)):
+    for _ in counted(range(checks.count("n", n))):
         image = np.atleast_1d(np.asarray(P(points[-1]), dtype=float))
         if image.shape != points[0].shape:
             raise ValueError(f"P: expected an image of shape {points[0].shape}, got {image.shape}")

@@ -58,7 +58,8 @@ class Lockstep:
         if strict:
             task.codes[own["g"] < -ROUNDING * size] = INSIDE
         stretches = list(self.stretches(task.t_start, task.t_end))
-        pace, done = Pace(PORTION, len(x)), 0
+        steps = sum(last - first for _, _, first, last in stretches)
+        pace, done = Pace(PORTION, len(x), task.periods * steps), 0
         for period in range(task.periods):
             k = period - task.drop
             self.measure(own, task.t_start)

@@ -72,7 +72,7 @@ def run_all(scene: HybridScene, method: Any, task: Task, tangents: bool) -> Task
         {name: getattr(task, name) for name in ARRAYS},
     )  # fmt: skip
     forget()
-    pace = Pace(PORTION, n)
+    pace = Pace(PORTION, n, task.periods * len(task.starts))
     while f.run < f.runs:
         code = follow(f, pace.goal(f.taken))
         raised()

@@ -25,7 +25,7 @@ def overview(
     scene: HybridScene, cycle: Cycle | None, over: Bifurcation | None, found: Basins | None, title: str
 ) -> Any:
     """What has been computed; panels of what has not stay empty."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(15, 8), layout="constrained")
     figure.suptitle(title)
@@ -119,7 +119,7 @@ def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | Non
 
 def stopping(run: HybridTrajectory, title: str) -> Any:
     """Slip, torque and the speeds of car and wheel over one stop."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(10, 7), layout="constrained")
     slip, torque, speed = figure.subplots(3, 1, sharex=True)

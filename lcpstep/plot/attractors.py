@@ -32,7 +32,7 @@ def attractors(
     corners : phases of the corners of the forcing, as shares of the period
     labels : of the states, with their units
     """
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(13.0, 0.8 + 4.6 * len(rows)), layout="constrained")
     figure.suptitle(title)

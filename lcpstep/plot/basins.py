@@ -12,7 +12,8 @@ COLOURS = "tab20"
 def basins(data: Any, title: str = "") -> Any:
     """Figure of a basin dataset: one colour an attractor, white for none, grey for the obstacle."""
     from matplotlib import colormaps
-    from matplotlib.figure import Figure
+
+    from lcpstep.plot.figures import Figure
 
     label = data["label"].values
     shades = np.array([(0.6, 0.6, 0.6), (1.0, 1.0, 1.0), *colormaps[COLOURS](np.arange(20))[:, :3]])

@@ -184,7 +184,7 @@ def _warned(ax: Any, data: Any) -> None:
 
 
 def _figure(rows: int, title: str) -> tuple[Any, Any]:
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(11, 1.0 + 3.2 * rows), layout="constrained")
     figure.suptitle(title)

@@ -25,7 +25,7 @@ WIDTH, HEIGHT = 12.5, 3.6  # of the picture, and of each scene [inch]
 
 def contests(found: Sequence[Contest], titles: Sequence[str]) -> Any:
     """A row for each scene: motion above the distances from the reference, and a work-precision diagram beside."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(WIDTH, HEIGHT * len(found) + 0.4), layout="constrained")
     grid = figure.add_gridspec(

@@ -31,7 +31,7 @@ def diagrams(
     names : of the parameter and of the first coordinate, with their units
     branches : of fixed points, drawn solid where they are stable and dashed where not
     """
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(11, 4.5), layout="constrained")
     figure.suptitle(title)

@@ -11,7 +11,7 @@ from lcpstep.plot.bifurcation import thinned
 
 def map_diagram(data: Any, title: str = "", coordinate: int = 0) -> Any:
     """Figure of a dataset of `lcpstep.analysis.map_diagram`; coordinate: which one is drawn."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     parameter = str(data.attrs["parameter"])
     values = data[parameter].values

@@ -25,7 +25,7 @@ NAMED = 8  # curves that a legend names
 
 def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
     """Positions of both runs overlaid, and below each the distance of the two on a logarithmic scale."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(11, 3.4 * len(comparisons)), layout="constrained")
     axes = figure.subplots(2 * len(comparisons), 1, height_ratios=[3, 1] * len(comparisons), squeeze=False)[
@@ -50,7 +50,7 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
 
 def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
     """State-space portraits, one row a comparison: the fast method on the left, the reference on the right."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(10, 3.6 * len(comparisons)), layout="constrained")
     grid = figure.subplots(len(comparisons), 2, sharex="row", sharey="row", squeeze=False)
@@ -82,7 +82,7 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
 
     The error bar of a run that has one is a band around positions and velocities: the largest error until then.
     """
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     if isinstance(run, HybridTrajectory):
         return _states_and_mode(run)
@@ -163,7 +163,7 @@ def _legend(ax: Any, handles: Any, names: Sequence[str]) -> None:
 
 def _states_and_mode(run: HybridTrajectory) -> Any:
     """One panel a state, and the mode as steps."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     n, names = run.scene.n_x, run.scene.system.names
     figure = Figure(figsize=(10, 1.0 + 2.1 * (n + 1)), layout="constrained")

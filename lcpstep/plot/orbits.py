@@ -33,7 +33,7 @@ MARKS = {
 
 def branch(data: Any, title: str = "") -> Any:
     """Figure of a branch dataset: position on the section, moduli of the multipliers, and their path in the plane."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     parameter = str(data.attrs["parameter"])
     figure = Figure(figsize=(11, 10), layout="constrained")
@@ -117,7 +117,7 @@ def multiplier_plane(figure: Any, ax: Any, data: Any) -> None:
 
 def orbit(found: PeriodicOrbit, title: str = "") -> Any:
     """The motion over its period with what it strikes, and in the state plane (of its first coordinate)."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     T, n = found.scene.period, found.periods
     start = found.phase * T

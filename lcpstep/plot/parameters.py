@@ -14,7 +14,7 @@ STYLES = ("o-", "s--", "^-.", "D:")
 
 def measures(data: Any, sweep: Sequence[str], names: Sequence[str]) -> Any:
     """One panel for each measure; legends beside them."""
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     if not sweep:
         raise ValueError("picture: expected a parameter in [sweep] to draw over")

@@ -21,7 +21,7 @@ def maps(
     lowest : where the circle of phases is cut: they are shown within [lowest, lowest + 1), in periods
     corners : phases of the corners of the forcing
     """
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(11, 4.0 * len(points)), layout="constrained")
     figure.suptitle(title)

@@ -23,7 +23,7 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
     because the reference is not good enough there or the motion has lost it. The grey line is what the
     reference itself may be off.
     """
-    from matplotlib.figure import Figure
+    from lcpstep.plot.figures import Figure
 
     wanted = measures or [
         m for m in study.measures if m not in UNFIT and any(x.errors.get(m) for x in study.levels)
