@@ -1,5 +1,5 @@
 from lcpstep.arrays cimport are_doubles, doubles, indices
-from lcpstep.lcp.enumeration cimport enumerate_bases
+from lcpstep.lcp.enumeration cimport enumerate_bases, enumerate_vertices
 from lcpstep.lcp.judge cimport judge
 from lcpstep.lcp.kernel cimport solve_dense
 from lcpstep.lcp.scaling cimport all_finite
@@ -8,7 +8,7 @@ from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport after, max
 from lcpstep.rows cimport copy
 
-cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, MAX_ITERATIONS, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, LARGEST_KEPT, LARGEST_ENUMERATION
+cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, MAX_ITERATIONS, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, TINY, LARGEST_KEPT, LARGEST_ENUMERATION
 
 cdef Workspace space_for(Py_ssize_t n)
 cdef Py_ssize_t pivot_once(

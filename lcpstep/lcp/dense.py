@@ -8,6 +8,7 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.lcp.enumeration import TINY
 from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.problem import Ray, Solution, check_finite
 from lcpstep.lcp.status import (
@@ -24,7 +25,7 @@ from lcpstep.lcp.status import (
 
 if not cython.compiled:
     from lcpstep.arrays import are_doubles, doubles, indices
-    from lcpstep.lcp.enumeration import enumerate_bases
+    from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.kernel import solve_dense
     from lcpstep.lcp.scaling import all_finite
@@ -120,7 +121,7 @@ def told(W: Any, b: Any, z: Any, w: Any, work: Workspace, status: int) -> Soluti
 
 
 def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
-    """Every complementary basis in turn."""
+    """Every complementary basis in turn, and every vertex of a few unknowns."""
     n, w = len(b), np.empty(len(b))
     if n > LARGEST_ENUMERATION:
         raise ValueError(f"W is too large to enumerate: 2^{n} bases; at most {LARGEST_ENUMERATION} unknowns")
@@ -172,12 +173,14 @@ def enumerate_all(
     limit: int,
     work: Workspace,
 ) -> int:
-    """`enumerate_bases` in the same way."""
+    """Every basis, and every vertex of a few unknowns, in the same way."""
     with cython.nogil:
         if not all_finite(W, b, n):
             return NOT_FINITE
         work.iterations, work.best_residual = 0, tolerance
         status = enumerate_bases(W, b, z, n, tolerance, limit, work)
+        if status == FAILED and n <= TINY:
+            status = enumerate_vertices(W, b, z, n, tolerance, work)
         if status != SOLVED:
             for i in range(n):
                 z[i] = max(z[i], 0.0)

@@ -21,6 +21,8 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, abs, max
 
+TINY = 8  # unknowns up to which vertices are few enough
+
 
 def enumerate_bases(
     W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, limit: int, work: Workspace

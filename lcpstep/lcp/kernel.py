@@ -15,6 +15,7 @@ from typing import Any
 
 import cython
 
+from lcpstep.lcp.enumeration import TINY
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
 
 if not cython.compiled:
@@ -49,7 +50,6 @@ MULTIPLIER, MODULUS = (
 )  # pseudo-random numbers of S. Park and K. Miller, Comm. ACM 31 (1988) 1192
 SIXTHS = 6  # a start has one to six of them of all z
 SMALLEST_PIVOT, LARGER_PIVOT = 1e-11, 1e-8  # relative to the largest entry of a direction, in turn
-TINY = 8  # up to this size every basis is tried at last
 
 
 def solve_small(W: Doubles, b: Doubles, z: Doubles, n: int, work: Workspace) -> int:

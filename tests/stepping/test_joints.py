@@ -294,7 +294,7 @@ def test_impulses_add_up_between_kept_states():
 
 
 def test_solvers_that_are_not_compiled_with_the_loop_are_refused():
-    with pytest.raises(LcpStepError, match='take "lemke"'):
+    with pytest.raises(LcpStepError, match="take lcp='lemke'"):
         simulate(point_on_a_rod(1.0, 1.0), Moreau(1e-2, lcp="qp"))
 
 

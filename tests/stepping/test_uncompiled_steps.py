@@ -19,6 +19,7 @@ def uncompiled(monkeypatch):
 
     def start():
         monkeypatch.setattr(model, "kernels", plain.model)
+        monkeypatch.setattr(model, "Coefficients", plain.coefficients.Coefficients)
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
         monkeypatch.setattr(record, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)

@@ -151,7 +151,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
     """The zero of a gap that is a quadratic but approximately; NOBODY where the quadratic was wrong."""
     if tau == 0.0:
         return c, 0.0
-    low = 0.0
+    low, high = 0.0, -1.0
     for _ in range(POLISHING):
         look(m, plan, w, t, tau)
         u = w.rate[c] + 2.0 * tau * w.half[c]
@@ -159,6 +159,8 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
             return c, tau
         if w.gap_try[c] > 0.0:
             low = tau
+        else:
+            high = tau
         if u >= 0.0:
             break
         change = -w.gap_try[c] / u
@@ -173,7 +175,9 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
         if abs(change) <= EPS * tau:
             return c, tau
     look(m, plan, w, t, tau)
-    if w.gap_try[c] > 0.0:
+    if w.gap_try[c] > 0.0:  # time may be too coarse for the step back from where the gap was closed
+        if high > tau:
+            return c, between(m, plan, w, c, t, tau, high)
         return NOBODY, tau
     if low > tau or not (low > 0.0 or w.gap[c] > plan.slack):
         return c, tau
