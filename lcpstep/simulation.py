@@ -15,6 +15,8 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
+from lcpstep.resolution import unresolved
+from lcpstep.room import no_room
 from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
@@ -78,7 +80,8 @@ def simulate(
     Returns
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
-        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large
+        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an obstacle
+        leaves no room to it, or where steps are too long for the forces that it meets
 
     Raises
     ------
@@ -133,7 +136,7 @@ def simulate(
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)
     _warn_of_fast_gaps(run)
-    doubt = too_deep(run)
+    doubt = no_room(run) or too_deep(run) or unresolved(run)
     run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
     return _with_error(run, kept, seconds) if error else run
 
