@@ -36,8 +36,8 @@ def unresolved(run: Trajectory) -> str:
                 angle = h * np.sqrt(_rate(run.scene, float(run.t[k]), run.q[k], run.v[k], NEAR * h))
                 if angle > bound:
                     return (
-                        f"the forces along the motion change too fast for its steps at t = {run.t[k]:.9g} s, with the "
-                        f"frequency {angle / h:.3g} rad/s, for which steps should be shorter than {bound / angle * h:.3g} s"
+                        f"the forces along the motion change too fast for its steps at t = {run.t[k]:.9g} s, "
+                        f"with the frequency {angle / h:.3g} rad/s, which needs steps below {bound / angle * h:.3g} s"
                     )
     except ValueError:  # a callback that fails beside the motion, where the run has not asked it
         pass

@@ -11,6 +11,8 @@ No motion goes on from there, whatever the steps of a method have made of it.
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,8 +30,8 @@ ROUNDING = 1e-9  # of R: no depth
 
 
 def no_room(run: Trajectory) -> str:
-    """Which obstacle leaves no room, in words; "" where none is known."""
-    if run.status != Status.DONE or not isinstance(run.scene.contacts, Contacts) or len(run.t) < 2:
+    """Which obstacle of a scene with `Contacts` leaves no room, in words; "" where none is known."""
+    if run.status != Status.DONE or len(run.t) < 2:
         return ""
     k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
     with np.errstate(all="ignore"):
@@ -46,8 +48,8 @@ def no_room(run: Trajectory) -> str:
             continue
         if best < -ROUNDING * reach:
             return (
-                f"the obstacle of contact {c} leaves no room at t = {at:.9g} s, where its gap is at most {best:.3g} m: "
-                f"the motion ends before that, and the run is wrong from there on"
+                f"the obstacle of contact {c} leaves no room at t = {at:.9g} s, where its gap is at most {best:.3g} "
+                f"m: the motion ends before that, and the run is wrong from there on"
             )
     return ""
 
@@ -75,12 +77,12 @@ def _climbed(run: Trajectory, t: float, q: Array, c: int, reach: float) -> float
 
 
 def _gap(run: Trajectory, t: float, q: Array, c: int) -> float:
-    scene = run.scene
+    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
     at = (t, q, np.zeros_like(q), np.array(scene.p))
-    return float(checks.evaluate("contacts.gap", scene.contacts.gap, at, (scene.n_c,))[c])
+    return float(checks.evaluate("contacts.gap", contacts.gap, at, (scene.n_c,))[c])
 
 
 def _slope(run: Trajectory, t: float, q: Array, c: int) -> Array:
-    scene = run.scene
+    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
     at = (t, q, np.zeros_like(q), np.array(scene.p))
-    return checks.evaluate("contacts.jacobian", scene.contacts.jacobian, at, (scene.n_c, scene.n_q))[c]
+    return checks.evaluate("contacts.jacobian", contacts.jacobian, at, (scene.n_c, scene.n_q))[c]
