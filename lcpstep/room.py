@@ -1,7 +1,7 @@
 """Whether an obstacle has left any room to the body that a finished run has kept inside of it.
 
-From a kept state with a gap g(t, q) < 0 the gap is climbed, by Newton's steps towards zero along its gradient G, each
-halved until the gap grows. Where the climb ends below zero at q* with
+From a kept state with a gap g(t, q) < 0 the gap is climbed along its gradient G, by steps twice as long as Newton's
+towards zero, each halved until the gap grows. Where the climb ends below zero at q* with
 
     g(t, q*) + R |G(t, q*)| < 0,     R = how far the coordinates went,
 
@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 LOOKS = 64  # kept states whose gaps are looked at
 CLIMBS = 8  # of them, the deepest, from which the gap is climbed
 STEPS, HALVINGS = 60, 60  # of a climb, and of each of its steps
+SHALLOW = 1e-2  # of R: what steps lie inside of an obstacle anyway, from which nothing is climbed
 ROUNDING = 1e-9  # of R: no depth
 
 
@@ -40,7 +41,7 @@ def no_room(run: Trajectory) -> str:
     forget()
     reach = float(np.linalg.norm(np.ptp(run.q[k], axis=0)))
     lowest = g.min(axis=1)
-    for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -ROUNDING * reach]:
+    for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
         c, at = int(np.argmin(g[i])), float(run.t[k[i]])
         try:
             best = _climbed(run, at, run.q[k[i]], c, reach)
@@ -63,7 +64,7 @@ def _climbed(run: Trajectory, t: float, q: Array, c: int, reach: float) -> float
         most = g + reach * float(np.linalg.norm(G))
         if most < 0.0:
             return most
-        way = -g / float(G @ G) * G
+        way = -2.0 * g / float(G @ G) * G
         for _ in range(HALVINGS):
             higher = _gap(run, t, q + way, c)
             if higher > g:
