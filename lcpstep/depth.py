@@ -23,7 +23,7 @@ SHARE = 0.1  # of the size of the motion
 STEPS = 2.0  # that an impact may be noticed too late
 ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
 ROUNDING_BESIDE = (
-    1e-12  # of what other coordinates moved, in the metric of M, that a mass or a spring couples to
+    1e-12  # of how far others could have gone, in the metric of M: masses, springs, contacts couple
 )
 LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
 
@@ -53,6 +53,7 @@ def too_deep(run: Trajectory) -> str:
         return ""
     a, most = float(G @ a_start), np.max(np.abs(q), axis=0)
     reach = float(G @ most) + span * (speed + span * a)
+    most = most + span * (np.max(np.abs(v), axis=0) + span * a_start)
     beside = float(np.sqrt((G @ (G / masses)) * (most @ (masses * most))))
     if depth <= max(ROUNDING * reach, ROUNDING_BESIDE * beside, STEPS * h * h * a):
         return ""

@@ -9,6 +9,7 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, cli, simulate
+from lcpstep.depth import too_deep
 from lcpstep.trajectory import Status
 
 FALLING = LinearSystem(M=1.0, force=-9.81)
@@ -90,6 +91,18 @@ def test_rounding_that_comes_from_a_coordinate_beside_is_not_told(order, scale):
     )  # fmt: skip
     m = simulate(beside.scene(), Located(beside.h, order))
     assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+def test_rounding_of_beads_that_one_of_them_presses_together_is_not_told():
+    """Forces act on the third alone; the first contact has none of its own."""
+    G = np.diff(np.eye(6), axis=0)
+    beads = LinearContacts(np.vstack([G, np.eye(6)[0]]), restitution=0.26)
+    pressed = Scene(
+        LinearSystem(np.eye(6), force=-11.5 * np.eye(6)[2]), np.zeros(6), np.zeros(6), (0.0, 1.0), beads
+    )
+    rounded = np.array([np.zeros(6), 1e-17 * np.arange(6, 0, -1)])
+    m = simulate(pressed, Located(0.1), keep=[0.5, 1.0])
+    assert too_deep(replace(m, q=rounded, v=np.zeros((2, 6)))) == ""
 
 
 @pytest.mark.parametrize("form", [[], ["--json"]])
