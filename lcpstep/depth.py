@@ -22,6 +22,9 @@ LOOKS = 6  # states that are looked at
 SHARE = 0.1  # of the size of the motion
 STEPS = 2.0  # that an impact may be noticed too late
 ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
+ROUNDING_BESIDE = (
+    1e-12  # of how far others could have gone, in the metric of M: masses, springs, contacts couple
+)
 LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
 
 
@@ -45,11 +48,14 @@ def too_deep(run: Trajectory) -> str:
         size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)
         if depth <= max(SHARE * size, STEPS * h * max(speed, _logged(run, int(c)))):
             return ""
-        a, span = float(G @ _acceleration(scene)), scene.t_span[1] - scene.t_span[0]
+        (a_start, masses), span = _acceleration(scene), scene.t_span[1] - scene.t_span[0]
     except ValueError:  # a callback that fails at a state in between, which the run has not asked it for
         return ""
-    reach = float(G @ np.max(np.abs(q), axis=0)) + span * (speed + span * a)
-    if depth <= max(ROUNDING * reach, STEPS * h * h * a):
+    a, most = float(G @ a_start), np.max(np.abs(q), axis=0)
+    reach = float(G @ most) + span * (speed + span * a)
+    most = most + span * (np.max(np.abs(v), axis=0) + span * a_start)
+    beside = float(np.sqrt((G @ (G / masses)) * (most @ (masses * most))))
+    if depth <= max(ROUNDING * reach, ROUNDING_BESIDE * beside, STEPS * h * h * a):
         return ""
     return (
         f"contact {c} lies {depth:.3g} m inside of its obstacle at t = {states[row][0]:.9g} s, in a motion of "
@@ -93,8 +99,8 @@ def _logged(run: Trajectory, c: int) -> float:
     return float(np.max(np.abs(np.concatenate([own.before, own.after])), initial=0.0))
 
 
-def _acceleration(scene: Scene) -> Array:
-    """How fast the coordinates would be accelerated at the start without contacts, roughly."""
+def _acceleration(scene: Scene) -> tuple[Array, Array]:
+    """How fast the coordinates would be accelerated at the start without contacts, roughly; and their masses."""
     system, at = scene.system, (scene.t_span[0], np.array(scene.q0), np.array(scene.v0), np.array(scene.p))
     shape = (scene.n_q,)
     if isinstance(system, System):
@@ -110,4 +116,5 @@ def _acceleration(scene: Scene) -> Array:
             given: Any = system.force
             f = checks.evaluate("system.force", given, at, shape)
         f = np.abs(f) + np.abs(C @ at[2]) + np.abs(K @ at[1])
-    return np.abs(f) / np.asarray(M.diagonal())
+    masses = np.asarray(M.diagonal(), dtype=float)
+    return np.abs(f) / masses, masses

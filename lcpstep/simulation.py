@@ -15,6 +15,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
+from lcpstep.resolution import unresolved
 from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
@@ -78,7 +79,8 @@ def simulate(
     Returns
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
-        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large
+        end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
+        obstacle leaves no room to it, or where steps are too long for the forces that it meets
 
     Raises
     ------
@@ -133,7 +135,7 @@ def simulate(
         raise _raised(run, culprit(scene, (), run.q, run.v))
     _compare_derivatives(run)
     _warn_of_fast_gaps(run)
-    doubt = too_deep(run)
+    doubt = _no_room(run) or too_deep(run) or unresolved(run)
     run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
     return _with_error(run, kept, seconds) if error else run
 
@@ -175,6 +177,15 @@ def _compare_derivatives(run: Trajectory) -> None:
         check_derivatives(run.scene, ((float(run.t[k]), run.q[k], run.v[k]) for k in places), run=True)
     except ValueError as error:
         raise SimulationError(str(error), run) from error
+
+
+def _no_room(run: Trajectory) -> str:
+    """Which obstacle has left no room, in words; only a curved gap asks for the model that tells."""
+    if not isinstance(run.scene.contacts, Contacts):
+        return ""
+    from lcpstep.room import no_room
+
+    return no_room(run)
 
 
 def _warn_of_fast_gaps(run: Trajectory) -> None:

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from benchmarks.judge.describe import Description
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, cli, simulate
+from lcpstep.depth import too_deep
 from lcpstep.trajectory import Status
 
 FALLING = LinearSystem(M=1.0, force=-9.81)
@@ -75,6 +77,32 @@ def test_what_rests_is_not_told():
     at_rest = Scene(FALLING, 0.0, 0.0, (0.0, 1e3), FLOOR)
     for method in (Moreau(1.0), Located(1.0), EventDriven()):
         assert simulate(at_rest, method).doubt == ""
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("scale", [1.0, 1e-6])
+def test_rounding_that_comes_from_a_coordinate_beside_is_not_told(order, scale):
+    """A slit without clearance holds one coordinate; masses and springs couple the other, shaken, to it."""
+    frame = (-0.00242 * scale, -0.00127 * scale)
+    beside = Description(
+        M=((0.724, 0.126), (0.126, 2.98)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.0814), h=0.00185,
+        G=((1.0, 0.0), (-1.0, 0.0)), offset=(0.0, 0.0), restitution=(0.81, 0.3),
+        K=((0.407, 1.22), (1.22, 4.62)), frame=frame, omega=27.6, family="slit",
+    )  # fmt: skip
+    m = simulate(beside.scene(), Located(beside.h, order))
+    assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+def test_rounding_of_beads_that_one_of_them_presses_together_is_not_told():
+    """Forces act on the third alone; the first contact has none of its own."""
+    G = np.diff(np.eye(6), axis=0)
+    beads = LinearContacts(np.vstack([G, np.eye(6)[0]]), restitution=0.26)
+    pressed = Scene(
+        LinearSystem(np.eye(6), force=-11.5 * np.eye(6)[2]), np.zeros(6), np.zeros(6), (0.0, 1.0), beads
+    )
+    rounded = np.array([np.zeros(6), 1e-17 * np.arange(6, 0, -1)])
+    m = simulate(pressed, Located(0.1), keep=[0.5, 1.0])
+    assert too_deep(replace(m, q=rounded, v=np.zeros((2, 6)))) == ""
 
 
 @pytest.mark.parametrize("form", [[], ["--json"]])

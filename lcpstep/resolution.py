@@ -1,0 +1,61 @@
+"""Whether the steps of a finished run are short enough for the forces that it has met.
+
+    (h omega)^2 = h^2 |v^T (f(q + e v) - f(q - e v))| / (2 e v^T M v) <= 4
+
+The quotient of Rayleigh along the motion is never above the highest frequency there, so what exceeds the bound of
+velocity Verlet (of Runge-Kutta's steps 2.8^2) exceeds it for certain: explicit steps gain energy then, and implicit
+ones skip what the motion does. Steps by a tolerance are not asked, nor those that take linear forces implicitly.
+Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section I.5.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lagrangian import LinearSystem
+from lcpstep.faults import cause, forget
+from lcpstep.trajectory import Status, Trajectory
+
+LOOKS = 8  # states that are looked at
+NEAR = 1.0 / 64.0  # of a step: of the differences
+VERLET, RUNGE_KUTTA = 2.0, 2.8  # highest frequency times h
+
+
+def unresolved(run: Trajectory) -> str:
+    """Where a step is too long for the forces, in words; "" where none is that was looked at."""
+    h, bound = _explicit(run)
+    if h == 0.0 or run.status != Status.DONE or len(run.t) == 0:
+        return ""
+    from lcpstep.kernels.states import power  # not before it is asked for: that loads what compiles callbacks
+    from lcpstep.model import model
+
+    last = len(run.t) - 1
+    k = np.unique(((np.arange(LOOKS) + 1) * (last / LOOKS)).astype(int))
+    t, q, v, near = run.t[k], run.q[k], run.v[k], NEAR * h
+    with np.errstate(all="ignore"):
+        kinetic, after = power(model(run.scene), t, q + near * v, v)
+        _, before = power(model(run.scene), t, q - near * v, v)
+        angle = h * np.sqrt(np.abs(after - before) / (4.0 * near * kinetic))
+    cause()  # a callback that fails beside the motion, where the run has not asked it
+    forget()
+    told = np.flatnonzero(angle > bound)
+    if not len(told):
+        return ""
+    i = told[0]
+    return (
+        f"the forces along the motion change too fast for its steps at t = {t[i]:.9g} s, "
+        f"with the frequency {angle[i] / h:.3g} rad/s, which needs steps below {bound / angle[i] * h:.3g} s"
+    )
+
+
+def _explicit(run: Trajectory) -> tuple[float, float]:
+    """The step h, or 0 where forces cannot change too fast for the method, and the bound of h omega."""
+    method, scene = run.method, run.scene
+    order = getattr(method, "order", None)
+    if getattr(method, "tolerance", None) is not None or order == "exact":
+        return 0.0, VERLET
+    if isinstance(scene.system, LinearSystem):
+        rubs = scene.contacts is not None and scene.contacts.friction is not None
+        if order is None or (order == 2 and not rubs and scene.n_j == 0):
+            return 0.0, VERLET
+    return getattr(method, "h", 0.0), RUNGE_KUTTA if order == 4 else VERLET

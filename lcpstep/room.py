@@ -1,0 +1,89 @@
+"""Whether an obstacle has left any room to the body that a finished run has kept inside of it.
+
+From a kept state with a gap g(t, q) < 0 the gap is climbed along its gradient G, by steps twice as long as Newton's
+towards zero, each halved until the gap grows. Where the climb ends below zero at q* with
+
+    g(t, q*) + R |G(t, q*)| < 0,     R = how far the coordinates went,
+
+a gap that bends downwards, as that of a bowl, is negative everywhere within R of q*: it has closed upon the body.
+No motion goes on from there, whatever the steps of a method have made of it.
+"""
+
+from __future__ import annotations
+
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Contacts, checks
+from lcpstep.faults import cause, forget
+from lcpstep.kernels.states import gaps_at
+from lcpstep.model import model
+from lcpstep.trajectory import Status, Trajectory
+
+Array = NDArray[np.float64]
+LOOKS = 64  # kept states whose gaps are looked at
+CLIMBS = 8  # of them, the deepest, from which the gap is climbed
+STEPS, HALVINGS = 60, 60  # of a climb, and of each of its steps
+SHALLOW = 1e-2  # of R: what steps lie inside of an obstacle anyway, from which nothing is climbed
+ROUNDING = 1e-9  # of R: no depth
+
+
+def no_room(run: Trajectory) -> str:
+    """Which obstacle of a scene with `Contacts` leaves no room, in words; "" where none is known."""
+    if run.status != Status.DONE or len(run.t) < 2:
+        return ""
+    k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
+    with np.errstate(all="ignore"):
+        g = gaps_at(model(run.scene), run.t[k], np.ascontiguousarray(run.q[k]))
+    cause()  # a callback that fails at rest, as the run has not asked it
+    forget()
+    reach = float(np.linalg.norm(np.ptp(run.q[k], axis=0)))
+    lowest = g.min(axis=1)
+    for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
+        c, at = int(np.argmin(g[i])), float(run.t[k[i]])
+        try:
+            best = _climbed(run, at, run.q[k[i]], c, reach)
+        except ValueError:  # a callback that fails beside the motion
+            continue
+        if best < -ROUNDING * reach:
+            return (
+                f"the obstacle of contact {c} leaves no room at t = {at:.9g} s, where its gap is at most {best:.3g} "
+                f"m: the motion ends before that, and the run is wrong from there on"
+            )
+    return ""
+
+
+def _climbed(run: Trajectory, t: float, q: Array, c: int, reach: float) -> float:
+    """The largest gap within reach where that is below zero; 0 where there is room, or where it is not known."""
+    g, G = _gap(run, t, q, c), _slope(run, t, q, c)
+    for _ in range(STEPS):
+        if g >= 0.0:
+            return 0.0
+        most = g + reach * float(np.linalg.norm(G))
+        if most < 0.0:
+            return most
+        way = -2.0 * g / float(G @ G) * G
+        for _ in range(HALVINGS):
+            higher = _gap(run, t, q + way, c)
+            if higher > g:
+                break
+            way = 0.5 * way
+        else:
+            return 0.0
+        q, g = q + way, higher
+        G = _slope(run, t, q, c)
+    return 0.0
+
+
+def _gap(run: Trajectory, t: float, q: Array, c: int) -> float:
+    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
+    at = (t, q, np.zeros_like(q), np.array(scene.p))
+    return float(checks.evaluate("contacts.gap", contacts.gap, at, (scene.n_c,))[c])
+
+
+def _slope(run: Trajectory, t: float, q: Array, c: int) -> Array:
+    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
+    at = (t, q, np.zeros_like(q), np.array(scene.p))
+    return checks.evaluate("contacts.jacobian", contacts.jacobian, at, (scene.n_c, scene.n_q))[c]

@@ -1,0 +1,71 @@
+"""An obstacle that closes upon a body is told, and so are steps beyond the bound of explicit methods."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearSystem, Scene, System
+from lcpstep import Located, Moreau, simulate
+from lcpstep.trajectory import Status
+
+
+def bowl(depth, size, omega):
+    """Gap depth - r(q) - size sin(omega t), whose largest value over all q is depth - 1 - size sin(omega t)."""
+
+    def gap(t, q, v, p, out):
+        out[0] = depth - math.sqrt(1.0 + q[0] * q[0]) - size * math.sin(omega * t)
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0] = -q[0] / math.sqrt(1.0 + q[0] * q[0])
+
+    def rate(t, q, v, p, out):
+        out[0] = -size * omega * math.cos(omega * t)
+
+    def curvature(t, q, v, p, out):
+        out[0] = size * omega * omega * math.sin(omega * t) - v[0] * v[0] / (1.0 + q[0] * q[0]) ** 1.5
+
+    return Contacts(1, gap, jacobian, gap_t=rate, bias=curvature)
+
+
+@pytest.mark.parametrize("method", [Located(2e-3), Moreau(2e-3)], ids=["located", "moreau"])
+@pytest.mark.parametrize("omega", [5.0, 21.0])
+def test_a_bowl_that_closes_upon_a_body_is_told(omega, method):
+    system = LinearSystem(M=1.0, K=1.03, force=-9.81)
+    m = simulate(Scene(system, 0.1, 0.0, (0.0, 1.3), bowl(1.02, 0.2, omega)), method)
+    assert m.status is not Status.DONE or "leaves no room" in m.doubt
+    open_always = simulate(Scene(system, 0.1, 0.0, (0.0, 1.3), bowl(1.3, 0.05, omega)), method)
+    assert (open_always.status, open_always.doubt) == (Status.DONE, "")
+
+
+def test_the_largest_gap_is_bounded_from_above():
+    system = LinearSystem(M=1.0, K=1.03, force=-9.81)
+    m = simulate(Scene(system, 0.1, 0.0, (0.0, 1.3), bowl(1.02, 0.2, 5.0)), Moreau(2e-3))
+    words = m.doubt.split()
+    t, most = float(words[words.index("t") + 2]), float(words[words.index("most") + 1])
+    assert 0.02 - 0.2 * math.sin(5.0 * t) <= most < 0.0
+
+
+def springs(t, q, v, p, out):
+    out[0] = -p[0] * q[0] - (q[0] - q[1])
+    out[1] = -(q[1] - q[0])
+
+
+@pytest.mark.parametrize(("order", "bound"), [(2, 2.0), (4, 2.8)])
+def test_steps_beyond_the_bound_are_told(order, bound):
+    """Masses of 1 kg on springs: the highest frequency is that of the matrix."""
+    stiff = 1e4
+    highest = math.sqrt(np.linalg.eigvalsh([[stiff + 1.0, -1.0], [-1.0, 1.0]])[-1])
+    for share, told in ((0.95, False), (1.05, True)):
+        h = share * bound / highest
+        scene = Scene(System(2, np.eye(2), springs), [1e-3, 0.1], [0.3, 0.1], (0.0, 100 * h), p=(stiff,))
+        m = simulate(scene, Located(h, order))
+        assert m.status is Status.DONE
+        assert bool(m.doubt) is told
+        assert ("change too fast for its steps" in m.message) is told
+
+
+def test_linear_forces_that_are_taken_implicitly_have_no_bound():
+    scene = Scene(LinearSystem(M=1.0, K=1e4), 0.1, 0.3, (0.0, 10.0))
+    for method in (Located(0.1), Moreau(0.1)):
+        assert simulate(scene, method).doubt == ""
