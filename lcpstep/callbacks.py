@@ -25,8 +25,9 @@ from lcpstep.faults import Callback, name_of
 
 SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
 OPTIONS = {"error_model": "numpy", "boundscheck": True}
-# Numba reads and writes through these without looking at the length of the array
-UNCHECKED = {"flat", "take_along_axis", "carray", "farray"}
+# Numba reads and writes through these without looking at the length of the array: `boundscheck` does not reach into
+# its own implementations of functions of numpy
+UNCHECKED = {"flat", "take_along_axis", "carray", "farray", "as_strided", "bincount", "delete"}
 TOLD: WeakSet[Any] = WeakSet()  # functions that a warning was given for
 REGISTRY: dict[Any, Any] = {}  # the warnings themselves, as Python remembers them
 MADE: dict[Any, Any] = {}  # C functions by what they were made from
