@@ -167,7 +167,8 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
         reason = f"numba cannot be imported ({error})"
         raise NoCompiler(reason, code.co_filename, code.co_firstlineno) from error
     for g in fingerprint.reached(f):
-        if unchecked := UNCHECKED & _names(g):
+        called = {getattr(x, "__name__", "") for x in _read(g)}  # by whatever name they were imported
+        if unchecked := UNCHECKED & (_names(g) | called):
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
         if any(g in fingerprint.reached(callee) for _, callee in fingerprint.callees(g)):
             raise _unfit(g, f"{g.__name__} calls itself")
