@@ -25,8 +25,9 @@ from lcpstep.faults import Callback, name_of
 
 SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, p, out)
 OPTIONS = {"error_model": "numpy", "boundscheck": True}
-# Numba reads and writes through these without looking at the length of the array
-UNCHECKED = {"flat", "take_along_axis", "carray", "farray"}
+# Numba reads and writes through these without looking at the length of the array: `boundscheck` does not reach into
+# its own implementations of functions of numpy
+UNCHECKED = {"flat", "take_along_axis", "carray", "farray", "as_strided", "bincount", "delete"}
 TOLD: WeakSet[Any] = WeakSet()  # functions that a warning was given for
 REGISTRY: dict[Any, Any] = {}  # the warnings themselves, as Python remembers them
 MADE: dict[Any, Any] = {}  # C functions by what they were made from
@@ -166,7 +167,8 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
         reason = f"numba cannot be imported ({error})"
         raise NoCompiler(reason, code.co_filename, code.co_firstlineno) from error
     for g in fingerprint.reached(f):
-        if unchecked := UNCHECKED & _names(g):
+        called = {getattr(x, "__name__", "") for x in _read(g)}  # by whatever name they were imported
+        if unchecked := UNCHECKED & (_names(g) | called):
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
         if any(g in fingerprint.reached(callee) for _, callee in fingerprint.callees(g)):
             raise _unfit(g, f"{g.__name__} calls itself")

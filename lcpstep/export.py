@@ -8,7 +8,9 @@ Source: Functional Mock-up Interface specification 3.0 (Modelica Association 202
 
 from __future__ import annotations
 
+import atexit
 import base64
+import ctypes
 import inspect
 import pickle
 import re
@@ -40,7 +42,7 @@ import pickle
 
 from pythonfmu3 import Float64, Fmi3Causality, Fmi3Slave, Fmi3Status, Fmi3StepResult, Fmi3Variability
 
-from lcpstep.export import Motion
+from lcpstep.export import Motion, let_go_at_exit
 
 MOTION = "{motion}"
 
@@ -50,6 +52,7 @@ class {name}(Fmi3Slave):
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
+        let_go_at_exit(kwargs["resources"])
         self.motion = pickle.loads(base64.b64decode(MOTION))
         self.time = self.motion.start
         self.register_variable(
@@ -117,6 +120,25 @@ class Motion:
     def __getstate__(self) -> dict[str, Any]:
         """The question, and not how far it has been answered."""
         return vars(self) | {"run": None}
+
+
+def let_go_at_exit(resources: str) -> None:
+    """Let the library of a unit give back its hold of Python when this Python ends, and not twice after that.
+
+    Under Linux pythonfmu3's library does so in a destructor of C++ and once more in one of its own, with memory that
+    the first has freed: results are out by then, but the process may end in "corrupted double-linked list". What has
+    been let go of here is not let go of twice. Where that library itself has started Python (no command line of
+    Python's then), it must hold it until the process ends, and nothing is changed.
+    Source: PySlaveInstance.cpp of pythonfmu3 0.3.4; PythonFMU's issue 228 (the same library for FMI 2).
+    """
+    if sys.platform != "linux" or not sys.orig_argv:
+        return
+    loaded = Path("/proc/self/maps").read_text()
+    for file in Path(resources).resolve().parent.glob("binaries/*-linux/*.so"):  # none while the unit is made
+        if str(file) in loaded:
+            library = ctypes.CDLL(str(file))
+            if hasattr(library, "finalizePythonInterpreter"):
+                atexit.register(library.finalizePythonInterpreter)
 
 
 def fmu(scene: Scene, path: str | Path, method: Method | None = None) -> Path:

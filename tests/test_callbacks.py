@@ -95,17 +95,43 @@ def test_indices_from_the_end_are_those_of_python():
     assert simulate(falling(last), Moreau(1e-2)).q[-1, 0] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_what_numba_does_not_check_runs_in_plain_python():
-    def flat(t, q, v, p, out):
-        out.flat[0 if t < 0.3 else 10**7] = -8.0
+def beyond_flat(t, q, v, p, out):
+    out.flat[0 if t < 0.3 else 10**7] = -8.0
 
+
+def counts_negatives(t, q, v, p, out):
+    out[0] = -8.0 * np.bincount(np.array([0 if t < 0.3 else -5, 1]))[1]
+
+
+def deletes_beyond(t, q, v, p, out):
+    out[0] = -8.0 + 0.0 * np.delete(q, np.array([0 if t < 0.3 else 10**7])).size
+
+
+remove = np.delete
+
+
+def deletes_by_another_name(t, q, v, p, out):
+    out[0] = -8.0 + 0.0 * remove(q, np.array([0 if t < 0.3 else 10**7])).size
+
+
+def strides_beyond(t, q, v, p, out):
+    out[0] = -8.0 + 0.0 * np.lib.stride_tricks.as_strided(q, (1,), (8,))[0 if t < 0.3 else 10**7]
+
+
+UNCHECKED = {
+    "flat": [beyond_flat], "bincount": [counts_negatives], "delete": [deletes_beyond, deletes_by_another_name],
+    "as_strided": [strides_beyond],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "force"), [(name, f) for name, forces in UNCHECKED.items() for f in forces])
+def test_what_numba_does_not_check_runs_in_plain_python(name, force):
+    said = rf"does not check the indices of '{name}' \(test_callbacks.py, line"
     with (
-        pytest.warns(
-            UncompiledCallback, match=r"does not check the indices of 'flat' \(test_callbacks.py, line"
-        ),
-        pytest.raises(SimulationError, match=r"^system\.force: .*IndexError"),
+        pytest.warns(UncompiledCallback, match=said),
+        pytest.raises(SimulationError, match=r"^system\.force: .*(IndexError|ValueError)"),
     ):
-        simulate(falling(flat), Moreau(1e-2))
+        simulate(falling(force), Moreau(1e-2))
 
 
 def writes_into_the_state(t, q, v, p, out):

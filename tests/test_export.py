@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import scenes
 from lcpstep import EventDriven, LcpStepError, Located, simulate
-from lcpstep.export import Motion, fmu
+from lcpstep.export import Motion, fmu, let_go_at_exit
 from tests.processes import python
 
 STEP = 0.1
@@ -73,6 +73,34 @@ def test_a_run_by_fmpy_is_the_run_by_located_and_comes_to_rest(tmp_path):
     assert got[:, 2] == pytest.approx(v[:, 0], abs=1e-12)
     assert tuple(got[-1, 1:3]) == (0.0, 0.0)
     assert got[-1, 3] > 10
+
+
+ENDS = """
+import atexit
+called, register = [], atexit.register
+atexit.register = lambda f, *rest: (called.append(getattr(f, "__name__", "")), register(f, *rest))[1]
+import fmpy
+fmpy.simulate_fmu({file!r}, stop_time=0.1, output_interval=0.1)
+print(called.count("finalizePythonInterpreter"))
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the library lets go twice under Linux only")
+def test_the_library_lets_go_of_python_before_the_process_ends(tmp_path):
+    pytest.importorskip("pythonfmu3")
+    pytest.importorskip("fmpy")
+    file = fmu(scenes.bouncing_ball(), tmp_path / "ball.fmu")
+    assert python(ENDS.format(file=str(file))) == "1"
+
+
+def test_where_no_library_is_loaded_nothing_is_let_go(tmp_path, monkeypatch):
+    folder = tmp_path / "binaries" / "x86_64-linux"
+    folder.mkdir(parents=True)
+    (folder / "other.so").write_bytes(b"")
+    registered = []
+    monkeypatch.setattr("atexit.register", registered.append)
+    let_go_at_exit(str(tmp_path / "resources"))
+    assert registered == []
 
 
 def test_functions_of_ones_own_go_along(tmp_path, monkeypatch):
