@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.judge.describe import Description
-from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, cli, simulate
 from lcpstep.depth import too_deep
 from lcpstep.trajectory import Status
@@ -122,3 +122,16 @@ def test_the_comparison_tells_too(capsys, monkeypatch):
     assert "inside of its obstacle" in capsys.readouterr().out
     monkeypatch.undo()
     assert cli.main(arguments) == 0
+
+
+@pytest.mark.parametrize("mu", [None, 0.3])
+def test_links_that_fly_off_together_do_not_hide_one_that_is_inside_of_another(mu):
+    """The second runs into the first by 0.3 m while both go 20 m, rubbing or not."""
+    friction = None if mu is None else Coulomb(mu, [[0.0, 0.0, 1.0]])
+    pair = LinearContacts([[-1.0, 1.0, 0.0]], [0.1], [0.5], friction=friction)
+    scene = Scene(
+        LinearSystem(np.eye(3), force=np.zeros(3)), [0.0] * 3, [10.2, 10.0, 0.0], (0.0, 2.0), contacts=pair
+    )
+    m = simulate(scene, Through(EventDriven()))
+    assert m.doubt.startswith("contact 0 lies 0.3 m inside of its obstacle at t = 2 s")
+    assert simulate(scene, EventDriven()).doubt == simulate(scene, Located(0.1)).doubt == ""

@@ -146,11 +146,18 @@ def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
 
 
 def first_fall(s: Rubbing, g: int) -> float:
-    """Where guard g, whose polynomial is at hand, acts within the part, or NONE."""
+    """Where guard g, whose polynomial is at hand, acts within the part, or NONE.
+
+    One that begins at the bottom of its band, as at zero where nothing says yet what rounding is, acts once it has
+    fallen further by more than the rounding of its own values.
+    """
     if s.armed[g] == 1:
         return 0.0 if s.scan.c[0] <= 0.0 else first_rise(s.scan, -1.0, 0.0, 0.0)
-    up = first_rise(s.scan, 1.0, s.band[g], 0.0)
-    down = first_rise(s.scan, -1.0, s.band[g], 0.0)
+    band, start = s.band[g], s.scan.c[0]
+    if start <= -band:
+        band = max(-2.0 * start, NOISE * largest(s.scan.c, 0.0, DEGREE + 1))
+    up = first_rise(s.scan, 1.0, band, 0.0)
+    down = first_rise(s.scan, -1.0, band, 0.0)
     if down != NONE and (up == NONE or down < up):
         return down
     return NONE if up == NONE else first_rise(s.scan, -1.0, 0.0, up)

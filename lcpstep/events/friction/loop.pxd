@@ -2,13 +2,14 @@ from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.guards cimport begin_guards
 from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still, touching
 from lcpstep.events.friction.keep cimport keep, keep_event
-from lcpstep.events.friction.modes cimport decide, obey
+from lcpstep.events.friction.modes cimport decide, obey, take_over, undecided
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport abs
+from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN, BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS, SLACK
+cdef double LOOK_AHEAD, FURTHER
 
 cdef Py_ssize_t released(Rubbing s, Record record, Tally tally, Py_ssize_t goal) noexcept
 cdef void put_back(Rubbing s, Record record) noexcept nogil
@@ -16,5 +17,7 @@ cdef Py_ssize_t go_on(Rubbing s, Record record, Tally tally, Py_ssize_t goal) no
 cdef Py_ssize_t begin(Rubbing s) noexcept nogil
 cdef Py_ssize_t turn_corner(Rubbing s) noexcept nogil
 cdef Py_ssize_t settle(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t progress(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t look_on(Rubbing s, double t) noexcept nogil
 cdef Py_ssize_t follow(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t set_out(Rubbing s, Record record, double t) noexcept nogil

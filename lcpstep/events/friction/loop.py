@@ -20,13 +20,15 @@ if not cython.compiled:
     from lcpstep.events.friction.guards import begin_guards
     from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still, touching
     from lcpstep.events.friction.keep import keep, keep_event
-    from lcpstep.events.friction.modes import decide, obey
+    from lcpstep.events.friction.modes import decide, obey, take_over, undecided
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, min
 
 SLACK = 4  # rows that one round may need
+# Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
+LOOK_AHEAD, FURTHER = 1e-6, 10.0
 
 
 def run(s: Any, record: Any, tally: Any, goal: Any) -> int:
@@ -75,9 +77,17 @@ def go_on(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
         elif s.clock.t0 >= s.clock.high:
             code = turn_corner(s)
         else:
-            code = s.proceed(record, tally)
+            code = progress(s, record, tally)
         if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
             code = jam(s, record, tally, s.clock.t0)
+    return code
+
+
+def progress(s: Rubbing, record: Record, tally: Tally) -> int:
+    """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
+    t = s.clock.t0
+    code = s.proceed(record, tally)
+    tally.stalled = tally.stalled + 1 if s.clock.t0 == t else 0
     return code
 
 
@@ -115,6 +125,8 @@ def settle(s: Rubbing, record: Record, tally: Tally) -> int:
         if not measure(s, t, s.y):
             return NOT_FINITE
         code = decide(s)
+        if code == DONE and undecided(s):
+            code = look_on(s, t)
         if code == DONE:
             code = obey(s, record, tally, t)
         if code != DONE:
@@ -122,6 +134,34 @@ def settle(s: Rubbing, record: Record, tally: Tally) -> int:
         if turn == s.n_c or not close_small(s, record, tally, t):
             break
     return set_out(s, record, t)
+
+
+def look_on(s: Rubbing, t: float) -> int:
+    """The modes just after the base time, at which the forces leave some of them open; a status.
+
+    A contact whose force begins at zero is decided by the first force that can be told from zero.
+    """
+    longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
+    ahead = LOOK_AHEAD * longest
+    while 0.0 < ahead <= longest:
+        s.culprit = -1
+        code = take_over(s)
+        if code != DONE:
+            return code
+        if not (s.rates(t, s.y, s.K) and s.step(t, ahead) and measure(s, t + ahead, s.y_new)):
+            return PAINLEVE_INCONSISTENT if s.culprit >= 0 else NOT_FINITE
+        code = decide(s)
+        if code != DONE:
+            return code
+        if not undecided(s):
+            break
+        ahead *= FURTHER
+    code = take_over(s)
+    for c in range(s.n_c):
+        s.new_mode[c] = s.mode[c]
+    if code != DONE:
+        return code
+    return DONE if measure(s, t, s.y) else NOT_FINITE
 
 
 def follow(s: Rubbing, record: Record, tally: Tally) -> int:

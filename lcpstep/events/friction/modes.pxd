@@ -19,6 +19,11 @@ cdef bint begin_to_slide(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nog
 cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(some=bint)
+cdef bint undecided(Rubbing s) noexcept nogil
+@cython.locals(free=bint)
+cdef bint idles(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint is_nothing(Rubbing s, Py_ssize_t a, double alpha, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil

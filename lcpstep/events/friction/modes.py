@@ -123,6 +123,36 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
 
 
+def undecided(s: Rubbing) -> bool:
+    """Whether the forces leave the mode of a contact open, after `decide`: those that come decide about it.
+
+    It has no normal force, and none would be needed. Where nothing pulls along it either it sticks meanwhile.
+    """
+    n_a, n_f = list_unknowns(s)
+    some = False
+    for a in range(n_a):
+        if idles(s, a, n_a, n_f):
+            some = True
+            s.new_loaded[s.problem.ids[a]] = 0
+    for f in range(n_f):
+        a, T = s.problem.carrier[f], n_a + f
+        if idles(s, a, n_a, n_f) and is_nothing(s, T, acceleration(s, T, n_a, n_f), n_a, n_f):
+            s.new_mode[s.problem.ids[a]] = STICKS
+    return some
+
+
+def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
+    """Whether the contact of unknown a has neither a normal force nor an acceleration, with it or without."""
+    push = s.problem.mobility[a * (n_a + n_f) + a] * s.problem.impulse[a]
+    free = is_nothing(s, a, s.problem.rate[a], n_a, n_f)
+    return free and is_nothing(s, a, push, n_a, n_f) and not opens(s, a, n_a, n_f)
+
+
+def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
+    """Whether an acceleration of unknown a's row is zero to rounding."""
+    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f)
+
+
 def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     """The acceleration of unknown a's row under the forces found."""
     m = n_a + n_f

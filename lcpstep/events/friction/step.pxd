@@ -4,7 +4,7 @@ from lcpstep.events.friction.guards cimport UNKNOWN, finish_step, first_event, l
 from lcpstep.events.friction.held cimport hold_modes, list_multipliers, project, right_hand_side
 from lcpstep.events.friction.impact cimport find_touching, forget_terms, still
 from lcpstep.events.friction.keep cimport keep, store_dense
-from lcpstep.events.friction.modes cimport decide
+from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.state cimport GUARDS, Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
@@ -12,7 +12,7 @@ from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
-cdef double LOOK_AHEAD
+cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
 @cython.locals(by_force=bint)
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil

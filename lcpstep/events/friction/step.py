@@ -13,14 +13,16 @@ if not cython.compiled:
     from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
-    from lcpstep.events.friction.modes import decide
+    from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, min
 
-LOOK_AHEAD = 1e-6  # of a step: where the forces after a release, or a slip, are looked at
+# Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
+# far at most
+LOOK_AHEAD, FURTHER, FARTHEST = 1e-6, 10.0, 1e-2
 
 
 def step(s: Rubbing, record: Record, tally: Tally) -> int:
@@ -64,12 +66,16 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
 
 def look_ahead(s: Rubbing, h: float) -> int:
     """The modes just after a force has left its cone, or turned to pulling; a status."""
-    place = s.found + LOOK_AHEAD
-    s.at(place, s.seen)
-    if not measure(s, s.clock.t0 + place * h, s.seen):
-        return NOT_FINITE
-    find_standing(s)
-    code = decide(s)
+    ahead = LOOK_AHEAD
+    while True:
+        s.at(s.found + ahead, s.seen)
+        if not measure(s, s.clock.t0 + (s.found + ahead) * h, s.seen):
+            return NOT_FINITE
+        find_standing(s)
+        code = decide(s)
+        if code != DONE or not undecided(s) or ahead >= FARTHEST:
+            break
+        ahead *= FURTHER
     hold_modes(s)  # the old ones, for the rest of the step
     return code
 

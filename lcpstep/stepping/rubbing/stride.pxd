@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.held cimport count_impulses, hold_modes, project
 from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
-from lcpstep.events.friction.modes cimport decide
+from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.state cimport GUARDS
 from lcpstep.events.friction.step cimport find_standing, meet, stop
 from lcpstep.kernels.record cimport Record
@@ -21,6 +21,7 @@ cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil
 cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
+@cython.locals(waits=bint)
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
 cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
 cdef double keep_between(Strides s, Record record, double t, double tau) noexcept nogil

@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.held import count_impulses, hold_modes, project
     from lcpstep.events.friction.keep import keep, keep_event, store_dense
-    from lcpstep.events.friction.modes import decide
+    from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.friction.step import find_standing, meet, stop
     from lcpstep.kernels.record import Record
@@ -106,7 +106,8 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
             return failed(s)
         find_standing(s)
         code = decide(s)
-        if code != DONE or s.new_mode[c] != s.mode[c] or ahead >= h:
+        waits = code == DONE and undecided(s)
+        if code != DONE or ahead >= h or not (waits or s.new_mode[c] == s.mode[c]):
             break
         ahead *= FURTHER
     hold_modes(s)  # the old ones, for the rest of the step

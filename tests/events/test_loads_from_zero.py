@@ -1,0 +1,192 @@
+"""Contacts under loads that begin at zero, or touch it: the forces that follow decide what sticks, slides and opens.
+
+A particle is pressed by w(t) and pulled along by a w(t): it sticks for ever where |a| <= mu, and slides with
+sign(a) (|a| - mu) w(t) otherwise. Judges: closed forms, and Moreau's scheme.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
+
+METHODS = {"events": (EventDriven(), 1e-9), "2": (Located(2e-3), 2e-3), "4": (Located(5e-3, 4), 1e-5)}
+SOME = settings(max_examples=8, deadline=None)
+
+by_every_method = pytest.mark.parametrize("name", METHODS)
+friction = st.floats(0.05, 1.0)
+# ratio of pull to load, over the coefficient of friction: clearly on one side of the edge of the cone
+ratio = st.one_of(st.floats(0.0, 0.98), st.floats(1.02, 3.0))
+signs = st.sampled_from([-1.0, 1.0])
+
+
+def sine(a):
+    """The loads of sin t, and how far it takes a body of mass one from rest."""
+    return Harmonic(constant=[0.0, 0.0], sine=[a, -1.0], omega=1.0), 3.0, lambda t: t - math.sin(t)
+
+
+def touching(a):
+    """The loads of 1 - cos 2 t, which touch zero every pi."""
+    force = Harmonic(constant=[a, -1.0], cosine=[-a, 1.0], omega=2.0)
+    return force, 7.0, lambda t: 0.5 * t * t - 0.5 * math.sin(t) ** 2
+
+
+def arches(a):
+    """The loads of |sin t|, with corners at pi and 2 pi."""
+
+    def force(t, q, v, p, out):
+        out[0] = p[0] * abs(math.sin(t))
+        out[1] = -abs(math.sin(t))
+
+    def way(t):
+        k = math.floor(t / math.pi)
+        return k * k * math.pi + 2.0 * k * (t - k * math.pi) + (t - k * math.pi) - math.sin(t - k * math.pi)
+
+    return force, 9.0, way
+
+
+LOADS = {"sine": sine, "touching": touching, "arches": arches}
+
+
+def particle(mu, a, load="sine", **other):
+    """A particle at rest on the floor; how far its load takes it."""
+    force, t_end, way = LOADS[load](a)
+    given = {"q0": [0.0, 0.0], "v0": [0.0, 0.0], "t_span": (0.0, t_end), "p": [a]}
+    if load == "arches":
+        given |= {"corners": [math.pi, 2.0 * math.pi]}
+    rough = LinearContacts([[0.0, 1.0]], [0.0], [0.5], friction=Coulomb(mu, [[1.0, 0.0]]))
+    return Scene(system=LinearSystem(np.eye(2), force=force), contacts=rough, **(given | other)), way
+
+
+def slid(mu, a, way):
+    """How far along the particle comes."""
+    return math.copysign(max(0.0, abs(a) - mu), a) * way
+
+
+def end(scene, method):
+    """Where a run ends, which reaches its end."""
+    run = simulate(scene, method, keep=[scene.t_span[1]])
+    assert run.status == Status.DONE
+    return run.q[-1]
+
+
+@by_every_method
+@pytest.mark.parametrize("load", LOADS)
+@SOME
+@given(mu=friction, share=ratio, sign=signs)
+def test_a_load_from_zero_moves_the_particle_only_beyond_the_cone(name, load, mu, share, sign):
+    method, close = METHODS[name]
+    scene, way = particle(mu, sign * share * mu, load)
+    x, y = end(scene, method)
+    far = way(scene.t_span[1])
+    assert abs(y) < 1e-9
+    if share < 1.0:
+        assert abs(x) < 1e-12
+    assert abs(x - slid(mu, sign * share * mu, far)) < close * (1.0 + far)
+
+
+@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("share", [0.4, 2.0])
+def test_time_stepping_agrees(load, share):
+    scene, _ = particle(0.3, share * 0.3, load)
+    assert np.max(np.abs(end(scene, Moreau(1e-3)) - end(scene, EventDriven()))) < 0.02
+
+
+@by_every_method
+@SOME
+@given(mu=friction, v=st.floats(2.0, 3.0), sign=signs)
+def test_what_slides_is_braked_by_a_load_from_zero(name, mu, v, sign):
+    method, close = METHODS[name]
+    scene, way = particle(mu, 0.0, v0=[sign * v, 0.0])
+    assert abs(end(scene, method)[0] - sign * (3.0 * v - mu * way(3.0))) < 10.0 * close
+
+
+@by_every_method
+@SOME
+@given(mu=friction, a=st.floats(-1.0, 1.0))
+def test_a_load_from_zero_that_lifts_opens_the_contact(name, mu, a):
+    method, close = METHODS[name]
+    scene, way = particle(mu, a)
+    force = Harmonic(constant=[0.0, 0.0], sine=[a, 1.0], omega=1.0)
+    scene = replace(scene, system=LinearSystem(np.eye(2), force=force))
+    assert np.max(np.abs(end(scene, method) - way(3.0) * np.array([a, 1.0]))) < 10.0 * close
+
+
+@by_every_method
+@SOME
+@given(mu=friction, share=ratio, sign=signs)
+def test_what_lands_while_the_load_touches_zero(name, mu, share, sign):
+    """It lands at t = pi, when the load is zero, without sliding, and without restitution."""
+    method, close = METHODS[name]
+    a = sign * share * mu
+    scene, way = particle(mu, a, "touching", v0=[-a * math.pi, -1.0], q0=[0.0, math.pi + 0.5 * math.pi**2])
+    rough = LinearContacts([[0.0, 1.0]], [0.0], [0.0], friction=Coulomb(mu, [[1.0, 0.0]]))
+    scene = replace(scene, contacts=rough)
+    x, y = end(scene, method)
+    assert abs(y) < 1e-9
+    assert abs(x + 0.5 * a * math.pi**2 - slid(mu, a, way(7.0 - math.pi))) < 30.0 * close
+
+
+@by_every_method
+@SOME
+@given(
+    mus=st.tuples(friction, friction),
+    shares=st.tuples(ratio, ratio),
+    load=st.sampled_from(["sine", "touching"]),
+)
+def test_two_particles_are_decided_each_by_its_own_load(name, mus, shares, load):
+    method, close = METHODS[name]
+    a = np.multiply(mus, shares)
+    (one, t_end, way), (two, _, _) = LOADS[load](a[0]), LOADS[load](a[1])
+    constant, cosine, sine = np.concatenate([one.terms(2), two.terms(2)], axis=1)
+    force = Harmonic(constant=constant, cosine=cosine, sine=sine, omega=one.omega)
+    rows, tangents = np.eye(4)[1::2], np.eye(4)[::2]
+    scene = Scene(
+        system=LinearSystem(np.eye(4), force=force), q0=np.zeros(4), v0=np.zeros(4), t_span=(0.0, t_end),
+        contacts=LinearContacts(rows, [0.0, 0.0], [0.5, 0.5], friction=Coulomb(mus, tangents)),
+    )  # fmt: skip
+    exact = [slid(mu, pull, way(t_end)) for mu, pull in zip(mus, a, strict=True)]
+    assert np.max(np.abs(end(scene, method)[::2] - exact)) < close * (1.0 + way(t_end))
+
+
+@by_every_method
+@SOME
+@given(mu=friction, share=ratio, sign=signs, height=st.floats(-0.1, 0.1))
+def test_a_block_on_two_feet_under_a_load_from_zero(name, mu, share, sign, height):
+    method, close = METHODS[name]
+    a = sign * share * mu
+    force = Harmonic(constant=np.zeros(3), sine=[a, -1.0, 0.0], omega=1.0)
+    feet = LinearContacts(
+        [[0.0, 1.0, 0.5], [0.0, 1.0, -0.5]], [0.0, 0.0], [0.5, 0.5],
+        friction=Coulomb(mu, [[1.0, 0.0, height], [1.0, 0.0, height]]),
+    )  # fmt: skip
+    M = np.diag([1.0, 1.0, 0.1])
+    scene = Scene(
+        system=LinearSystem(M, force=force), contacts=feet, q0=[0.0] * 3, v0=[0.0] * 3, t_span=(0.0, 3.0)
+    )
+    x, y, turn = end(scene, method)
+    assert max(abs(y), abs(turn)) < 1e-9
+    assert abs(x - slid(mu, a, 3.0 - math.sin(3.0))) < 10.0 * close
+
+
+@by_every_method
+@SOME
+@given(mu=friction, share=ratio, sign=signs)
+def test_a_joint_shares_the_pull(name, mu, share, sign):
+    """The particle draws another one of the same mass along: half the acceleration."""
+    method, close = METHODS[name]
+    a = sign * share * mu
+    force = Harmonic(constant=np.zeros(3), sine=[0.0, -1.0, a], omega=1.0)
+    scene = Scene(
+        system=LinearSystem(np.eye(3), force=force), joints=LinearJoints([[1.0, 0.0, -1.0]], [0.0]),
+        contacts=LinearContacts([[0.0, 1.0, 0.0]], [0.0], [0.5], friction=Coulomb(mu, [[1.0, 0.0, 0.0]])),
+        q0=[0.0] * 3, v0=[0.0] * 3, t_span=(0.0, 3.0),
+    )  # fmt: skip
+    x, _, z = end(scene, method)
+    assert abs(x - z) < 1e-9
+    assert abs(x - 0.5 * slid(mu, a, 3.0 - math.sin(3.0))) < 10.0 * close
