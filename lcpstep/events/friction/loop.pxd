@@ -9,7 +9,7 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN, BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS, SLACK
-cdef double LOOK_AHEAD, FURTHER
+cdef double LOOK_AHEAD, FURTHER, NO_TIME
 
 cdef Py_ssize_t released(Rubbing s, Record record, Tally tally, Py_ssize_t goal) noexcept
 cdef void put_back(Rubbing s, Record record) noexcept nogil

@@ -29,6 +29,7 @@ if not cython.compiled:
 SLACK = 4  # rows that one round may need
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
+NO_TIME = 2.0**-50  # of the interval looked at: stretches of motion this short take no time
 
 
 def run(s: Any, record: Any, tally: Any, goal: Any) -> int:
@@ -87,7 +88,7 @@ def progress(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
     t = s.clock.t0
     code = s.proceed(record, tally)
-    tally.stalled = tally.stalled + 1 if s.clock.t0 == t else 0
+    tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= NO_TIME * s.scan_length else 0
     return code
 
 

@@ -7,7 +7,7 @@ from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs
+from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
@@ -36,3 +36,4 @@ cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint turned(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil
+cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil

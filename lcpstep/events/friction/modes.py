@@ -36,7 +36,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max
 
 EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it lies on it
 
@@ -173,6 +173,7 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     size = abs(s.bias[i])
     for j in range(s.n_q):
         size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
+        size += abs(s.MR[i * s.n_q + j]) * load_terms(s, j)
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size
@@ -266,4 +267,14 @@ def turned(s: Rubbing, c: int) -> bool:
 
 def force_noise(s: Rubbing) -> float:
     """Rounding of the forces of contacts."""
-    return NOISE * largest(s.force, largest(s.x, 0.0, s.n_held), s.n_q)
+    size = largest(s.force, largest(s.x, 0.0, s.n_held), s.n_q)
+    for j in range(s.n_q):
+        size = max(size, load_terms(s, j))
+    return NOISE * size
+
+
+def load_terms(s: Rubbing, j: int) -> float:
+    """Size of the terms of a harmonic load on coordinate j, which may cancel; of callbacks nothing finer is known."""
+    if not s.contacts.linear or s.contacts.force.given or s.contacts.omega == 0.0:
+        return 0.0
+    return abs(s.contacts.constant[j]) + abs(s.contacts.cosine[j]) + abs(s.contacts.sine[j])
