@@ -6,8 +6,9 @@ velocity Verlet err by at most about
     h^2 |da| / 6   in position,      h |dda| / 12   in velocity
 
 (E. Hairer, G. Wanner, C. Lubich, Geometric numerical integration, section I.1). These are added up. An error of the
-velocity moves the position by as much times the time that has passed, or, where the motion is held by a spring, 1 / omega
-at most: of linear systems the lowest natural frequency, of others that with which the coordinate is seen to swing.
+velocity moves the position by as much times the time that has passed, or, where the motion is held by a spring, by
+1 / omega at most: of linear systems the lowest natural frequency, of others that with which the coordinate is seen
+to swing.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Bodies that run against steep sides: the state may have no place nearer to zero gap than rounding times the slope."""
+"""Bodies that run against steep sides, where no state has a gap nearer to zero than rounding times the slope."""
 
 import numpy as np
 import pytest
