@@ -46,7 +46,7 @@ def too_deep(run: Trajectory) -> str:
         if depth == 0.0:
             return ""
         row, c = np.unravel_index(int(np.argmin(g)), g.shape)
-        G = np.abs(_normal(scene, int(c), states[row]))
+        G = np.abs(normal(scene, int(c), states[row]))
         q, v = (np.array([x[i] for x in states]) for i in (1, 2))
         size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)
         share = SHARE if hasattr(run.method, "theta") else SHARE_LOCATED  # the theta method drifts
@@ -81,7 +81,7 @@ def _gaps(scene: Scene, states: list[tuple[float, Array, Array]]) -> Array:
     return g
 
 
-def _normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
+def normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
     """Row of the Jacobian."""
     contacts: Any = scene.contacts
     if isinstance(contacts, LinearContacts):

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.depth import normal
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.states import gaps_at
 from lcpstep.model import model
@@ -30,6 +31,7 @@ AROUND = np.array(
 )  # steps after the state, between which the gap leaves its line
 NEAR = 1.0 / 64.0  # of a step: of the differences
 FASTER = 10.0  # than a step
+ROUNDING = 1e-12  # of the coordinates
 PLAIN, LEAST_SHARE = 1e-2, 1e-4  # of the gap there, and of all gaps: how far it leaves its line
 
 
@@ -58,15 +60,24 @@ def fast_gap(run: Any) -> str:
         fast = curve[:, -1] / (8.0 * NEAR * NEAR) > FASTER * left.max(axis=1)
         fast &= left[:, -1] > PLAIN * np.minimum(np.abs(start), np.abs(end))[:, 0]
         fast &= left[:, -1] > LEAST_SHARE * np.nanmax(np.abs(g), axis=(0, 1))
-    if not np.any(fast):
+    found = [
+        (int(i), int(c)) for i, c in np.argwhere(fast) if left[i, -1, c] > rounding(run, int(k[i]), int(c))
+    ]
+    if not found:
         return ""
-    i, c = (int(x) for x in np.argwhere(fast)[0])
+    i, c = found[0]
     time = run.t[k[i]] + share[i] * h[i]
     return (
         f"the gap of contact {c} turns within less than {h[i]:.3g} s at about t = {time:.6g} s, "
         f"as samples show, faster than the run has looked: take audit=True, which finds what was missed, or give the "
         f"times at which it turns as `corners`"
     )
+
+
+def rounding(run: Any, k: int, c: int) -> float:
+    """What rounding of the coordinates makes of gap c at a kept state."""
+    G = normal(run.scene, c, (float(run.t[k]), run.q[k], run.v[k]))
+    return ROUNDING * float(np.abs(G) @ np.abs(run.q[k]))
 
 
 def straight_on(run: Any, k: Any, h: Array, places: Array) -> tuple[Array, Array]:

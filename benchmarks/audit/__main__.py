@@ -44,7 +44,9 @@ def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> Non
     found["missed by default"] += met and not struck(own)
     kind = type(method)
     audited = simulate(case.scene, kind(audit=True) if kind is EventDriven else kind(1e-3, audit=True))
-    found["missed with the audit on"] += met and not struck(audited)
+    lost = met and not struck(audited)
+    found["missed with the audit on"] += lost
+    found["of these listed"] += lost and bool(audited.audit.windows)
     found["struck, but none"] += not met and struck(audited)
     found["flights"] += audited.audit.flights
     found["certified"] += audited.audit.certified

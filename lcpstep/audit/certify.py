@@ -127,7 +127,7 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
         if p.problem.why:
             look_at_samples(p, w, tally)
             return
-        small = np.minimum(s.error, NEGLIGIBLE * p.largest)
+        small = np.minimum(s.own, NEGLIGIBLE * p.largest)
         if rough:  # a touch need not be an event
             w = w._replace(
                 first=w.first | ((w.a == p.t[w.k]) & (np.abs(s.at_a) <= small)),
@@ -135,18 +135,21 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
             )
         rough = False
         good, lower = (s.gap >= -s.error, s.gap) if np.all(w.closed) else judged(w, s)
-        wrong = ((s.at_b < -s.error) & ~w.last) | ((s.at_a < -s.error) & ~w.first)
+        wrong = ((s.at_b < -s.own) & ~w.last) | ((s.at_a < -s.own) & ~w.first)
         h = w.b - w.a
-        good |= at_event(p, w, lower > -ERRORS * small)
+        drifted = s.error - s.own  # beside an event the motion counts as it was computed
+        good |= at_event(p, w, lower + drifted > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))
         for i in np.flatnonzero(wrong):
-            inside = float(w.a[i] if s.at_a[i] < -s.error[i] and not w.first[i] else w.b[i])
+            inside = float(w.a[i] if s.at_a[i] < -s.own[i] and not w.first[i] else w.b[i])
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
         end = left & ((h < SMALLEST * p.scale) | (looked > most))
         if np.any(end):
-            why = TOO_MANY if looked > most else NARROW
-            tally.windows.append((w.chosen(end), lower[end], why, False))
+            near = (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
+            for which, why in (end & near, NARROW), (end & ~near, TOO_MANY):
+                if np.any(which):
+                    tally.windows.append((w.chosen(which), lower[which], why, False))
         w = w.chosen(left & ~end).halved()
 
 
@@ -155,7 +158,8 @@ def at_event(p: Pieces, w: Windows, shallow: NDArray[np.bool_]) -> NDArray[np.bo
     before = np.where(p.touched[w.k, w.c] | w.first, w.b - p.t[w.k], np.inf)
     after = np.where(p.touched[w.k + 1, w.c] | w.last, p.t[w.k + 1] - w.a, np.inf)
     apart = np.minimum(before, after)
-    return np.asarray((apart < AT_EVENT * p.scale) | (shallow & (apart < BESIDE * p.scale)))
+    near = np.minimum(apart, p.to_event(w)) if p.problem.drift is not None else apart
+    return np.asarray((apart < AT_EVENT * p.scale) | (shallow & (near < BESIDE * p.scale)))
 
 
 def look_at_samples(p: Pieces, w: Windows, tally: Tally) -> None:

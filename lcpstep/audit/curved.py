@@ -28,10 +28,19 @@ class Curved:
     ----------
     scene : Scene;  m : Model;  motion : Polynomials
     error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
+    drift : (m, n_q)   how much of it steps have added up, or None
     """
 
-    def __init__(self, scene: Scene, m: Model, motion: Polynomials, error: tuple[Any, float]) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        m: Model,
+        motion: Polynomials,
+        error: tuple[Any, float],
+        drift: Array | None = None,
+    ) -> None:
         self.scene, self.m, self.motion, self.error, self.why = scene, m, motion, error, ""
+        self.drift = drift
         contacts: Any = scene.contacts
         bound, self.contacts = contacts.lipschitz, contacts
         self.bound = None if bound is None else np.asarray(bound, dtype=float)
@@ -46,25 +55,10 @@ class Curved:
         size = np.max(np.abs(np.concatenate([q_a, q_b], axis=1)), axis=1)
         state = own(self.error[0], w.k) + self.error[1] * np.repeat(size[:, None], self.n_q, axis=1)
         limit = None if self.bound is None else self.bound[w.c]
-        if limit is not None:  # no more is asked for
-            smooth = np.ones(n, dtype=bool)
-            return Seen(
-                nothing, nothing, -nothing, -limit, limit, at_a, at_b, state.max(axis=1), np.zeros(n), smooth
-            )
-        if self.why:
-            flags = np.zeros(n, dtype=bool)
-            return Seen(
-                nothing,
-                nothing,
-                -nothing,
-                nothing,
-                -nothing,
-                at_a,
-                at_b,
-                state.max(axis=1),
-                np.zeros(n),
-                flags,
-            )
+        if limit is not None or self.why:  # no more is asked for, or known
+            low, high = (nothing, -nothing) if limit is None else (-limit, limit)
+            smooth, worst = np.full(n, limit is not None), state.max(axis=1)
+            return Seen(nothing, nothing, -nothing, low, high, at_a, at_b, worst, np.zeros(n), smooth, worst)
         slack = [Interval(x.place.lo - e, x.place.hi + e) for x, e in zip(boxes, state.T, strict=True)]
         try:
             gap, G, rate, curve, smooth = self.enclosed(w, slack, boxes)
@@ -72,13 +66,15 @@ class Curved:
             self.why = str(why)
             return self.seen(w, rough=rough)
         speed, error = rate, ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
+        drifted = np.zeros(n)
         for i in range(self.n_q):
             g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
             speed = speed + g * boxes[i].speed
             error = error + g.size * state[:, i]
-        return Seen(
-            gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
-        )
+            if self.drift is not None:
+                drifted += g.size * self.drift[w.k, i]
+        slow, computed = ROUNDING * speed.size, error - drifted
+        return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)
 
     def lowest(self, a: Array, b: Array, lo: Array, hi: Array) -> Array:
         """Lower bounds (n, n_c) of all gaps over windows [a, b] and boxes of the state (n, n_q); -inf: none."""

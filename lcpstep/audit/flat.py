@@ -32,13 +32,15 @@ class Flat:
     ----------
     scene : Scene;  m : Model;  motion : Oscillation or Polynomials
     error : (absolute, relative)   of the positions; the first may be (m, n_q), one for each piece and coordinate
+    drift : (m, n_q)   how much of it steps have added up, or None
     """
 
     def __init__(
-        self, scene: Scene, m: Model, motion: Oscillation | Polynomials, cuts: Array, error: tuple[Any, float]
-    ) -> None:
+        self, scene: Scene, m: Model, motion: Oscillation | Polynomials, cuts: Array, error: tuple[Any, float],
+        drift: Array | None = None,
+    ) -> None:  # fmt: skip
         self.G, self.offset, self.motion, self.error = m.arrays["G"], m.arrays["offset"], motion, error
-        self.why = ""
+        self.why, self.drift = "", drift
         self.obstacle = Obstacle(scene, m, motion.absolute, cuts)
         self.linear = m
 
@@ -61,9 +63,9 @@ class Flat:
             at_a, at_b, smooth = at_a - s_a, at_b - s_b, ~branched
         absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
         error = absolute + (self.error[1] + ROUNDING) * size
-        return Seen(
-            gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, ROUNDING * speed.size, smooth
-        )
+        computed = error if self.drift is None else error - np.sum(np.abs(G) * self.drift[w.k], axis=1)
+        slow = ROUNDING * speed.size
+        return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)
 
     def looked(self, k: Any, c: Any, t: Array) -> tuple[Array, float]:
         """Gaps of contacts c at times in the pieces k, and how far they may be off."""
@@ -92,5 +94,15 @@ class Flat:
         unknown = np.full(n, np.inf)
         error = ROUNDING * p.size
         return Seen(
-            p.lo, -unknown, unknown, -unknown, unknown, p.hi, p.hi, error, error, np.zeros(n, dtype=bool)
+            p.lo,
+            -unknown,
+            unknown,
+            -unknown,
+            unknown,
+            p.hi,
+            p.hi,
+            error,
+            error,
+            np.zeros(n, dtype=bool),
+            error,
         )

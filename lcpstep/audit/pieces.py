@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from lagrangian import Contacts
 from lcpstep.audit import motion
 from lcpstep.audit.curved import Curved
+from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
+from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
@@ -54,11 +56,14 @@ class Pieces:
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
         self.certain = isinstance(run.dense, Moved) and run.dense.constant
+        gone = drift(run, self.m, run.dense.jumps, self.cuts) if isinstance(run.dense, Bent) else None
+        if gone is not None:
+            error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
             assert isinstance(self.motion, motion.Polynomials)
-            self.problem: Any = Curved(self.scene, self.m, self.motion, error)
+            self.problem: Any = Curved(self.scene, self.m, self.motion, error, gone)
         else:
-            self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error)
+            self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error, gone)
         names = "time", "contact", "kind", "after"
         time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
         t = np.ascontiguousarray(self.t)
@@ -78,6 +83,19 @@ class Pieces:
         if np.any(self.closed):
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
+
+    def to_event(self, w: Windows) -> Array:
+        """How far windows reach from the nearest event of their contact, in whichever piece it lies [s]."""
+        apart = np.full(len(w.a), np.inf)
+        for c in range(self.scene.n_c):
+            own, times = np.flatnonzero(w.c == c), self.t[self.touched[:, c]]
+            if not (len(own) and len(times)):
+                continue
+            later = np.searchsorted(times, w.b[own])
+            after = np.append(times, np.inf)[later] - w.a[own]
+            before = w.b[own] - np.insert(times, 0, -np.inf)[np.searchsorted(times, w.a[own], side="right")]
+            apart[own] = np.minimum(after, before)
+        return apart
 
 
 def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[Any, float]]:

@@ -47,6 +47,7 @@ class Seen(NamedTuple):
     """Bounds over windows: of a gap, its speed and its acceleration, (n,) each; its values at both ends.
 
     error    of the gap;  slow: of its speed
+    own      of the gap as it was computed: without what steps have added up (`drift`)
     smooth   whether the acceleration is one
     """
 
@@ -60,6 +61,7 @@ class Seen(NamedTuple):
     error: Array
     slow: Array
     smooth: Mask
+    own: Array
 
 
 def judged(w: Windows, s: Seen) -> tuple[Mask, Array]:

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport gaps, moves, obstacle
+from lcpstep.kernels.dynamics cimport gap_rounding, gaps, moves, obstacle
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, product
@@ -29,6 +29,7 @@ cdef bint needs_bias(Plan plan, Work w) noexcept nogil
 cdef bint from_ground(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 @cython.locals(found=Py_ssize_t)
 cdef (Py_ssize_t, double) first_contact(Plan plan, Work w, double rest, double t_end) noexcept nogil
+@cython.locals(falls=bint, near=bint)
 cdef (Py_ssize_t, double) polish(
     Model m, Plan plan, Work w, Py_ssize_t c, double t, double tau, double rest
 ) noexcept nogil

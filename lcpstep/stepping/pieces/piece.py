@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import gaps, moves, obstacle
+    from lcpstep.kernels.dynamics import gap_rounding, gaps, moves, obstacle
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
@@ -175,10 +175,13 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
         if abs(change) <= EPS * tau:
             return c, tau
     look(m, plan, w, t, tau)
-    if w.gap_try[c] > 0.0:  # time may be too coarse for the step back from where the gap was closed
-        if high > tau:
+    if w.gap_try[c] > 0.0:
+        if high > tau:  # time may be too coarse for the step back from where the gap was closed
             return c, between(m, plan, w, c, t, tau, high)
-        return NOBODY, tau
+        # on a steep side the state has no place that is nearer to zero
+        falls = w.rate[c] + 2.0 * tau * w.half[c] < 0.0
+        near = falls and w.gap_try[c] <= gap_rounding(m, w.G, w.q, c, 0.0)
+        return (c if near else NOBODY), tau
     if low > tau or not (low > 0.0 or w.gap[c] > plan.slack):
         return c, tau
     return c, between(m, plan, w, c, t, low, tau)

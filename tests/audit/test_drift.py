@@ -1,0 +1,61 @@
+"""What steps of order two add up: the estimate against closed forms, and certificates that know it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from benchmarks.audit.cases import KINDS
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import Located, simulate
+from lcpstep.audit import audit
+from lcpstep.audit.drift import drift
+from lcpstep.model import model
+
+
+def swinging(rate, phase, span):
+    """An oscillator far above its wall."""
+    return Scene(
+        system=LinearSystem(M=1.0, K=rate**2), contacts=LinearContacts(G=1.0, offset=5.0, restitution=0.8),
+        q0=math.cos(phase), v0=-rate * math.sin(phase), t_span=(0.0, span),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_estimate_is_no_smaller_than_the_error_and_not_much_larger(seed):
+    rng = np.random.default_rng(seed)
+    rate, phase, h = rng.uniform(2.0, 12.0), rng.uniform(0.0, 6.0), 10.0 ** rng.uniform(-3.5, -2.5)
+    scene = swinging(rate, phase, 20.0)
+    run = simulate(scene, Located(h))
+    error = np.abs(run.q[1:, 0] - np.cos(rate * run.t[1:] + phase))
+    told = drift(run, model(scene), run.dense.jumps, np.zeros(0))[:, 0]
+    assert np.all(error <= told + 1e-9)
+    assert told[-1] < 10.0 * error.max()
+
+
+def test_under_constant_forces_there_is_none():
+    scene = scenes.bouncing_ball()
+    run = simulate(scene, Located(1e-2))
+    assert drift(run, model(scene), run.dense.jumps, np.zeros(0)).max() < 1e-12
+
+
+@pytest.mark.parametrize("kind", ["tangent", "ground, tangent", "burr", "ground"])
+def test_no_passage_is_certified_that_meets(kind):
+    rng = np.random.default_rng(16)
+    for _ in range(12):
+        case = KINDS[kind](kind, rng)
+        run = simulate(case.scene, Located(2e-3, audit=True))
+        met = len(run.impacts) > 0
+        if met != (case.least < 0.0):
+            assert any(abs(x.start - case.scene.p[2]) < 4.0 * case.width + 1e-2 for x in run.audit.windows)
+
+
+def test_a_wall_within_the_error_is_listed():
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=40.0), contacts=LinearContacts(G=1.0, offset=1.0 + 1e-6, restitution=0.8),
+        q0=0.0, v0=math.sqrt(40.0), t_span=(0.0, 5.0),
+    )  # fmt: skip
+    answer = audit(simulate(scene, Located(1e-2)))
+    assert answer.windows
+    assert "as small as the error" in answer.windows[0].why
+    assert answer.certified < answer.flights
