@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, model, simulate
-from lcpstep.kernels import record
+from lcpstep import Moreau, model, room, simulate
+from lcpstep.kernels import record, states
 from lcpstep.stepping import moreau_run
 from tests.uncompiled import kernels
 
@@ -21,6 +21,8 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(model, "kernels", plain.model)
         monkeypatch.setattr(model, "Coefficients", plain.coefficients.Coefficients)
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
+        monkeypatch.setattr(room, "gaps_at", plain.states.gaps_at)
+        monkeypatch.setattr(states, "power", plain.states.power)
         monkeypatch.setattr(record, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)

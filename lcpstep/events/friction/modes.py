@@ -173,7 +173,6 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     size = abs(s.bias[i])
     for j in range(s.n_q):
         size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
-        size += abs(s.MR[i * s.n_q + j]) * load_terms(s, j)
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size
