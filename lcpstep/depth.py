@@ -41,7 +41,7 @@ def too_deep(run: Trajectory) -> str:
     states = [(scene.t_span[0], np.asarray(scene.q0), np.asarray(scene.v0))]
     states += [(float(run.t[i]), run.q[i], run.v[i]) for i in k]
     try:
-        g = _gaps(scene, states)
+        g = gaps(scene, states)
         depth = max(0.0, -float(g.min()))
         if depth == 0.0:
             return ""
@@ -67,8 +67,8 @@ def too_deep(run: Trajectory) -> str:
     )
 
 
-def _gaps(scene: Scene, states: list[tuple[float, Array, Array]]) -> Array:
-    """Gaps (states, n_c)."""
+def gaps(scene: Scene, states: list[tuple[float, Array, Array]]) -> Array:
+    """Gaps (states, n_c) at states (t, q, v)."""
     contacts: Any = scene.contacts
     p, n_c = np.array(scene.p), scene.n_c
     if not isinstance(contacts, LinearContacts):

@@ -11,12 +11,10 @@ No motion goes on from there, whatever the steps of a method have made of it.
 
 from __future__ import annotations
 
-from typing import cast
-
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, checks
+from lcpstep import depth
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.states import gaps_at
 from lcpstep.model import model
@@ -57,33 +55,22 @@ def no_room(run: Trajectory) -> str:
 
 def _climbed(run: Trajectory, t: float, q: Array, c: int, reach: float) -> float:
     """The largest gap within reach where that is below zero; 0 where there is room, or where it is not known."""
-    g, G = _gap(run, t, q, c), _slope(run, t, q, c)
+    scene, still = run.scene, np.zeros_like(q)
+    g, G = depth.gaps(scene, [(t, q, still)])[0, c], depth.normal(scene, c, (t, q, still))
     for _ in range(STEPS):
         if g >= 0.0:
             return 0.0
         most = g + reach * float(np.linalg.norm(G))
         if most < 0.0:
-            return most
+            return float(most)
         way = -2.0 * g / float(G @ G) * G
         for _ in range(HALVINGS):
-            higher = _gap(run, t, q + way, c)
+            higher = depth.gaps(scene, [(t, q + way, still)])[0, c]
             if higher > g:
                 break
             way = 0.5 * way
         else:
             return 0.0
         q, g = q + way, higher
-        G = _slope(run, t, q, c)
+        G = depth.normal(scene, c, (t, q, still))
     return 0.0
-
-
-def _gap(run: Trajectory, t: float, q: Array, c: int) -> float:
-    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
-    at = (t, q, np.zeros_like(q), np.array(scene.p))
-    return float(checks.evaluate("contacts.gap", contacts.gap, at, (scene.n_c,))[c])
-
-
-def _slope(run: Trajectory, t: float, q: Array, c: int) -> Array:
-    scene, contacts = run.scene, cast(Contacts, run.scene.contacts)
-    at = (t, q, np.zeros_like(q), np.array(scene.p))
-    return checks.evaluate("contacts.jacobian", contacts.jacobian, at, (scene.n_c, scene.n_q))[c]

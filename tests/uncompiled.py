@@ -58,13 +58,11 @@ def copy_without_what_is_built(folder):
 
 
 def both_ways(folder, program):
-    """Lines that a program prints where the library is built, and where it is not, in this folder.
-
-    The first is the file of one of its kernels, and left out.
-    """
+    """Lines that a program prints where the library is built, and where it is not, in this folder."""
     copy_without_what_is_built(folder)
+    asked = "from lcpstep.kernels import clock\nprint(clock.__file__)\n" + program
     built, plain = (
-        python(program, cwd=home, PYTHONPATH=str(home), NUMBA_DISABLE_JIT="1").splitlines()
+        python(asked, cwd=home, PYTHONPATH=str(home), NUMBA_DISABLE_JIT="1").splitlines()
         for home in (ROOT.parent, folder)
     )
     assert plain[0].endswith(".py")

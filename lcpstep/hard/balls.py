@@ -10,22 +10,21 @@ import numpy as np
 from lagrangian import scenes
 from lagrangian.scenes.bouncing_ball import impact_times
 from lagrangian.scenes.grazing import touch
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error, states
 from lcpstep.trajectory import Kind
 
 FALL = 0.9  # a flight of the bouncing ball, up and down [s]
 
 
-@check(
+states(
     "bouncing-ball",
     "states through the accumulation",
+    scenes.bouncing_ball,
     period=FALL,
     event_driven=1e-13,
     located=1e-12,
     moreau=FIRST_ORDER,
 )
-def ball(solve: Solver) -> float:
-    return state_error(solve, scenes.bouncing_ball())
 
 
 @check(

@@ -8,58 +8,54 @@ import numpy as np
 
 from lagrangian import Scene, scenes
 from lagrangian.scenes.beads import collisions, weights_above
-from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, Found, Solver, check, states
 from lcpstep.trajectory import Kind
 
 FLIGHT = 0.1  # typical time between impacts of a bead [s]
 
 
-@check(
+states(
     "elastic-gas",
     "states, 12 beads",
+    scenes.elastic_gas,
     period=FLIGHT,
     event_driven=1e-9,
     located=1e-9,
     moreau=FIRST_ORDER,
 )
-def gas(solve: Solver) -> float:
-    return state_error(solve, scenes.elastic_gas())
 
 
-@check(
+states(
     "elastic-gas",
     "states, 100 beads",
+    lambda: scenes.elastic_gas(n=100, t_end=1.0),
     period=FLIGHT,
     event_driven=1e-9,
     located=1e-9,
     moreau=FIRST_ORDER,
 )
-def larger_gas(solve: Solver) -> float:
-    return state_error(solve, scenes.elastic_gas(n=100, t_end=1.0))
 
 
-@check(
+states(
     "elastic-gas",
     "states, 400 beads, 1e5 impacts",
+    lambda: scenes.elastic_gas(n=400, t_end=2.5),
     period=FLIGHT,
     heavy=True,
     event_driven=1e-9,
     located=1e-9,
 )
-def largest_gas(solve: Solver) -> float:
-    return state_error(solve, scenes.elastic_gas(n=400, t_end=2.5))
 
 
-@check(
+states(
     "falling-gas",
     "states, 12 beads",
+    scenes.falling_gas,
     period=FLIGHT,
     event_driven=1e-9,
     located=1e-9,
     moreau=FIRST_ORDER,
 )
-def falling(solve: Solver) -> float:
-    return state_error(solve, scenes.falling_gas())
 
 
 def _galperin(solve: Solver, k: int) -> Found:
@@ -159,21 +155,26 @@ def collapse_events(solve: Solver) -> float:
     return len(solve(scenes.inelastic_collapse()).impacts)
 
 
-@check("inelastic-collapse", "states", period=1.0, event_driven=1e-10, located=1e-10, moreau=FIRST_ORDER)
-def collapse_states(solve: Solver) -> float:
-    return state_error(solve, scenes.inelastic_collapse())
+states(
+    "inelastic-collapse",
+    "states",
+    scenes.inelastic_collapse,
+    period=1.0,
+    event_driven=1e-10,
+    located=1e-10,
+    moreau=FIRST_ORDER,
+)
 
 
-@check(
+states(
     "inelastic-collapse",
     "states, r = 0.3: no collapse",
+    lambda: scenes.inelastic_collapse(restitution=0.3),
     period=1.0,
     event_driven=1e-12,
     located=1e-12,
     moreau=FIRST_ORDER,
 )
-def no_collapse(solve: Solver) -> float:
-    return state_error(solve, scenes.inelastic_collapse(restitution=0.3))
 
 
 def _column(solve: Solver, n: int, restitution: float, t_end: float) -> Found:

@@ -2,9 +2,13 @@
 
 A check is a function that gets a `Solver` and returns how far off the method is; `@check` registers it:
 
-    @check("bouncing-ball", "states", period=0.9, event_driven=1e-13, moreau=FIRST_ORDER)
+    @check("elastic-ball", "energy", period=0.9, event_driven=1e-13)
     def ball(solve):
-        return state_error(solve, bouncing_ball())
+        return gained(solve(elastic_ball()))
+
+and `states` one on a motion in closed form:
+
+    states("bouncing-ball", "states", bouncing_ball, period=0.9, event_driven=1e-13, moreau=FIRST_ORDER)
 
 The bounds are those of excellent code with default settings, never fitted to what a method gives. `FIRST_ORDER`
 stands for what plain Moreau time-stepping promises: an impact moved by a step displaces the motion by no more than
@@ -232,3 +236,19 @@ def state_error(solve: Solver, scene: Scene) -> float:
     q, v = scene.exact(times)
     error = float(np.max(np.abs(run.q - q)))
     return error if solve.method == MOREAU else max(error, float(np.max(np.mean(np.abs(run.v - v), axis=0))))
+
+
+def states(
+    scene: str,
+    what: str,
+    make: Callable[[], Scene],
+    *,
+    period: float = 1.0,
+    heavy: bool = False,
+    **bounds: float,
+) -> None:
+    """Register a check on the motion of a scene that has one in closed form: its `state_error`."""
+
+    @check(scene, what, period=period, heavy=heavy, **bounds)
+    def measure(solve: Solver) -> float:
+        return state_error(solve, make())

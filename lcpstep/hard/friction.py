@@ -11,19 +11,17 @@ import numpy as np
 from lagrangian import Scene, scenes
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.kane_pendulum import after_impact, kinetic_energy
-from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, states
 
-
-@check(
+states(
     "coulomb-oscillator",
     "states",
+    scenes.coulomb_oscillator,
     period=2.0 * math.pi,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def oscillator(solve: Solver) -> float:
-    return state_error(solve, scenes.coulomb_oscillator())
 
 
 @check(
@@ -41,9 +39,15 @@ def stops(solve: Solver) -> Found:
     return Found(max(moved, speed), f"at {run.q[-1, 0]:.12f}, speed {speed:.0e}")
 
 
-@check("slipping-wheel", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
-def wheel(solve: Solver) -> float:
-    return state_error(solve, scenes.slipping_wheel())
+states(
+    "slipping-wheel",
+    "states",
+    scenes.slipping_wheel,
+    period=0.5,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 
 
 @check(
@@ -60,9 +64,15 @@ def rolls(solve: Solver) -> float:
     return float(np.max(np.abs(run.v[rolling, 0] + 0.3 * run.v[rolling, 2])))
 
 
-@check("sliding-block", "states", period=0.5, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
-def block(solve: Solver) -> float:
-    return state_error(solve, scenes.sliding_block())
+states(
+    "sliding-block",
+    "states",
+    scenes.sliding_block,
+    period=0.5,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 
 
 @check("sliding-block", "stops exactly", period=0.5, moreau=0.0, event_driven=0.0, located=0.0)
@@ -70,40 +80,37 @@ def block_stops(solve: Solver) -> float:
     return float(np.max(np.abs(solve(scenes.sliding_block()).v[-1])))
 
 
-@check(
+states(
     "slope-landing",
     "states: slides, then stops",
+    scenes.slope_landing,
     period=0.5,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def lands(solve: Solver) -> float:
-    return state_error(solve, scenes.slope_landing())
 
 
-@check(
+states(
     "slope-landing",
     "states: sticks as it lands",
+    lambda: scenes.slope_landing(mu=2.5),
     period=0.5,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def lands_and_sticks(solve: Solver) -> float:
-    return state_error(solve, scenes.slope_landing(mu=2.5))
 
 
-@check(
+states(
     "slope-landing",
     "states: slides for ever",
+    lambda: scenes.slope_landing(mu=0.2),
     period=0.5,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def lands_and_slides(solve: Solver) -> float:
-    return state_error(solve, scenes.slope_landing(mu=0.2))
 
 
 BRIEF = 1e-6  # after which the velocities are looked at [s]

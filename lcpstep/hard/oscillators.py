@@ -8,20 +8,18 @@ import numpy as np
 
 from lagrangian import scenes
 from lagrangian.scenes.chain import ChainMotion
-from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error, states
 from lcpstep.trajectory import Kind
 
-
-@check(
+states(
     "impact-oscillator",
     "states, T = 100 s",
+    scenes.impact_oscillator,
     period=math.pi,
     event_driven=1e-10,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def impacts(solve: Solver) -> float:
-    return state_error(solve, scenes.impact_oscillator())
 
 
 @check("impact-oscillator", "number of impacts", period=math.pi, event_driven=0.0, located=0.0, moreau=0.0)
@@ -44,16 +42,15 @@ def steps_of_any_size(solve: Solver) -> Found:
     return Found(worst, "errors " + " ".join(note))
 
 
-@check(
+states(
     "sticking-oscillator",
     "states through chattering and sticking",
+    scenes.sticking_oscillator,
     period=6.28,
     event_driven=1e-9,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def sticking(solve: Solver) -> float:
-    return state_error(solve, scenes.sticking_oscillator())
 
 
 @check("sticking-oscillator", "phase of the releases [rad]", period=6.28, event_driven=1e-9, located=4e-3)
@@ -63,16 +60,15 @@ def release(solve: Solver) -> float:
     return float(np.max(np.abs(phases - math.acos(0.25)))) if len(phases) == 3 else math.inf
 
 
-@check(
+states(
     "elastic-chain",
     "states, 10 springs",
+    lambda: scenes.elastic_chain(n=10),
     period=0.5,
     event_driven=1e-9,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def chain(solve: Solver) -> float:
-    return state_error(solve, scenes.elastic_chain(n=10))
 
 
 def _release_time(solve: Solver, n: int) -> float:

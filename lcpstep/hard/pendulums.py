@@ -16,35 +16,41 @@ from lagrangian.scenes.double_pendulum import (
 from lagrangian.scenes.pendulum import tension
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, sample_times, state_error
+from lcpstep.hard.check import (
+    FIRST_ORDER,
+    SECOND_ORDER,
+    Found,
+    Solver,
+    check,
+    sample_times,
+    states,
+)
 from lcpstep.trajectory import Kind
 
 SWING = 2.0  # period of pendulums of a metre [s]
 QUADRATURE = 8  # nodes for the impulse of a force
 
 
-@check(
+states(
     "pendulum-stop",
     "states, as an angle",
+    scenes.pendulum_stop,
     period=SWING,
     event_driven=1e-10,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def angle(solve: Solver) -> float:
-    return state_error(solve, scenes.pendulum_stop())
 
 
-@check(
+states(
     "pendulum-stop",
     "states, as a point on a rod",
+    lambda: scenes.pendulum_stop(form="rod"),
     period=SWING,
     event_driven=1e-10,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def rod(solve: Solver) -> float:
-    return state_error(solve, scenes.pendulum_stop(form="rod"))
 
 
 @check(
@@ -136,9 +142,9 @@ def double_impacts(solve: Solver) -> float:
     return float(np.max(np.abs(times - REFERENCE_IMPACTS)))
 
 
-@check("bowl", "states", period=SWING, event_driven=1e-9, located=SECOND_ORDER, moreau=FIRST_ORDER)
-def bowl(solve: Solver) -> float:
-    return state_error(solve, scenes.bowl())
+states(
+    "bowl", "states", scenes.bowl, period=SWING, event_driven=1e-9, located=SECOND_ORDER, moreau=FIRST_ORDER
+)
 
 
 @check("bowl", "gap while it slides", period=SWING, event_driven=1e-12, located=1e-12, moreau=FIRST_ORDER)
@@ -149,16 +155,15 @@ def bowl_gap(solve: Solver) -> float:
     return float(np.max(np.abs(1.0 - np.hypot(run.q[sliding, 0], run.q[sliding, 1]))))
 
 
-@check(
+states(
     "rocking-block",
     "states, angle alone",
+    scenes.rocking_block,
     period=0.6,
     event_driven=1e-9,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def rocking(solve: Solver) -> float:
-    return state_error(solve, scenes.rocking_block())
 
 
 @check(
@@ -179,11 +184,14 @@ def rocking_impacts(solve: Solver) -> float:
     return max(float(np.max(np.abs(log.time - times))), float(np.max(np.abs(log.after - after))))
 
 
-@check(
-    "rocking-block", "states, two corners with friction", period=0.6, event_driven=1e-9, moreau=FIRST_ORDER
+states(
+    "rocking-block",
+    "states, two corners with friction",
+    lambda: scenes.rocking_block(form="corners"),
+    period=0.6,
+    event_driven=1e-9,
+    moreau=FIRST_ORDER,
 )
-def rocking_corners(solve: Solver) -> float:
-    return state_error(solve, scenes.rocking_block(form="corners"))
 
 
 TURN = 2.0 * math.pi / 150.0  # of the crank [s]

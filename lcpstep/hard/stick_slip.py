@@ -11,7 +11,7 @@ from lagrangian import Scene, scenes
 from lagrangian.scenes.belts import shaken_arc, stick_slip_period
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, states
 from lcpstep.hard.work import unbalanced
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -54,21 +54,26 @@ def begins_to_roll(solve: Solver) -> float:
     return abs(float(found[0]) - slip_time(1.0, 0.2, 0.5, 9.81)) if len(found) == 1 else math.inf
 
 
-@check("mass-on-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
-def belt(solve: Solver) -> float:
-    return state_error(solve, scenes.mass_on_belt())
-
-
-@check(
+states(
     "mass-on-belt",
-    "states, from far off",
+    "states",
+    scenes.mass_on_belt,
     period=TURN,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def belt_from_afar(solve: Solver) -> float:
-    return state_error(solve, scenes.mass_on_belt(belt=0.5, mu=0.1, x0=-2.5, v0=0.9))
+
+
+states(
+    "mass-on-belt",
+    "states, from far off",
+    lambda: scenes.mass_on_belt(belt=0.5, mu=0.1, x0=-2.5, v0=0.9),
+    period=TURN,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 
 
 @check(
@@ -85,9 +90,9 @@ def carried(solve: Solver) -> float:
     return float(np.max(np.abs(run.v[:, 0] - 0.2)))
 
 
-@check("stick-slip-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10)
-def sticks_and_slips(solve: Solver) -> float:
-    return state_error(solve, scenes.stick_slip_belt())
+states(
+    "stick-slip-belt", "states", scenes.stick_slip_belt, period=TURN, moreau=FIRST_ORDER, event_driven=1e-10
+)
 
 
 @check("stick-slip-belt", "period of the orbit", period=TURN, event_driven=1e-11)
@@ -121,11 +126,15 @@ def slip_and_ride(belt: float, mu: float, mu_s: float, decay: float) -> float:
     return float(done.t_events[0][0] + (mu_s - done.y_events[0][0][0]) / belt)
 
 
-@check(
-    "mass-on-shaken-belt", "states", period=TURN, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER
+states(
+    "mass-on-shaken-belt",
+    "states",
+    scenes.mass_on_shaken_belt,
+    period=TURN,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
 )
-def shaken(solve: Solver) -> float:
-    return state_error(solve, scenes.mass_on_shaken_belt())
 
 
 @check(
@@ -151,33 +160,37 @@ def shaken_amplitude(solve: Solver) -> float:
     return float(np.max(np.abs(run.q[:, 0] - float(x(np.array([t]))[0]))))
 
 
-@check("superball", "states", period=0.64, moreau=FIRST_ORDER, event_driven=1e-10, located=SECOND_ORDER)
-def superball(solve: Solver) -> float:
-    return state_error(solve, scenes.superball())
+states(
+    "superball",
+    "states",
+    scenes.superball,
+    period=0.64,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
+)
 
 
-@check(
+states(
     "superball",
     "states, to and fro over one place",
+    lambda: scenes.superball(spin=1.0 / (0.4 * 0.03)),
     period=0.64,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def to_and_fro(solve: Solver) -> float:
-    return state_error(solve, scenes.superball(spin=1.0 / (0.4 * 0.03)))
 
 
-@check(
+states(
     "superball",
     "states, sliding through its impacts",
+    lambda: scenes.superball(v0=3.0, mu=0.1),
     period=0.64,
     moreau=FIRST_ORDER,
     event_driven=1e-10,
     located=SECOND_ORDER,
 )
-def slides_through(solve: Solver) -> float:
-    return state_error(solve, scenes.superball(v0=3.0, mu=0.1))
 
 
 @check(

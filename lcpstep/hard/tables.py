@@ -9,7 +9,7 @@ import numpy as np
 
 from lagrangian import scenes
 from lagrangian.scenes.table import orbit_trace
-from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error
+from lcpstep.hard.check import FIRST_ORDER, SECOND_ORDER, Found, Solver, check, state_error, states
 from lcpstep.trajectory import Kind
 
 ORBIT, CHATTER = 2.0 * math.pi / 35.0, 2.0 * math.pi / 40.0  # periods of the tables [s]
@@ -17,16 +17,15 @@ NUDGE_Q, NUDGE_V = 1e-6, 1e-5  # of the state, for differences that give the mul
 TURNS = (0.3, 0.3 + 1e-13, 0.25, 1.0 / 3.0, 0.3141592653589793)
 
 
-@check(
+states(
     "ball-on-table",
     "states on the periodic orbit",
+    scenes.ball_on_table,
     period=ORBIT,
     event_driven=1e-10,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def orbit(solve: Solver) -> float:
-    return state_error(solve, scenes.ball_on_table())
 
 
 @check(
@@ -53,16 +52,15 @@ def multipliers(solve: Solver) -> float:
     return float(max(abs(np.trace(J) - trace), abs(np.linalg.det(J) - 0.25)))
 
 
-@check(
+states(
     "chattering-table",
     "states",
+    scenes.chattering_table,
     period=CHATTER,
     event_driven=1e-10,
     located=SECOND_ORDER,
     moreau=FIRST_ORDER,
 )
-def chatter(solve: Solver) -> float:
-    return state_error(solve, scenes.chattering_table())
 
 
 @check("chattering-table", "phase of the releases [rad]", period=CHATTER, event_driven=1e-10, located=4e-3)

@@ -8,8 +8,9 @@
 
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.event import EventMap
-from lcpstep.maps.impact import ImpactMap, NoReturn
+from lcpstep.maps.impact import ImpactMap
 from lcpstep.maps.iteration import iterate
+from lcpstep.maps.phase import NoReturn
 from lcpstep.maps.sections import Sections, sections
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.maps.switch import SwitchMap

@@ -11,7 +11,6 @@ in the terms of `events.friction.tangent`. Sources as there.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -22,7 +21,7 @@ from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
 from lcpstep.events.friction.tangent import Walk
-from lcpstep.maps.impact import TWO_PI, NoReturn
+from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
@@ -77,14 +76,12 @@ class EventMap:
             )
         if not set(self.cyclic) <= set(range(self.scene.n_q)):
             raise ValueError(f"cyclic: expected coordinates below {self.scene.n_q}, got {self.cyclic!r}")
-        span = self.scene.t_span[1] - self.scene.t_span[0]
-        limit = 20.0 * span if self.limit is None else checks.positive("limit", self.limit)
-        object.__setattr__(self, "limit", limit)
+        object.__setattr__(self, "limit", limit_of(self.scene, self.limit))
 
     @property
     def driven(self) -> bool:
         """Whether points begin with the phase of the forcing."""
-        return math.isfinite(self.scene.period)
+        return is_driven(self.scene)
 
     @property
     def columns(self) -> list[int]:
@@ -113,7 +110,7 @@ class EventMap:
     def next(self, x: ArrayLike) -> Return:
         """The next event with the motion that leads there."""
         x = checks.array("x", x, (self.driven + len(self.columns),))
-        t = (x[0] % TWO_PI) / TWO_PI * self.scene.period if self.driven else 0.0
+        t = time_of(x[0], self.scene) if self.driven else 0.0
         state = np.concatenate([self.scene.q0, self.scene.v0]).astype(float)
         state[self.columns] = x[self.driven :]
         return self.found(t, state)
@@ -121,13 +118,13 @@ class EventMap:
     def point(self, back: Return) -> Array:
         """The point of a return."""
         x = back.state[self.columns]
-        return np.append(TWO_PI * (back.time / self.scene.period % 1.0), x) if self.driven else x
+        return np.append(phase_of(back.time, self.scene), x) if self.driven else x
 
     def found(self, t: float, state: Array) -> Return:
         """The first event after the start, looked for in growing spans; the run ends with it."""
         limit = float(self.limit or 0.0)
-        wait = min(limit, self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
-        while True:
+        first = min(self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
+        for wait in waits(first, limit):
             run = simulate(self.started(state, (t, t + wait)), self.method, keep="impacts")
             log = run.impacts
             of_kind = (log.kind == Kind[self.kind]) & (log.contact == self.contact)
@@ -138,9 +135,7 @@ class EventMap:
                 return Return(np.concatenate([run.q[row], run.v[row]]), time, t, run)
             if run.status != Status.DONE:
                 raise LcpStepError(f"the motion from x = {state.tolist()} ended early: {run.message}")
-            if wait >= limit:
-                raise NoReturn(state, limit, f"{self.kind} of contact {self.contact}")
-            wait = min(2.0 * wait, limit)
+        raise NoReturn(state, limit, f"{self.kind} of contact {self.contact}")
 
     def started(self, state: Array, span: tuple[float, float]) -> Scene:
         """The scene from this state on."""
@@ -155,8 +150,4 @@ class EventMap:
         inner = DP[np.ix_(shown, shown)]
         if not self.driven:
             return np.asarray(inner)
-        rate = TWO_PI / self.scene.period  # a later start is one from a state that lies back along the motion
-        return np.block([
-            [np.atleast_2d(-t_x @ F_start), rate * t_x[None, shown]],
-            [-(DP @ F_start)[shown, None] / rate, inner],
-        ])  # fmt: skip
+        return with_phase(self.scene, inner, t_x[shown], float(t_x @ F_start), (DP @ F_start)[shown])

@@ -15,19 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.local import Local
+from lcpstep.maps.phase import NoReturn, phase_of, time_of, waits
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
-TWO_PI = 2.0 * math.pi
-
-
-class NoReturn(LcpStepError):
-    """A motion that did not come back to its section within the time limit; the point is in `x`."""
-
-    def __init__(self, x: Array, limit: float, event: str = "impact") -> None:
-        super().__init__(f"no {event} within {limit:g} s after the one at x = {x.tolist()}")
-        self.x = x
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,22 +65,19 @@ class ImpactMap:
         if not self.scene.gap(t, q, v)[1][0] < 0.0:
             raise ValueError(f"x: expected an impact, a negative gap velocity, got {x.tolist()}")
         # The impact at x is the first event of the run; the one after it is looked for in growing spans.
-        wait, longest = self.scene.period, self.limit * self.scene.period
-        while True:
-            wait = min(wait, longest)
+        longest = self.limit * self.scene.period
+        for wait in waits(self.scene.period, longest):
             run = simulate(replace(self.scene, q0=q, v0=v, t_span=(t, t + wait)), self.method, keep="impacts")
             if run.status != Status.DONE:
                 raise LcpStepError(f"the motion from x = {x.tolist()} ended early: {run.message}")
             hits = np.flatnonzero(run.impacts.kind == Kind.IMPACT)
             if len(hits) > 1:
                 return self._point(run, int(hits[1]))
-            if wait == longest:
-                raise NoReturn(x, longest)
-            wait *= 2.0
+        raise NoReturn(x, longest)
 
     def state(self, x: Array) -> tuple[float, Array, Array]:
         """Time [s], coordinates and velocities just before the impact at x."""
-        t = (x[0] % TWO_PI) / TWO_PI * self.scene.period
+        t = time_of(x[0], self.scene)
         if self.scene.n_q > 1:
             return t, x[1 : 1 + self.scene.n_q], x[1 + self.scene.n_q :]
         q, slope = self._on_surface(t)
@@ -112,7 +101,7 @@ class ImpactMap:
 
     def _point(self, run: Trajectory, row: int) -> Array:
         event = run.impacts[row]
-        phase = TWO_PI * (event.time / self.scene.period % 1.0)
+        phase = phase_of(event.time, self.scene)
         if self.scene.n_q == 1:
             return np.array([phase, event.before])
         kept = int(np.searchsorted(run.t, event.time))

@@ -12,7 +12,6 @@ Systems (Springer 2004), chapter 7.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -26,8 +25,8 @@ from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
-from lcpstep.maps.impact import TWO_PI, NoReturn
 from lcpstep.maps.modes import told
+from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
@@ -74,14 +73,12 @@ class SwitchMap:
             )
         if self.mode not in self.scene.system.names:
             raise UnknownName(f"mode of {self.scene.name}", self.mode, self.scene.system.names)
-        span = self.scene.t_span[1] - self.scene.t_span[0]
-        limit = 20.0 * span if self.limit is None else checks.positive("limit", self.limit)
-        object.__setattr__(self, "limit", limit)
+        object.__setattr__(self, "limit", limit_of(self.scene, self.limit))
 
     @property
     def driven(self) -> bool:
         """Whether points begin with the phase of the forcing."""
-        return math.isfinite(self.scene.period)
+        return is_driven(self.scene)
 
     def __call__(self, x: ArrayLike) -> Array:
         """The next entry; NoReturn where there is none within the limit."""
@@ -98,13 +95,13 @@ class SwitchMap:
     def next(self, x: ArrayLike) -> Return:
         """The next entry with the motion that leads there."""
         x = checks.array("x", x, (self.driven + self.scene.n_x,))
-        t = (x[0] % TWO_PI) / TWO_PI * self.scene.period if self.driven else 0.0
+        t = time_of(x[0], self.scene) if self.driven else 0.0
         return self._found(self.scene.started(x[self.driven :], self.mode, (t, t + 1.0)), t)
 
     def _found(self, scene: HybridScene, t: float) -> Return:
         limit = float(self.limit or 0.0)
-        wait = min(limit, self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
-        while True:
+        first = min(self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
+        for wait in waits(first, limit):
             one = scene.started(scene.x0, scene.mode, (t, t + wait))
             run = simulate(one, self.method, keep="impacts")
             log, index = log_of(run), self.scene.system.names.index(self.mode)
@@ -115,9 +112,7 @@ class SwitchMap:
                 raise LcpStepError(
                     f"the motion from x = {np.asarray(scene.x0).tolist()} ended early: {run.message}"
                 )
-            if wait >= limit:
-                raise NoReturn(np.asarray(scene.x0), limit, f"entry into mode {self.mode!r}")
-            wait = min(2.0 * wait, limit)
+        raise NoReturn(np.asarray(scene.x0), limit, f"entry into mode {self.mode!r}")
 
     def _return(self, run: HybridTrajectory, log: Array, last: int, t: float) -> Return:
         first = last
@@ -125,7 +120,7 @@ class SwitchMap:
             first -= 1
         point = log[last, SWITCH_LEAD + self.scene.n_x :].copy()
         if self.driven:
-            point = np.append(TWO_PI * (log[last, 0] / self.scene.period % 1.0), point)
+            point = np.append(phase_of(log[last, 0], self.scene), point)
         return Return(point, float(log[last, 0] - t), run, log, first, last)
 
     def jacobian(self, x: ArrayLike) -> Array:
@@ -151,8 +146,4 @@ class SwitchMap:
         DP = after + np.outer(F_after, t_x)
         if not self.driven:
             return np.asarray(DP)
-        rate = TWO_PI / scene.period  # a later start is one from a state that lies back along the motion
-        return np.block([
-            [np.atleast_2d(-t_x @ F_start), rate * t_x[None, :]],
-            [-(DP @ F_start)[:, None] / rate, DP],
-        ])  # fmt: skip
+        return with_phase(scene, DP, t_x, float(t_x @ F_start), DP @ F_start)

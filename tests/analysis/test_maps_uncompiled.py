@@ -2,8 +2,7 @@
 
 import pytest
 
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 PROGRAM = """
 from dataclasses import fields
@@ -29,9 +28,8 @@ WAYS = {
 
 @pytest.mark.parametrize("way", WAYS)
 def test_periods_are_the_same_uncompiled(tmp_path, way):
-    copy_without_what_is_built(tmp_path)
     program = PROGRAM
     for name, value in zip(("method", "n", "tangents", "targets"), WAYS[way], strict=True):
         program = program.replace("{" + name + "}", str(value))
-    built, uncompiled = python(program), python(program, cwd=tmp_path, PYTHONPATH=str(tmp_path))
-    assert built == uncompiled
+    built, plain = both_ways(tmp_path, program)
+    assert built == plain

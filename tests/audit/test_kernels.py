@@ -14,9 +14,8 @@ from lcpstep.audit.curves import Curve, clear_curves
 from lcpstep.audit.motion import basis, through
 from lcpstep.audit.pieces import Pieces
 from lcpstep.kernels.function import Function
-from tests.processes import python
 from tests.turns.test_burrs import oscillator
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 NOTHING = np.zeros(0)
 
@@ -160,9 +159,8 @@ for scene, method in (
 
 @pytest.mark.slow
 def test_kernels_say_the_same_uncompiled(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    built, uncompiled = python(PROGRAM), python(PROGRAM, cwd=tmp_path, PYTHONPATH=str(tmp_path))
-    assert built == uncompiled
+    built, plain = both_ways(tmp_path, PROGRAM)
+    assert built == plain
 
 
 def test_the_audit_of_a_run_by_steps_and_by_events_agree():

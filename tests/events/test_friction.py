@@ -21,8 +21,7 @@ from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
 from lcpstep import energy as energy_balance
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 G0 = 9.81
 
@@ -361,18 +360,15 @@ def test_the_energy_that_friction_takes_never_comes_back():
 
 
 PROGRAM = """
-import cython, sys
 from lagrangian import scenes
 from lcpstep import EventDriven, simulate
 
 for scene in (scenes.coulomb_oscillator(t_end=4.0), scenes.woodpecker(t_end=0.04)):
     run = simulate(scene, EventDriven(rtol=1e-7, atol=1e-7), keep=1)
     print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
-print(cython.compiled, file=sys.stderr)
 """
 
 
 def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    built, plain = python(PROGRAM), python(PROGRAM, cwd=tmp_path, PYTHONPATH=str(tmp_path))
+    built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

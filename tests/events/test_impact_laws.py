@@ -223,13 +223,10 @@ def test_the_fastest_strikes_first_and_equal_ones_by_number():
 
 
 PROGRAM = """
-import sys
 import numpy as np
 from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, simulate
-from lcpstep.kernels import energetic
 
-print(energetic.__file__)
 def weak(t, q, u, p, out):
     out[0], out[1] = p[0] / (1.0 + abs(u[0])), p[0]
 

@@ -1,10 +1,8 @@
 """The event loop's kernels as plain Python give what they give when built."""
 
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 PROGRAM = """
-import cython, sys
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, simulate
 
@@ -35,11 +33,9 @@ beads = Scene(
 for scene in (ball, pendulum, beads):
     run = simulate(scene, EventDriven(rtol=1e-7, atol=1e-7), keep=1)
     print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
-print(cython.compiled, file=sys.stderr)
 """
 
 
 def test_motions_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    said = python(PROGRAM, cwd=tmp_path, PYTHONPATH=str(tmp_path))
-    assert said == python(PROGRAM)
+    built, plain = both_ways(tmp_path, PROGRAM)
+    assert built == plain

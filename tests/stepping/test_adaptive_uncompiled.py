@@ -14,9 +14,7 @@ import hashlib
 import numpy as np
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, Moreau, simulate
-from lcpstep.stepping import step_control
 
-print(step_control.__file__)
 sticking = dataclasses.replace(scenes.sticking_oscillator(), t_span=(0.0, 6.0))
 table = dataclasses.replace(scenes.chattering_table(), t_span=(0.0, 0.5))
 K = 30.0 * (2.0 * np.eye(9) - np.eye(9, k=1) - np.eye(9, k=-1))

@@ -33,8 +33,7 @@ from tests.events.test_friction import (
     times,
     weight,
 )
-from tests.processes import python
-from tests.uncompiled import copy_without_what_is_built
+from tests.uncompiled import both_ways
 
 ORDERS = (2, 4)
 SPREAD = (1.0, 1.07, 1.13, 1.21)
@@ -461,7 +460,6 @@ def test_a_tolerance_that_no_step_meets_is_said():
 
 
 PROGRAM = """
-import cython, sys
 from lagrangian import scenes
 from lcpstep import Located, simulate
 
@@ -470,11 +468,9 @@ for order, tolerance in ((2, None), (4, None), (4, 1e-5)):
         method = Located(scene.t_span[1] / 50, order=order, tolerance=tolerance)
         run = simulate(scene, method, keep=1)
         print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
-print(cython.compiled, file=sys.stderr)
 """
 
 
 def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    copy_without_what_is_built(tmp_path)
-    built, plain = python(PROGRAM), python(PROGRAM, cwd=tmp_path, PYTHONPATH=str(tmp_path))
+    built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

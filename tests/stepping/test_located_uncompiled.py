@@ -8,9 +8,7 @@ import hashlib
 import numpy as np
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, simulate
-from lcpstep.stepping.pieces import loop
 
-print(loop.__file__)
 angles = np.array([0.1, 0.2, 0.3])
 planes = np.stack([-np.sin(angles), np.cos(angles)], axis=1)
 groove = Scene(

@@ -14,8 +14,9 @@ from lcpstep.pointers cimport abs, min
 cdef Py_ssize_t DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
-@cython.locals(by_force=bint)
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef bint of_force(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef Py_ssize_t arrive(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil
 cdef void meet(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil

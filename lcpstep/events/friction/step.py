@@ -41,9 +41,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         if record.is_due(tally.steps):
             keep(s, record, s.clock.t0, s.y)
         return DONE
-    c = g // GUARDS
-    by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
-    if by_force:
+    if of_force(s, g):
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
@@ -51,11 +49,21 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     if tau > 0.0 and not finish_step(s, tau):
         return NOT_FINITE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
+    return arrive(s, g) if code == DONE else code
+
+
+def of_force(s: Rubbing, g: int) -> bool:
+    """Whether guard g tells of a force, that pulls or leaves its cone; the others tell of a gap or of sliding."""
+    mode = s.mode[g // GUARDS]
+    return mode != OPEN and (g % GUARDS == 0 or mode == STICKS)
+
+
+def arrive(s: Rubbing, g: int) -> int:
+    """The motion has come to the event of guard g: what comes next into `next`. A status."""
+    c = g // GUARDS
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    if code != DONE:
-        return code
-    if by_force:
+    if of_force(s, g):
         s.next = OBEY
     elif s.mode[c] == OPEN:
         meet(s, c)

@@ -4,7 +4,7 @@ from lcpstep.events.friction.held cimport count_impulses, hold_modes, project
 from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
 from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.state cimport GUARDS
-from lcpstep.events.friction.step cimport find_standing, meet, stop
+from lcpstep.events.friction.step cimport arrive, find_standing, of_force
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
@@ -13,10 +13,9 @@ from lcpstep.stepping.rubbing.found cimport NOWHERE, arm, first_event, locate, n
 from lcpstep.stepping.rubbing.paced cimport pace
 from lcpstep.stepping.rubbing.strides cimport Strides
 
-cdef Py_ssize_t OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 cdef double LOOK_AHEAD, FURTHER
 
-@cython.locals(by_force=bint)
 cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil
 cdef Py_ssize_t failed(Strides s) noexcept nogil

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import OBEY, OPEN, STICKS
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
@@ -13,7 +12,7 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event, store_dense
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS
-    from lcpstep.events.friction.step import find_standing, meet, stop
+    from lcpstep.events.friction.step import arrive, find_standing, of_force
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
@@ -56,24 +55,14 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     tau = locate(s, g, h)
     if tau == NOWHERE:
         return pass_by(s, record, s.found * h)
-    c = g // GUARDS
-    by_force = s.mode[c] != OPEN and (g % GUARDS == 0 or s.mode[c] == STICKS)
-    if by_force:
-        code = look_ahead(s, c, h, tau)
+    if of_force(s, g):
+        code = look_ahead(s, g // GUARDS, h, tau)
         if code != DONE:
             return code
         if tau > 0.0 and not s.step(t0, tau):
             return failed(s)
     take_over(s, record, border if tau >= h else min(s.clock.after(tau), border), tau)
-    if not measure(s, s.clock.t0, s.y):
-        return NOT_FINITE
-    if by_force:
-        s.next = OBEY
-    elif s.mode[c] == OPEN:
-        meet(s, c)
-    else:
-        stop(s, c)
-    return DONE
+    return arrive(s, g)
 
 
 def attempt(s: Strides, t: float, h: float) -> int:
