@@ -9,7 +9,8 @@ import pytest
 from benchmarks.judge.case import judged
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
-from benchmarks.judge.runs import WAYS
+from benchmarks.judge.runs import WAYS, run
+from lcpstep import Status
 from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
 from tests.judge.open import OPEN
@@ -26,6 +27,13 @@ def new(findings):
 def test_what_was_wrong_once_is_right(name):
     d, methods = (KEPT | LATELY)[name]
     assert judged(d, methods, share=1.0).findings == []
+
+
+def test_a_force_that_begins_at_zero_lets_go_once():
+    """Of so short steps, at its beginning, nothing but rounding would bring the contact back."""
+    motion = run(KEPT["touched at the very beginning of a step"][0], "located-4-tolerance").motion
+    assert motion.status == Status.DONE
+    assert len(motion.impacts) < 10
 
 
 def judge(numbers, seed, methods, share):

@@ -16,8 +16,9 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN
+    from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
     from lcpstep.stepping.pieces.contact_forces import pulls
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.polynomial import NODES, WEIGHTS, Polynomial, contacts_at, force_at
     from lcpstep.stepping.pieces.state import Plan, Work
 
@@ -114,6 +115,8 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
             if hop and z.gap_to[c] <= plan.slack:  # finer than positions tell
                 mean, _ = hop_at(m, plan, w, z, t, b, c)
                 z.gap_to[c] = b * mean
+                if w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
+                    continue  # what has been let go a moment ago
             low = b
             if z.gap_to[c] > 0.0:
                 if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
