@@ -17,13 +17,14 @@ from lcpstep.audit.limits import AT_EVENT, BESIDE, ERRORS, NEGLIGIBLE
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.result import Audit, Found, Window
 from lcpstep.audit.sampled import sampled
-from lcpstep.audit.windows import Windows, joined, judged
+from lcpstep.audit.windows import Seen, Windows, joined, judged
 from lcpstep.intervals import NotEnclosed
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 PORTION = 1 << 15  # windows at a time
 SMALLEST = 1e-10  # of the scale of times: windows are not halved any more
+COARSE = 1e-5  # of it: nor are those that hold nothing below zero and have an end without a certificate
 MOST = 16  # windows that one becomes, at most, on average
 LEAST = 20_000  # windows that any portion may become
 CLOSER = 10  # halvings of the window of an event that is to be taken
@@ -144,10 +145,11 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
             inside = float(w.a[i] if s.at_a[i] < -s.own[i] and not w.first[i] else w.b[i])
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
-        end = left & ((h < SMALLEST * p.scale) | (looked > most))
+        vain = left & in_vain(p, w, s, lower)
+        end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
         if np.any(end):
-            near = (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
-            for which, why in (end & near, NARROW), (end & ~near, TOO_MANY):
+            narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
+            for which, why in (end & narrow, NARROW), (end & ~narrow, TOO_MANY):
                 if np.any(which):
                     tally.windows.append((w.chosen(which), lower[which], why, False))
         w = w.chosen(left & ~end).halved()
@@ -160,6 +162,20 @@ def at_event(p: Pieces, w: Windows, shallow: NDArray[np.bool_]) -> NDArray[np.bo
     apart = np.minimum(before, after)
     near = np.minimum(apart, p.to_event(w)) if p.problem.drift is not None else apart
     return np.asarray((apart < AT_EVENT * p.scale) | (shallow & (near < BESIDE * p.scale)))
+
+
+def in_vain(p: Pieces, w: Windows, s: Seen, lower: Array) -> NDArray[np.bool_]:
+    """Windows that hold no gap below minus its error, and whose parts have no certificate, or an end that is part of none."""
+    h, small = w.b - w.a, np.minimum(s.own, NEGLIGIBLE * p.largest)
+    lost = []
+    for x, g in (w.a, s.at_a), (w.b, s.at_b):
+        near = p.to_event(w._replace(a=x, b=x)) < BESIDE * p.scale
+        lost.append((g <= s.error) & ~(near & (g - s.own > -ERRORS * small)))
+    with np.errstate(all="ignore"):
+        most = np.maximum(s.at_a, s.at_b) + 0.125 * np.maximum(-s.least, 0.0) * h * h
+        none_missed = s.smooth & (lower + s.error >= -s.own)
+    whole = lost[0] & lost[1] & (most <= s.error)
+    return np.asarray(none_missed & (whole | ((lost[0] | lost[1]) & (h < COARSE * p.scale))))
 
 
 def look_at_samples(p: Pieces, w: Windows, tally: Tally) -> None:

@@ -39,7 +39,7 @@ cdef class Gap:
     cdef double* places
     cdef double* gaps
     cdef double* bends
-    cdef double place, bend, fourth, loose, length, error, small, moment, near, negligible
+    cdef double place, bend, fourth, loose, length, error, own, small, since, until, moment, near, negligible
     cdef bint first, last
     cdef void at(self, double tau) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
@@ -50,6 +50,7 @@ cdef bint open_between(
 ) noexcept nogil
 cdef bint shallow(Gap g, double g_a, double g_b, double h, double high) noexcept nogil
 cdef bint beside(Gap g, double a, double b, double time) noexcept nogil
+cdef bint near(Gap g, double a, double b) noexcept nogil
 @cython.locals(good=bint, begins=bint, ends=bint, first=bint, last=bint)
 cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b) noexcept nogil
 cdef bint between_corners(

@@ -114,7 +114,9 @@ class Gap:
     place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
-    error, small    of the gap; a gap below the second is as good as zero
+    error, own, small    of the gap: all of it, without what steps have added up; a gap below the third is as good as zero
+    since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
+        where events of other pieces do not matter
 
     Parameters
     ----------
@@ -136,7 +138,8 @@ class Gap:
         self.stack = np.zeros((4, DEEPEST + 2))
         self.times, self.places = doubles(self.stack[0]), doubles(self.stack[1])
         self.gaps, self.bends = doubles(self.stack[2]), doubles(self.stack[3])
-        self.place = self.bend = self.fourth = self.loose = self.error = self.small = self.length = 0.0
+        self.place = self.bend = self.fourth = self.loose = self.error = self.own = self.small = self.length = 0.0
+        self.since = self.until = inf
         self.first = self.last = False
         self.moment, self.near, self.negligible = limits
 
@@ -186,12 +189,17 @@ def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float) -> bool:
     if bent > abs(g_b - g_a):
         x = 0.5 - 0.5 * (g_b - g_a) / bent
         lowest = g_a + (g_b - g_a) * x - bent * x * (1.0 - x)
-    return lowest - g.error > -ERRORS * g.small
+    return lowest - g.own > -ERRORS * g.small
 
 
 def beside(g: Gap, a: float, b: float, time: float) -> bool:
     """Whether a window is as near as that to an event at an end of the piece."""
     return (g.first and b < time) or (g.last and g.length - a < time)
+
+
+def near(g: Gap, a: float, b: float) -> bool:
+    """Whether a window is beside an event, also one of other pieces."""
+    return beside(g, a, b, g.near) or b + g.since < g.near or g.length - a + g.until < g.near
 
 
 def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
@@ -217,8 +225,10 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
             high -= g.cells.low
             begins, ends = first and tau == a, last and k == 0
             good = open_between(gap, g.gaps[k], h, low, high, begins, ends, g.error)
-            if not good and beside(g, tau, g.times[k], g.near):
-                good = shallow(g, gap, g.gaps[k], h, high)
+            if not good and near(g, tau, g.times[k]):
+                good = shallow(g, gap, g.gaps[k], h, high) or open_between(
+                    gap, g.gaps[k], h, low, high, begins, ends, g.own
+                )
         if good or beside(g, tau, g.times[k], g.moment):
             tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
             n = k

@@ -14,7 +14,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.audit.clear import Cells, Gap, between_corners, open_between
     from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 ROUNDING = 1.1e-13  # of the numbers that a gap is made of
 SECOND = 1e-15  # of them, times how large the second differences' factor is
@@ -72,7 +72,7 @@ def differences(g: Curve, size: float) -> None:
 
 def clear_curves(
     g: Curve, t: Any, B: Any, G: Any, offset: Any, obstacle: Any, absolute: Any, relative: float,
-    touched: Any, skipped: Any, cuts: Any, found: Any,
+    drift: Any, touched: Any, skipped: Any, cuts: Any, found: Any,
 ) -> None:  # fmt: skip
     """Which pieces are certified, (m, n_c), into `found`; called from Python.
 
@@ -81,17 +81,23 @@ def clear_curves(
     t : (m + 1,);  B : (m, degree + 1, n_q)   the motion;  G, offset : of the contacts
     obstacle : (m + 1, n_c, 3)   s, s' and s'' at the states
     absolute : (m or 1, n_q), relative   errors of the positions
+    drift : (m or 0, n_q)   how much of the first steps have added up
     touched : (m + 1, n_c) uint8   whether an event of the run lies there;  skipped : (m, n_c) uint8
     cuts : (k,)   times at which the obstacle may have a corner
     """
     n, n_c, n_q, n_cuts, degree = len(found), len(offset), B.shape[2], len(cuts), g.degree
-    rows = 0 if len(absolute) == 1 else n_q
+    rows, drifts = 0 if len(absolute) == 1 else n_q, len(drift) > 0
+    events = np.full((2, n_c), -np.inf)
+    last, following, gone = doubles(events[0]), doubles(events[1]), doubles(drift)
     times, control, normal, height = doubles(t), doubles(B), doubles(G), doubles(offset)
     s, corner, off = doubles(obstacle), doubles(cuts), doubles(absolute)
     touch, left, out = small_numbers(touched), small_numbers(skipped), small_numbers(found)
     with cython.nogil:
         i = 0
         for k in range(n):
+            for c in range(n_c):
+                if touch[k * n_c + c] != 0:
+                    last[c] = times[k]
             if not times[k + 1] > times[k]:
                 continue
             while i < n_cuts and corner[i] <= times[k]:
@@ -107,11 +113,30 @@ def clear_curves(
                 g.error = relative * size
                 for j in range(n_q):
                     g.error += abs(normal[c * n_q + j]) * off[k * rows + j]
+                g.own = g.error
+                if drifts:
+                    for j in range(n_q):
+                        g.own -= abs(normal[c * n_q + j]) * gone[k * n_q + j]
                 g.first, g.last = touch[k * n_c + c] != 0, touch[(k + 1) * n_c + c] != 0
                 good = at_once(g, c, size, s[3 * (k * n_c + c)], s[3 * ((k + 1) * n_c + c)], whole)
                 if not good:
+                    if drifts:
+                        following[c] = later(times, touch, k + 1, n, n_c, c, following[c])
+                        g.since, g.until = times[k] - last[c], following[c] - times[k + 1]
                     good = between_corners(g, c, times[k], corner, i, n_cuts)
                 out[k * n_c + c] = 1 if good else 0
+
+
+def later(t: Doubles, touched: Any, k: int, n: int, n_c: int, c: int, found: float) -> float:
+    """The time of the first event of contact c at state k or after it; infinite if there is none.
+
+    found : what an earlier state was told
+    """
+    if found >= t[k]:
+        return found
+    while k <= n and touched[k * n_c + c] == 0:
+        k += 1
+    return t[k] if k <= n else inf
 
 
 def along(g: Curve, B: Doubles, G: Doubles, n_q: int, offset: float) -> float:
@@ -131,8 +156,10 @@ def along(g: Curve, B: Doubles, G: Doubles, n_q: int, offset: float) -> float:
 def at_once(g: Curve, c: int, size: float, s: float, s_b: float, whole: bool) -> bool:
     """Whether a piece is certified by its coefficients, and by the obstacle at its ends and its bounds."""
     d = g.degree
-    g.error += ROUNDING * (size + max(abs(s), abs(s_b)))
-    g.small = min(g.error, g.negligible)
+    rounding = ROUNDING * (size + max(abs(s), abs(s_b)))
+    g.error += rounding
+    g.own += rounding
+    g.small = min(g.own, g.negligible)
     least = g.x[0]
     for i in range(1, d + 1):
         least = min(least, g.x[i])

@@ -56,7 +56,10 @@ def by_curves(p: Any, o: Obstacle, found: Any) -> None:
     G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
     B = np.ascontiguousarray(motion.B)
     touched, kind, cuts = marks(p, o)
-    clear_curves(gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, touched, kind, cuts, found)
+    drift = np.zeros((0, p.scene.n_q)) if p.problem.drift is None else p.problem.drift
+    clear_curves(
+        gap, p.t, B, G, offset, sampled(o, p.t), absolute, relative, drift, touched, kind, cuts, found
+    )
 
 
 def by_groups(p: Any, problem: Curved, found: Any) -> None:

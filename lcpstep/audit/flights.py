@@ -110,7 +110,7 @@ def at_once(
     low, high = middle - bend, middle + bend
     size += g.forced + abs(g.height) + abs(q[0])
     g.error = ROUNDING * (abs(o.G) * size + abs(o.offset) + max(abs(s), abs(s_b)))
-    g.small = min(g.error, g.negligible)
+    g.own, g.small = g.error, min(g.error, g.negligible)
     place = o.offset + (o.G * y if o.G * y < o.G * y_b else o.G * y_b)
     if place - 0.125 * max(high, 0.0) * h * h - g.cells.whole_top[0] > g.error:
         return True

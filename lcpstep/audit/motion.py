@@ -42,10 +42,17 @@ def _nodes(degree: int) -> tuple[Array, Array]:
 
 def basis(x: Array, degree: int) -> Array:
     """Bernstein's polynomials at x, (..., degree + 1)."""
-    k = np.arange(degree + 1)
-    binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
-    x = np.asarray(x)[..., None]
-    return np.asarray(binomial * x**k * (1.0 - x) ** (degree - k))
+    x = np.asarray(x, dtype=float)
+    values = np.empty((*x.shape, degree + 1))
+    power = np.ones(x.shape)
+    for k in range(degree + 1):
+        values[..., k] = math.comb(degree, k) * power
+        power = power * x
+    power = np.ones(x.shape)
+    for k in range(degree, -1, -1):
+        values[..., k] *= power
+        power = power * (1.0 - x)
+    return values
 
 
 class Polynomials:

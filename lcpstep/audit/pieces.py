@@ -13,6 +13,7 @@ from lcpstep.audit.curved import Curved
 from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
+from lcpstep.audit.sums import missed
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
 from lcpstep.events.flight.contact import CLOSED
@@ -135,15 +136,11 @@ def by_tolerance(method: Any) -> bool:
 
 
 def between(run: Trajectory, jumps: Mask) -> Array:
-    """How far the parabolas between kept states may be from the motion, (m, n_q): what their velocities miss."""
-    h = np.diff(run.t)
-    with np.errstate(all="ignore"):
-        end = 2.0 * np.diff(run.q, axis=0) / h[:, None] - run.v[:-1]
-        missed = h[:, None] * np.abs(run.v[1:] - end)
-    smooth = np.where(jumps[1:, None] | ~np.isfinite(missed), 0.0, missed)
-    zero = np.zeros((1, run.q.shape[1]))
-    nearby = np.maximum(np.vstack([zero, smooth[:-1]]), np.vstack([smooth[1:], zero]))
-    return np.asarray(0.5 * np.maximum(nearby, smooth))
+    """How far the parabolas between kept states may be from the motion, (m, n_q)."""
+    out = np.zeros((len(run.t) - 1, run.q.shape[1]))
+    t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
+    missed(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
+    return out
 
 
 def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:

@@ -96,7 +96,7 @@ def curve_of(x, touched=(0, 0)):
     found = np.zeros((1, 1), dtype=np.uint8)
     clear_curves(
         gap, np.array([0.0, 1.0]), np.ascontiguousarray(x)[None, :, None], np.ones((1, 1)), np.zeros(1),
-        np.zeros((2, 1, 3)), np.zeros((1, 1)), 0.0, np.array(touched, dtype=np.uint8)[:, None],
+        np.zeros((2, 1, 3)), np.zeros((1, 1)), 0.0, np.zeros((0, 1)), np.array(touched, dtype=np.uint8)[:, None],
         np.zeros((1, 1), dtype=np.uint8), NOTHING, found,
     )  # fmt: skip
     return bool(found[0, 0])

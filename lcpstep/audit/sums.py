@@ -1,0 +1,97 @@
+"""What steps of order two miss, piece by piece, and what that adds up to, as kernels: the sums of `drift`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, small_numbers
+    from lcpstep.pointers import Doubles, abs, inf, max, min
+
+PLACE, SPEED = 1.0 / 6.0, 1.0 / 12.0
+
+
+def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
+    """How accelerations change from piece to piece, and these changes; of each piece the largest of it and its neighbours.
+
+    Parameters
+    ----------
+    t : (m + 1,);  v : (m + 1, n_q);  jumps : (m + 1,) uint8   states at which the velocity may have jumped
+    cuts : (k,)   corners: pieces that one touches are not compared with others
+    first, second : (m, n_q), zeros   found here;  size : (n_q,), zeros   the integral of |a|
+    """
+    n, n_q, n_cuts = len(first), v.shape[1], len(cuts)
+    times, speeds, corner, jump = doubles(t), doubles(v), doubles(cuts), small_numbers(jumps)
+    one, two, whole = doubles(first), doubles(second), doubles(size)
+    with cython.nogil:
+        for j in range(n_q):
+            i, a, turn, smooth, known = 0, 0.0, 0.0, False, False
+            for k in range(n):
+                last, turned, was, had = a, turn, smooth, known
+                h = times[k + 1] - times[k]
+                a = (speeds[(k + 1) * n_q + j] - speeds[k * n_q + j]) / h if h > 0.0 else inf
+                while i < n_cuts and corner[i] < times[k]:
+                    i += 1
+                cut = i < n_cuts and corner[i] <= times[k + 1]
+                smooth = a - a == 0.0 and jump[k + 1] == 0 and not cut
+                known = smooth and was
+                turn = a - last if known else 0.0
+                if smooth:
+                    whole[j] += h * abs(a)
+                one[k * n_q + j] = abs(turn)
+                if k > 0:
+                    one[(k - 1) * n_q + j] = max(one[(k - 1) * n_q + j], abs(turn))
+                    two[(k - 1) * n_q + j] = abs(turn - turned) if known and had else 0.0
+        beside(one, n, n_q, 1.0)
+        beside(two, n, n_q, 1.0)
+
+
+def beside(x: Doubles, n: int, n_q: int, share: float) -> None:
+    """The largest of each piece and its neighbours, (n, n_q), times a share, in its place."""
+    for j in range(n_q):
+        before = 0.0
+        for k in range(n):
+            own = x[k * n_q + j]
+            after = x[(k + 1) * n_q + j] if k + 1 < n else 0.0
+            x[k * n_q + j] = share * max(own, max(before, after))
+            before = own
+
+
+def add_up(t: Any, jumps: Any, first: Any, second: Any, rate: Any, gone: Any) -> None:
+    """How far the positions may be off in each piece, (m, n_q), into `gone`; see `drift`.
+
+    t, jumps, first, second : as of `changes`;  rate : (n_q,)   what holds the coordinates, 0 where nothing does
+    """
+    n, n_q = len(first), first.shape[1]
+    times, jump = doubles(t), small_numbers(jumps)
+    one, two, held, out = doubles(first), doubles(second), doubles(rate), doubles(gone)
+    with cython.nogil:
+        for j in range(n_q):
+            off = fast = moved = 0.0
+            for k in range(n):
+                if jump[k] != 0:
+                    off = fast = moved = 0.0
+                h = times[k + 1] - times[k]
+                off += PLACE * h * h * one[k * n_q + j]
+                fast += SPEED * h * two[k * n_q + j]
+                moved += h * fast
+                out[k * n_q + j] = off + (min(moved, fast / held[j]) if held[j] > 0.0 else moved)
+
+
+def missed(t: Any, q: Any, v: Any, jumps: Any, out: Any) -> None:
+    """How far the parabolas between states may be from the motion, (m, n_q): half of what their velocities miss."""
+    n, n_q = len(out), q.shape[1]
+    times, places, speeds, jump = doubles(t), doubles(q), doubles(v), small_numbers(jumps)
+    found = doubles(out)
+    with cython.nogil:
+        for k in range(n):
+            h = times[k + 1] - times[k]
+            for j in range(n_q):
+                i, x = k * n_q + j, 0.0
+                if h > 0.0 and jump[k + 1] == 0:
+                    end = 2.0 * (places[i + n_q] - places[i]) / h - speeds[i]
+                    x = h * abs(speeds[i + n_q] - end)
+                found[i] = x if x - x == 0.0 else 0.0
+        beside(found, n, n_q, 0.5)
