@@ -24,7 +24,7 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 PORTION = 1 << 15  # windows at a time
 SMALLEST = 1e-10  # of the scale of times: windows are not halved any more
-COARSE = 1e-5  # of it: nor are those that hold nothing below zero and have an end without a certificate
+COARSE = 1e-4  # of it: nor are those that hold nothing below zero and have an end without a certificate
 MOST = 16  # windows that one becomes, at most, on average
 LEAST = 20_000  # windows that any portion may become
 CLOSER = 10  # halvings of the window of an event that is to be taken
@@ -165,17 +165,21 @@ def at_event(p: Pieces, w: Windows, shallow: NDArray[np.bool_]) -> NDArray[np.bo
 
 
 def in_vain(p: Pieces, w: Windows, s: Seen, lower: Array) -> NDArray[np.bool_]:
-    """Windows that hold no gap below minus its error, and whose parts have no certificate, or an end that is part of none."""
+    """Windows that hold no gap below minus its error, and parts or ends of which no smaller one can certify."""
     h, small = w.b - w.a, np.minimum(s.own, NEGLIGIBLE * p.largest)
-    lost = []
-    for x, g in (w.a, s.at_a), (w.b, s.at_b):
-        near = p.to_event(w._replace(a=x, b=x)) < BESIDE * p.scale
-        lost.append((g <= s.error) & ~(near & (g - s.own > -ERRORS * small)))
     with np.errstate(all="ignore"):
         most = np.maximum(s.at_a, s.at_b) + 0.125 * np.maximum(-s.least, 0.0) * h * h
         none_missed = s.smooth & (lower + s.error >= -s.own)
-    whole = lost[0] & lost[1] & (most <= s.error)
-    return np.asarray(none_missed & (whole | ((lost[0] | lost[1]) & (h < COARSE * p.scale))))
+    lost = []
+    for x, g in (w.a, s.at_a), (w.b, s.at_b):
+        here = none_missed & (g <= s.error)
+        if np.any(here):
+            near = p.to_event(w._replace(a=x, b=x).chosen(here)) < BESIDE * p.scale
+            here[here] = ~(near & (g - s.own > -ERRORS * small)[here])
+        lost.append(here)
+    return np.asarray(
+        (lost[0] & lost[1] & (most <= s.error)) | ((lost[0] | lost[1]) & (h < COARSE * p.scale))
+    )
 
 
 def look_at_samples(p: Pieces, w: Windows, tally: Tally) -> None:

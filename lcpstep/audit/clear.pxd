@@ -5,7 +5,7 @@ from lcpstep.kernels.function cimport Function
 from lcpstep.pointers cimport abs, after, inf, max, min, whole
 
 cdef Py_ssize_t DEEPEST, MOST
-cdef double SLACK, ERRORS
+cdef double SLACK, ERRORS, TIMES
 
 
 @cython.final
@@ -22,8 +22,10 @@ cdef class Cells:
     cdef double* whole_top
     cdef double* whole_low
     cdef double* whole_high
+    cdef double* whole_fast
     cdef readonly double bottom, top, slow, low, high
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
+    @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
     cdef Py_ssize_t cell(self, double t) noexcept nogil
 
 
@@ -44,6 +46,7 @@ cdef class Gap:
     cdef void at(self, double tau) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
 
+cdef double late(double t, double speed) noexcept nogil
 @cython.locals(least=double)
 cdef bint open_between(
     double g_a, double g_b, double h, double low, double high, bint first, bint last, double error

@@ -17,7 +17,7 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.audit.limits import ERRORS
+from lcpstep.audit.limits import ERRORS, TIMES
 
 if not cython.compiled:
     from math import floor
@@ -26,7 +26,7 @@ if not cython.compiled:
     from lcpstep.kernels.function import Function
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
-DEEPEST, MOST = 10, 64  # halvings of a window in a row, and windows that one may become
+DEEPEST, MOST = 28, 64  # halvings of a window in a row, and windows that one may become
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 
@@ -37,7 +37,7 @@ class Cells:
     bottom, top     the lowest and highest place found for the window last asked for
     slow            its lowest speed;  low, high : its acceleration
     rough           whether it need not have one
-    whole_top, whole_low, whole_high, whole_rough   the same of all times
+    whole_top, whole_low, whole_high, whole_fast, whole_rough   the same of all times, and the largest speed
 
     Parameters
     ----------
@@ -58,10 +58,12 @@ class Cells:
         self.per = self.n / (self.arrays[0][-1] - self.arrays[0][0]) if self.given else 0.0
         self.bounds = np.concatenate(
             [self.arrays[2][0, ..., 0].max(axis=0), self.arrays[1][0, ..., 2].min(axis=0),
-             self.arrays[2][0, ..., 2].max(axis=0)]
+             self.arrays[2][0, ..., 2].max(axis=0),
+             np.maximum(-self.arrays[1][0, ..., 1].min(axis=0), self.arrays[2][0, ..., 1].max(axis=0))]
         )  # fmt: skip
         self.whole_top = doubles(self.bounds)
         self.whole_low, self.whole_high = after(self.whole_top, n_c), after(self.whole_top, 2 * n_c)
+        self.whole_fast = after(self.whole_top, 3 * n_c)
         self.whole_rough = bool(np.any(self.arrays[3]))
         self.bottom = self.top = self.slow = self.low = self.high = 0.0
         self.rough = False
@@ -101,11 +103,20 @@ class Cells:
     def cell(self, t: float) -> int:
         """The cell in which a time lies, or the next one to it."""
         i = whole(min(max((t - self.ends[0]) * self.per, 0.0), self.n - 1.0))
-        while i < self.n - 1 and self.ends[i + 1] <= t:
-            i += 1
-        while i > 0 and self.ends[i] > t:
-            i -= 1
-        return i
+        low, high = 0, self.n - 1
+        if self.ends[i] <= t:
+            low = i
+            if i < self.n - 1 and self.ends[i + 1] > t:
+                return i
+        else:
+            high = i
+        while low < high:
+            middle = (low + high + 1) // 2
+            if self.ends[middle] <= t:
+                low = middle
+            else:
+                high = middle - 1
+        return low
 
 
 class Gap:
@@ -114,7 +125,7 @@ class Gap:
     place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
-    error, own, small    of the gap: all of it, without what steps have added up; a gap below the third is as good as zero
+    error, own, small    of the gap: all of it; without what steps have added up; below the third it is as good as zero
     since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
         where events of other pieces do not matter
 
@@ -138,7 +149,9 @@ class Gap:
         self.stack = np.zeros((4, DEEPEST + 2))
         self.times, self.places = doubles(self.stack[0]), doubles(self.stack[1])
         self.gaps, self.bends = doubles(self.stack[2]), doubles(self.stack[3])
-        self.place = self.bend = self.fourth = self.loose = self.error = self.own = self.small = self.length = 0.0
+        self.place = self.bend = self.fourth = self.loose = self.error = self.own = self.small = (
+            self.length
+        ) = 0.0
         self.since = self.until = inf
         self.first = self.last = False
         self.moment, self.near, self.negligible = limits
@@ -156,6 +169,11 @@ class Gap:
             self.frame.fill(t, self.q, self.v, self.moving)
             total += self.G[c] * self.moving[0]
         return total
+
+
+def late(t: float, speed: float) -> float:
+    """What the rounding of its time makes of something that moves with this speed at most."""
+    return TIMES * abs(t) * speed if speed < inf else 0.0
 
 
 def open_between(

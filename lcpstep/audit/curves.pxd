@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport Cells, Gap, between_corners, open_between
+from lcpstep.audit.clear cimport Cells, Gap, between_corners, late, open_between
 from lcpstep.kernels.function cimport Function
 from lcpstep.pointers cimport abs, after, inf, max, min
 
@@ -27,7 +27,7 @@ cdef double later(
     double* t, unsigned char* touched, Py_ssize_t k, Py_ssize_t n, Py_ssize_t n_c, Py_ssize_t c, double found
 ) noexcept nogil
 cdef double along(Curve g, double* B, double* G, Py_ssize_t n_q, double offset) noexcept nogil
-cdef bint at_once(Curve g, Py_ssize_t c, double size, double s, double s_b, bint whole) noexcept nogil
+cdef bint at_once(Curve g, Py_ssize_t c, double t, double size, double s, double s_b, bint whole) noexcept nogil
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, k=Py_ssize_t, x=double)
 cpdef object interpolate(object t, object q, object v, object inner, object begin, object inverse, object B)
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, width=Py_ssize_t, k=Py_ssize_t)

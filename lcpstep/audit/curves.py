@@ -12,7 +12,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import Cells, Gap, between_corners, open_between
+    from lcpstep.audit.clear import Cells, Gap, between_corners, late, open_between
     from lcpstep.kernels.function import Function
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
@@ -118,7 +118,9 @@ def clear_curves(
                     for j in range(n_q):
                         g.own -= abs(normal[c * n_q + j]) * gone[k * n_q + j]
                 g.first, g.last = touch[k * n_c + c] != 0, touch[(k + 1) * n_c + c] != 0
-                good = at_once(g, c, size, s[3 * (k * n_c + c)], s[3 * ((k + 1) * n_c + c)], whole)
+                good = at_once(
+                    g, c, times[k + 1], size, s[3 * (k * n_c + c)], s[3 * ((k + 1) * n_c + c)], whole
+                )
                 if not good:
                     if drifts:
                         following[c] = later(times, touch, k + 1, n, n_c, c, following[c])
@@ -153,10 +155,10 @@ def along(g: Curve, B: Doubles, G: Doubles, n_q: int, offset: float) -> float:
     return size
 
 
-def at_once(g: Curve, c: int, size: float, s: float, s_b: float, whole: bool) -> bool:
+def at_once(g: Curve, c: int, t: float, size: float, s: float, s_b: float, whole: bool) -> bool:
     """Whether a piece is certified by its coefficients, and by the obstacle at its ends and its bounds."""
     d = g.degree
-    rounding = ROUNDING * (size + max(abs(s), abs(s_b)))
+    rounding = ROUNDING * (size + max(abs(s), abs(s_b))) + late(t, g.cells.whole_fast[c])
     g.error += rounding
     g.own += rounding
     g.small = min(g.own, g.negligible)

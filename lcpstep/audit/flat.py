@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.audit.limits import TIMES
 from lcpstep.audit.motion import Oscillation, Polynomials
 from lcpstep.audit.obstacle import Obstacle
 from lcpstep.audit.windows import Seen, Windows
@@ -54,6 +55,7 @@ class Flat:
         size = self.motion.size(G, w.k) + np.abs(offset)
         at_a, at_b = y_a + offset, y_b + offset
         gap, speed, curve = along.place + Interval(offset, offset), along.speed, along.curve
+        fast = along.speed.size
         smooth = np.ones(len(w.a), dtype=bool)
         if self.obstacle.moves:
             s, branched = self.obstacle.bounds(w.c, w.a, w.b, rough=rough)
@@ -61,8 +63,10 @@ class Flat:
             s_a, s_b = self.obstacle.values(w.c, w.a), self.obstacle.values(w.c, w.b)
             size = size + np.maximum(np.abs(s_a), np.abs(s_b))
             at_a, at_b, smooth = at_a - s_a, at_b - s_b, ~branched
+            fast = fast + s.speed.size
         absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
         error = absolute + (self.error[1] + ROUNDING) * size
+        error = error + TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.nan_to_num(fast, posinf=0.0)
         computed = error if self.drift is None else error - np.sum(np.abs(G) * self.drift[w.k], axis=1)
         slow = ROUNDING * speed.size
         return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)

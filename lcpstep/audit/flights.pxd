@@ -1,7 +1,7 @@
 cimport cython
 from libc.math cimport cos, hypot, sin, sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, open_between
+from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
 from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
 from lcpstep.pointers cimport abs, after, max, min
 

@@ -18,7 +18,7 @@ if not cython.compiled:
     from math import cos, hypot, sin, sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import DEEPEST, MOST, Cells, Gap, beside, between_corners, open_between
+    from lcpstep.audit.clear import DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
     from lcpstep.events.flight.motion import Flight, absolute, leave_from
     from lcpstep.pointers import Doubles, abs, after, max, min
 
@@ -110,6 +110,7 @@ def at_once(
     low, high = middle - bend, middle + bend
     size += g.forced + abs(g.height) + abs(q[0])
     g.error = ROUNDING * (abs(o.G) * size + abs(o.offset) + max(abs(s), abs(s_b)))
+    g.error += late(max(abs(t), abs(t + h)), g.cells.whole_fast[0] + abs(o.G * o.Omega) * g.forced)
     g.own, g.small = g.error, min(g.error, g.negligible)
     place = o.offset + (o.G * y if o.G * y < o.G * y_b else o.G * y_b)
     if place - 0.125 * max(high, 0.0) * h * h - g.cells.whole_top[0] > g.error:

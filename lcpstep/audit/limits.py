@@ -4,3 +4,4 @@ AT_EVENT = 1e-7  # of the scale of times: what is so near to an event of the run
 BESIDE, ERRORS = 1e-3, 3.0  # so is what is near, where the gap is above minus so many errors
 NEGLIGIBLE = 1e-9  # of the largest gap: no error that is larger counts as one
 UNKNOWN, PRESSED = 1, 2  # kinds of pieces: the motion is not known; the contact is closed
+TIMES = 4e-16  # of the time: by how much the argument of what moves is rounded, at most

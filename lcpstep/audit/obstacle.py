@@ -25,6 +25,7 @@ from lcpstep.turns.source import OURS
 Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
 LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
+FINER = 64  # parts of a cell in which the kernels have found no certificate
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
 
@@ -112,7 +113,27 @@ class Obstacle:
         """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
         start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
         n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows // 16, LEAST_CELLS))
-        ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
+        return self._in_cells(np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts])))
+
+    def refine(self, t: Array) -> bool:
+        """Divide the cells in which these times lie, and those beside them; not if that makes too many."""
+        assert self.table is not None
+        ends = self.table.ends
+        if math.isfinite(self.period):
+            t = t - np.floor(t / self.period) * self.period
+        met = np.zeros(len(ends) + 1, dtype=bool)  # a cell more at both sides
+        met[np.searchsorted(ends[1:-1], t, side="right") + 1] = True
+        met[:-1] |= met[1:]
+        met[1:] |= met[:-1]
+        cells = np.flatnonzero(met[1:-1])
+        if len(cells) > MOST_CELLS // FINER:
+            return False
+        inner = ends[cells, None] + (ends[cells + 1] - ends[cells])[:, None] * np.arange(1, FINER) / FINER
+        self.table = self._in_cells(np.unique(np.concatenate([ends, inner.ravel()])))
+        return True
+
+    def _in_cells(self, ends: Array) -> Table:
+        start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
         ends = ends[(ends >= start) & (ends <= end)]
         lo, hi, branched = self._direct(ends[:-1], ends[1:])
         return Table(ends, lo, hi, branched & np.any(hi[..., 1] > lo[..., 1], axis=1))

@@ -14,7 +14,7 @@ PLACE, SPEED = 1.0 / 6.0, 1.0 / 12.0
 
 
 def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
-    """How accelerations change from piece to piece, and these changes; of each piece the largest of it and its neighbours.
+    """How accelerations change from piece to piece, and how that changes: the largest of a piece and its neighbours.
 
     Parameters
     ----------

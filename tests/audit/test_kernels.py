@@ -9,6 +9,7 @@ from benchmarks.audit.cases import bell, blind
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit, first
+from lcpstep.audit.certify import Tally, divided, examine
 from lcpstep.audit.clear import Cells
 from lcpstep.audit.curves import Curve, clear_curves
 from lcpstep.audit.motion import basis, through
@@ -151,6 +152,9 @@ for scene, method in (
     (scenes.elastic_gas(t_end=1.0), EventDriven()),
     (scenes.impact_oscillator(t_end=5.0), Located(1e-2, order=4)),
     (scenes.double_pendulum(t_end=1.0), EventDriven()),
+    (scenes.cam_follower(t_end=1.0), Located(1e-3)),
+    (scenes.chattering_table(t_end=2.0), Located(1e-3)),
+    (scenes.chattering_table(t_end=20.0), EventDriven()),
 ):
     found = first.look(Pieces(simulate(scene, method)))
     print(found.shape, found.sum(), sha256(found.tobytes()).hexdigest())
@@ -161,6 +165,35 @@ for scene, method in (
 def test_kernels_say_the_same_uncompiled(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain
+
+
+def test_kernels_know_what_steps_have_added_up_and_events_of_other_pieces():
+    p = Pieces(simulate(scenes.cam_follower(t_end=20.0), Located(1e-3)))
+    assert p.problem.drift.max() > 1e-3  # more than many gaps beside events
+    assert np.all(first.look(p)[~p.closed])
+
+
+def test_a_gap_within_its_error_is_not_halved_for_ever():
+    p = Pieces(simulate(scenes.pendulum_stop(t_end=200.0), EventDriven()))
+    left = ~first.look(p) & ~p.closed
+    seen, looked = p.problem.seen, []
+
+    def counted(w, *, rough):
+        looked.append(len(w.a))
+        return seen(w, rough=rough)
+
+    p.problem.seen, tally = counted, Tally()
+    examine(p, divided(p, *np.nonzero(left)), tally)
+    assert sum(looked) < 100 * np.sum(left)
+    assert tally.windows
+    assert not tally.found
+
+
+def test_late_releases_are_not_taken_for_events_that_were_missed():
+    """Of a table that moves fast, late: its phase is rounded, by more than a gap that has just opened."""
+    answer = audit(simulate(scenes.chattering_table(t_end=300.0), EventDriven()))
+    assert not answer.missed
+    assert answer.certified == answer.flights
 
 
 def test_the_audit_of_a_run_by_steps_and_by_events_agree():
