@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections import Counter
+from typing import Any
 
 import numpy as np
 
@@ -16,10 +17,16 @@ from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
 from lcpstep.trajectory import Trajectory
 
-CLEAR = {
-    EventDriven: 1e-10,
-    Located: 1e-4,
-}  # of a gap: whether it is met is no question of the method's error
+METHODS: list[tuple[str, dict[str, Any], float]] = [
+    (
+        "EventDriven",
+        {},
+        1e-10,
+    ),  # with the gap beyond which whether it is met is no question of the method's error
+    ("Located, order 2", {"h": 1e-3}, 1e-4),
+    ("EventDriven", {}, 1e-10),
+    ("Located, order 4", {"h": 1e-3, "order": 4}, 1e-7),
+]
 
 
 def struck(run: Trajectory) -> bool:
@@ -27,8 +34,11 @@ def struck(run: Trajectory) -> bool:
     return len(run.impacts) > 0
 
 
-def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> None:
+def judge(
+    case: Case, kind: type[EventDriven | Located], options: dict[str, Any], found: Counter[str]
+) -> None:
     """One case by one method: without looks where it turns fast, as it is, and audited."""
+    method = kind(**options)
     met = case.least < 0.0
     found["cases"] += 1
     with blind():
@@ -42,8 +52,7 @@ def judge(case: Case, method: EventDriven | Located, found: Counter[str]) -> Non
         found["reported, but none"] += 1
     own = simulate(case.scene, method)
     found["missed by default"] += met and not struck(own)
-    kind = type(method)
-    audited = simulate(case.scene, kind(audit=True) if kind is EventDriven else kind(1e-3, audit=True))
+    audited = simulate(case.scene, kind(**options, audit=True))
     lost = met and not struck(audited)
     found["missed with the audit on"] += lost
     found["of these listed"] += lost and bool(audited.audit.windows)
@@ -70,10 +79,11 @@ def main() -> None:
     for k in range(options.cases):
         kind = names[k % len(names)]
         case = KINDS[kind](kind, rng)
-        method = EventDriven() if k // len(names) % 4 else Located(1e-3)
-        if abs(case.least) < CLEAR[type(method)]:
+        name, own, clear = METHODS[k // len(names) % len(METHODS)]
+        if abs(case.least) < clear:
             continue
-        judge(case, method, counts.setdefault((kind, type(method).__name__), Counter()))
+        method = EventDriven if name == "EventDriven" else Located
+        judge(case, method, own, counts.setdefault((kind, name), Counter()))
     for (kind, name), found in counts.items():
         print(f"{kind}, {name}: {told(found)}")
     for name in sorted({name for _, name in counts}):

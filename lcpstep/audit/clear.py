@@ -125,7 +125,7 @@ class Gap:
     place, bend     of the computed motion at the time last asked for: offset + G y, and G y''
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
-    error, own, small    of the gap: all of it; without what steps have added up; below the third it is as good as zero
+    error, own, small    of the gap: all of it; without what steps have added up; below the third it is nothing
     since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
         where events of other pieces do not matter
 
