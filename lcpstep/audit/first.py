@@ -19,7 +19,6 @@ from lcpstep.intervals import NotEnclosed
 from lcpstep.kernels.function import Function
 
 NEVER = np.zeros(0)
-REFINED = 3  # times that bounds of what moves are made finer where pieces are left
 GROUPS, FEW = (64, 8), 32  # pieces that are looked at together; so many groups are worth it
 
 
@@ -30,10 +29,8 @@ def look(p: Any) -> NDArray[np.bool_]:
         by, o = by_flights if isinstance(p.motion, Oscillation) else by_curves, p.problem.obstacle
         met = sampled(o, p.t)
         try:
+            finer_at_releases(p, o)
             by(p, o, met, found)
-            for _ in range(REFINED):
-                if again(p, o, found):
-                    by(p, o, met, found)
         except NotEnclosed as why:
             p.problem.why = str(why)
     elif p.problem.bound is None:
@@ -41,15 +38,11 @@ def look(p: Any) -> NDArray[np.bool_]:
     return found.view(np.bool_)
 
 
-def again(p: Any, o: Obstacle, found: Any) -> bool:
-    """Whether it is worth a second look with finer bounds of what moves, at the ends of the pieces that are left."""
-    if o.table is None:
-        return False
-    asked = (found == 0) & (np.diff(p.t) > 0.0)[:, None] & ~p.unknown[:, None]
-    if not isinstance(p.motion, Oscillation):  # which alone knows what presses a contact
-        asked &= ~p.closed
-    k = np.flatnonzero(asked.any(axis=1))
-    return len(k) >= FEW and o.refine(np.concatenate([p.t[k], p.t[k + 1]]))
+def finer_at_releases(p: Any, o: Obstacle) -> None:
+    """Bounds of what moves as fine as an event lasts, where contacts open: gaps rise there with the cube of time."""
+    opens = (p.closed[:-1] & ~p.closed[1:]).any(axis=1)
+    if o.moves and isinstance(p.motion, Oscillation) and np.count_nonzero(opens) >= FEW:
+        o.refine(p.t[1:-1][opens], len(p.closed))
 
 
 def by_flights(p: Any, o: Obstacle, met: Any, found: Any) -> None:
@@ -58,7 +51,7 @@ def by_flights(p: Any, o: Obstacle, met: Any, found: Any) -> None:
     flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
     gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
     if gap.known:
-        touched, kind, cuts = marks(p, o, found)
+        touched, kind, cuts = marks(p, o)
         clear_flights(gap, p.t, p.run.q, motion.y, motion.w, met, touched, kind, cuts, found)
 
 
@@ -71,7 +64,7 @@ def by_curves(p: Any, o: Obstacle, met: Any, found: Any) -> None:
     gap = Curve(o.cells(len(found)), m.motion, none, o.state, limits(p), motion.degree)
     G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
     B = np.ascontiguousarray(motion.B)
-    touched, kind, cuts = marks(p, o, found)
+    touched, kind, cuts = marks(p, o)
     drift = np.zeros((0, p.scene.n_q)) if p.problem.drift is None else p.problem.drift
     clear_curves(gap, p.t, B, G, offset, met, absolute, relative, drift, touched, kind, cuts, found)
 
@@ -103,10 +96,9 @@ def sampled(o: Obstacle, t: Any) -> Any:
     return out
 
 
-def marks(p: Any, o: Obstacle, found: Any) -> tuple[Any, Any, Any]:
-    """Events of the run, what kind pieces are of, see `flights`, and corners; pieces found are not asked about."""
+def marks(p: Any, o: Obstacle) -> tuple[Any, Any, Any]:
+    """Events of the run, what kind pieces are of, see `flights`, and corners."""
     kind = np.where(p.unknown[:, None], UNKNOWN, PRESSED * p.closed.view(np.uint8)).astype(np.uint8)
-    kind[found != 0] = UNKNOWN
     return p.touched.view(np.uint8), kind, p.cuts if o.moves else NEVER
 
 

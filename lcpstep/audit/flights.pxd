@@ -28,5 +28,8 @@ cdef bint at_once(
 cdef double equation(Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)
-cdef bint pressed(Swing g, Flight s, double t0) noexcept nogil
+cdef bint pressed(Swing g, Flight s, double t0, double a, double b) noexcept nogil
+cdef bint pressed_between_corners(
+    Swing g, Flight s, double t0, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts
+) noexcept nogil
 cdef double driven(Flight s, double t) noexcept nogil

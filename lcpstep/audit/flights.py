@@ -80,7 +80,7 @@ def clear_flights(
             whole = i == n_cuts or corner[i] >= times[k + 1]
             g.first, g.last, g.length = touch[k] != 0, touch[k + 1] != 0, times[k + 1] - times[k]
             if left[k] == PRESSED:
-                out[k] = 1 if whole and pressed(g, g.s, times[k]) else 0
+                out[k] = 1 if pressed_between_corners(g, g.s, times[k], corner, i, n_cuts) else 0
                 continue
             good = at_once(
                 g, g.s, times[k], after(places, k), after(position, k), after(speed, k),
@@ -147,15 +147,32 @@ def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
     g.fourth = (1.0 + SLACK) * abs(s.G) * (size * s.w2 * s.w2 + g.forced * Omega2 * Omega2)
 
 
-def pressed(g: Swing, s: Flight, t0: float) -> bool:
-    """Whether a closed contact is pressed all the time: without force the gap would accelerate by rounding at most.
+def pressed_between_corners(g: Swing, s: Flight, t0: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
+    """Whether a closed contact is pressed in a piece that begins at t0, between one corner and the next.
+
+    i : the first of the cuts after t0
+    """
+    a = 0.0
+    while a < g.length:
+        b = g.length
+        if i < n_cuts and cuts[i] - t0 < b:
+            b = cuts[i] - t0
+            i += 1
+        if not pressed(g, s, t0, a, b):
+            return False
+        a = b
+    return True
+
+
+def pressed(g: Swing, s: Flight, t0: float, a: float, b: float) -> bool:
+    """Whether a closed contact is pressed from a to b: without force the gap would accelerate by rounding at most.
 
     alpha = G (f0 + F(t)) + w2 (offset - sigma) - 2 delta sigma' - sigma''
     """
     constant = s.G * s.f0 + s.w2 * s.offset
     forced = abs(s.G) * (abs(s.fc) + abs(s.fs))
-    tau, n, looked = 0.0, 1, 0
-    force, g.times[0], g.bends[0] = driven(s, t0), g.length, driven(s, t0 + g.length)
+    tau, n, looked = a, 1, 0
+    force, g.times[0], g.bends[0] = driven(s, t0 + a), b, driven(s, t0 + b)
     while n > 0:
         looked += 1
         k = n - 1

@@ -25,7 +25,7 @@ from lcpstep.turns.source import OURS
 Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
 LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
-FINER = 64  # parts of a cell in which the kernels have found no certificate
+LEVELS, FINER = 6, 8  # how often cells beside releases are divided, and in how many parts
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
 
@@ -81,7 +81,7 @@ class Obstacle:
     def cells(self, windows: int) -> Cells:
         """The same for kernels, in cells that are fine enough for so many windows of the span."""
         if self.moves and self.table is None:
-            self.table = self._table(windows)
+            self.table = self._in_cells(self._ends(windows))
         return Cells(self.table, self.n_c, self.period)
 
     def _direct(self, a: Array, b: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
@@ -109,32 +109,29 @@ class Obstacle:
                 lo += np.minimum(*scaled)
                 hi += np.maximum(*scaled)
 
-    def _table(self, windows: int) -> Table:
-        """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
+    def _ends(self, windows: int) -> Array:
         start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
         n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows // 16, LEAST_CELLS))
-        return self._in_cells(np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts])))
+        ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
+        return np.asarray(ends[(ends >= start) & (ends <= end)])
 
-    def refine(self, t: Array) -> bool:
-        """Divide the cells in which these times lie, and those beside them; not if that makes too many."""
-        assert self.table is not None
-        ends = self.table.ends
+    def refine(self, t: Array, windows: int) -> None:
+        """Cells that are finer and finer towards these times, unless that makes too many."""
+        ends = self._ends(windows)
         if math.isfinite(self.period):
             t = t - np.floor(t / self.period) * self.period
-        met = np.zeros(len(ends) + 1, dtype=bool)  # a cell more at both sides
-        met[np.searchsorted(ends[1:-1], t, side="right") + 1] = True
-        met[:-1] |= met[1:]
-        met[1:] |= met[:-1]
-        cells = np.flatnonzero(met[1:-1])
-        if len(cells) > MOST_CELLS // FINER:
-            return False
-        inner = ends[cells, None] + (ends[cells + 1] - ends[cells])[:, None] * np.arange(1, FINER) / FINER
-        self.table = self._in_cells(np.unique(np.concatenate([ends, inner.ravel()])))
-        return True
+        for _ in range(LEVELS):
+            met = np.zeros(len(ends) + 1, dtype=bool)  # a cell more at both sides
+            met[np.searchsorted(ends[1:-1], t, side="right") + 1] = True
+            cells = np.flatnonzero(met[1:-1] | met[2:] | met[:-2])
+            if len(ends) + len(cells) * FINER > MOST_CELLS:
+                break
+            inner = ends[cells, None] + np.diff(ends)[cells, None] * np.arange(1, FINER) / FINER
+            ends = np.unique(np.concatenate([ends, inner.ravel()]))
+        self.table = self._in_cells(ends)
 
     def _in_cells(self, ends: Array) -> Table:
-        start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
-        ends = ends[(ends >= start) & (ends <= end)]
+        """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
         lo, hi, branched = self._direct(ends[:-1], ends[1:])
         return Table(ends, lo, hi, branched & np.any(hi[..., 1] > lo[..., 1], axis=1))
 
