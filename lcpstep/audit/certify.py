@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.audit.first import look
+from lcpstep.audit.flat import Flat
 from lcpstep.audit.limits import AT_EVENT, BESIDE, ERRORS, NEGLIGIBLE
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.result import Audit, Found, Window
@@ -145,7 +146,9 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
             inside = float(w.a[i] if s.at_a[i] < -s.own[i] and not w.first[i] else w.b[i])
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
-        vain = left & in_vain(p, w, s, lower)
+        vain = left & (
+            in_vain(p, w, s, lower) if isinstance(p.problem, Flat) else False
+        )  # others: errors shrink
         end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
         if np.any(end):
             narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))

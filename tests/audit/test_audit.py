@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.audit.cases import KINDS, bell, blind, ground, ground_q, swing
+from benchmarks.audit.cases import KINDS, bell, blind, ground, ground_bias, ground_q, swing
 from lagrangian import Contacts, Scene, System, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
@@ -182,3 +182,14 @@ def test_what_is_no_truth_value_is_refused(method):
 def test_systems_with_modes_are_refused():
     with pytest.raises(LcpStepError, match=r"audit: .* does not treat systems with modes"):
         simulate(scenes.stick_slip_oscillator(), EventDriven(audit=True))
+
+
+def test_a_passage_whose_error_is_smaller_in_smaller_windows_is_looked_at_in_them():
+    """A bump of the ground is met by 5e-7 m; over windows as wide as the bump the error is taken for 1e-6 m."""
+    scene = Scene(
+        system=System(2, np.eye(2), swing),
+        contacts=Contacts(1, ground, ground_q, bias=ground_bias, restitution=0.8),
+        q0=[0.0, -0.60221211], v0=[1.0, -5.01609384], t_span=(0.0, 10.0),
+        p=[1.67251575, 1.0838349e-4, 8.79019849, 1.05],
+    )  # fmt: skip
+    assert len(simulate(scene, EventDriven(audit=True)).impacts) > 0
