@@ -121,14 +121,14 @@ def simulate(
 
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
-    begin = time.process_time()
+    begin = time.process_time() if error else 0.0
     if getattr(method, "audit", False):
         from lcpstep.audit import audited
 
         run = audited(method, scene, kept, report)
     else:
         run = method.run(scene, kept, report)
-    seconds = time.process_time() - begin
+    seconds = time.process_time() - begin if error else 0.0
     if fault() is not None:
         from lcpstep.model import culprit
 
