@@ -21,7 +21,7 @@ from lcpstep.kernels.looks import turning
 from lcpstep.model import looked_at
 from lcpstep.turns.source import GOLDEN
 
-PER, LEAST, MOST = 8, 256, 2048  # evaluations of the forces per look, and how many looks there are
+PER, LEAST, MOST = 8, 32, 2048  # evaluations of the forces per look, and how many looks there are
 AROUND = np.array(
     [-2.0, -1.0, 2.0, 3.0]
 )  # steps after the state, besides its ends and the look, where the gap leaves the line through these

@@ -1,8 +1,8 @@
-"""Looks at a finished run that tell, in one pass, whether there is anything to ask of it.
+"""Looks at a finished run that tell, in one pass, whether there is anything to say of it.
 
-Each is a condition that holds wherever `lcpstep.room`, `lcpstep.depth`, `lcpstep.fast_gaps` or `lcpstep.resolution`
-have something to say, at the very states that these look at. A run is kept at times t (n,) in states q, v (n, n_q),
-contiguous.
+`lies_inside` and `highest` hold wherever `lcpstep.room`, `lcpstep.depth` or `lcpstep.resolution` have something to
+say, at the very states that these look at; `turning` is what `lcpstep.fast_gaps` says. A run is kept at times t (n,)
+in states q, v (n, n_q), contiguous.
 """
 
 from __future__ import annotations
