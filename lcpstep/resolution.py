@@ -28,7 +28,9 @@ def unresolved(run: Trajectory) -> str:
     h, bound = _explicit(run)
     if h == 0.0 or run.status != Status.DONE or len(run.t) == 0:
         return ""
-    from lcpstep.kernels.looks import highest  # not before it is asked for: that loads what compiles callbacks
+    from lcpstep.kernels.looks import (
+        highest,
+    )  # not before it is asked for: that loads what compiles callbacks
     from lcpstep.kernels.states import power
     from lcpstep.model import looked_at
 

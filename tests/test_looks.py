@@ -35,9 +35,7 @@ def test_what_lies_inside_is_what_the_gaps_say(name):
     k = np.unique(np.linspace(0, len(run.t) - 1, 64).astype(int))
     states = [(float(run.t[i]), run.q[i], run.v[i]) for i in k]
     g, way = gaps(run.scene, states), np.ptp(run.q[k], axis=0)
-    towards = [
-        -g[i, c] / (np.abs(normal(run.scene, c, states[i])) @ way) for i, c in np.argwhere(g < 0.0)
-    ]
+    towards = [-g[i, c] / (np.abs(normal(run.scene, c, states[i])) @ way) for i, c in np.argwhere(g < 0.0)]
     m = model(run.scene)
     for share, toward in ((-g.min() / np.linalg.norm(way), False), (max(towards, default=-1.0), True)):
         for factor, inside in ((0.999, share > 0.0), (1.001, False)):

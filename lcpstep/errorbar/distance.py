@@ -23,13 +23,13 @@ from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 99, 299  # breaks besides the events
+LEAST, MOST = 199, 599  # breaks besides the events
 GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
 JUMP = (
     10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
 )
 TINY = float(np.finfo(float).tiny)
-GRADES = 8  # times an interval after an event is halved towards it
+GRADES = 12  # times an interval after an event is halved towards it
 BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike

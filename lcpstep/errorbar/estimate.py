@@ -48,7 +48,12 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
             if c not in known:
                 known[c] = followed(c, scene, kept, seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
-        if known[group[0]] is None or not found or _reach(found) < reach or (_reach(found) == reach and clear):
+        if (
+            known[group[0]] is None
+            or not found
+            or _reach(found) < reach
+            or (_reach(found) == reach and clear)
+        ):
             continue
         bar, reach = against(run, every, found), _reach(found)
         clear = group[0].tells(run, bar)

@@ -113,7 +113,7 @@ def find_highest(
 def turning(
     m: Model, t: Any, q: Any, v: Any, steps: int, looks: int, golden: float, places: Any, limits: Any
 ) -> tuple[int, int]:
-    """The first of so many looks, spread over the run by the golden ratio, where a gap turns within a step, and which.
+    """The first of so many looks, spread by the golden ratio, where a gap turns within a step, and which gap.
 
     places : (k,)   between which it leaves its straight line, in steps after a look
     limits : NEAR, FASTER, PLAIN, LEAST_SHARE and ROUNDING of `lcpstep.fast_gaps`
