@@ -36,7 +36,7 @@ from lcpstep.trajectory import Trajectory
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 BEST = EventDriven(1e-13, 1e-13)
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
-FAR, FIRST_FAR = 0.03, 1e-3  # the same of event-driven runs that are tighter than usual
+FAR = 0.03  # the same of event-driven runs that are tighter than usual
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
@@ -85,9 +85,6 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
         pass
     order = 4 if scene.n_j == 0 else 2
     looks = Companion(Located(step / PIECES, order), measures=False)
-    if min(method.rtol, method.atol) * FIRST_FAR > BEST.rtol:
-        near = EventDriven(method.rtol * FIRST_FAR, method.atol * FIRST_FAR)
-        yield Companion(near, first=True), looks
     rtol, atol = (max(LEAST_TOLERANCE, min(BEST.rtol, x * FAR)) for x in (method.rtol, method.atol))
     yield Companion(EventDriven(rtol, atol)), looks
 
