@@ -7,8 +7,9 @@ called back from the kernels: the run is slower by that function alone.
 from __future__ import annotations
 
 import functools
+import threading
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -31,6 +32,7 @@ Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
 LARGEST_KEPT = 200  # coordinates of a system whose numbers stay with it
 KEPT: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()  # numbers of systems, which never change
+LATEST = threading.local()  # .scene, .model: the last one made in this thread, of few coordinates
 TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
 TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tangents stand for normals
@@ -50,7 +52,23 @@ def dense(name: str, matrix: Any) -> Array:
 
 def model(scene: Scene) -> kernels.Model:
     """The scene's model as kernels built ahead of time take it."""
-    return _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0]
+    return _latest(scene, _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0])
+
+
+def looked_at(scene: Scene) -> kernels.Model:
+    """A model to evaluate states of a scene with, between runs: that of the run just made, where it is of this scene.
+
+    The one in coordinates of its own (`carried`) sees other states.
+    """
+    if getattr(LATEST, "scene", None) is scene and not LATEST.model.carried:
+        return cast(kernels.Model, LATEST.model)
+    return model(scene)
+
+
+def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:
+    few = scene.n_q <= LARGEST_KEPT
+    LATEST.scene, LATEST.model = (scene, made) if few else (None, None)
+    return made
 
 
 def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
@@ -63,7 +81,7 @@ def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
         parts["friction"] = _tangents(scene)
     made = dict(zip(parts, _models(scene, own, **parts), strict=True))
     nothing = _empty(scene.n_q)
-    return made["contacts"], made.get("joints", nothing), made.get("friction", nothing)
+    return _latest(scene, made["contacts"]), made.get("joints", nothing), made.get("friction", nothing)
 
 
 @functools.cache

@@ -10,6 +10,8 @@ Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006),
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from lagrangian import LinearSystem
@@ -26,17 +28,25 @@ def unresolved(run: Trajectory) -> str:
     h, bound = _explicit(run)
     if h == 0.0 or run.status != Status.DONE or len(run.t) == 0:
         return ""
-    from lcpstep.kernels.states import power  # not before it is asked for: that loads what compiles callbacks
-    from lcpstep.model import model
+    from lcpstep.kernels.looks import (
+        highest,
+    )  # not before it is asked for: that loads what compiles callbacks
+    from lcpstep.kernels.states import power
+    from lcpstep.model import looked_at
 
-    last = len(run.t) - 1
+    last, m = len(run.t) - 1, looked_at(run.scene)
+    square = highest(m, run.t, run.q, run.v, LOOKS, NEAR * h)
+    cause()  # a callback that fails beside the motion, where the run has not asked it
+    forget()
+    if not h * math.sqrt(square) > bound:
+        return ""
     k = np.unique(((np.arange(LOOKS) + 1) * (last / LOOKS)).astype(int))
     t, q, v, near = run.t[k], run.q[k], run.v[k], NEAR * h
     with np.errstate(all="ignore"):
-        kinetic, after = power(model(run.scene), t, q + near * v, v)
-        _, before = power(model(run.scene), t, q - near * v, v)
+        kinetic, after = power(m, t, q + near * v, v)
+        _, before = power(m, t, q - near * v, v)
         angle = h * np.sqrt(np.abs(after - before) / (4.0 * near * kinetic))
-    cause()  # a callback that fails beside the motion, where the run has not asked it
+    cause()
     forget()
     told = np.flatnonzero(angle > bound)
     if not len(told):

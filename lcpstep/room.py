@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from lcpstep import depth
 from lcpstep.faults import cause, forget
+from lcpstep.kernels.looks import lies_inside
 from lcpstep.kernels.states import gaps_at
-from lcpstep.model import model
+from lcpstep.model import looked_at
 from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -32,10 +33,16 @@ def no_room(run: Trajectory) -> str:
     """Which obstacle of a scene with `Contacts` leaves no room, in words; "" where none is known."""
     if run.status != Status.DONE or len(run.t) < 2:
         return ""
+    m = looked_at(run.scene)
+    deep = lies_inside(m, run.t, run.q, LOOKS, SHALLOW, False)
+    cause()  # a callback that fails at rest, as the run has not asked it
+    forget()
+    if not deep:
+        return ""
     k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
     with np.errstate(all="ignore"):
-        g = gaps_at(model(run.scene), run.t[k], np.ascontiguousarray(run.q[k]))
-    cause()  # a callback that fails at rest, as the run has not asked it
+        g = gaps_at(m, run.t[k], np.ascontiguousarray(run.q[k]))
+    cause()
     forget()
     reach = float(np.linalg.norm(np.ptp(run.q[k], axis=0)))
     lowest = g.min(axis=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
 
@@ -121,14 +121,14 @@ def simulate(
 
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
-    begin = time.process_time()
+    begin = time.process_time() if error else 0.0
     if getattr(method, "audit", False):
         from lcpstep.audit import audited
 
         run = audited(method, scene, kept, report)
     else:
         run = method.run(scene, kept, report)
-    seconds = time.process_time() - begin
+    seconds = time.process_time() - begin if error else 0.0
     if fault() is not None:
         from lcpstep.model import culprit
 
@@ -172,9 +172,14 @@ def _with_error(run: Trajectory, kept: Kept, seconds: float) -> Trajectory:
 
 def _compare_derivatives(run: Trajectory) -> None:
     """SimulationError where a derivative of the scene is wrong at states that the start has not shown."""
-    places = sorted({min(1, len(run.t) - 1), len(run.t) // 2, len(run.t) - 1}) if len(run.t) else []
+
+    def states() -> Iterator[tuple[float, Any, Any]]:
+        last = len(run.t) - 1
+        for k in sorted({min(1, last), (last + 1) // 2, last}) if last >= 0 else ():
+            yield float(run.t[k]), run.q[k], run.v[k]
+
     try:
-        check_derivatives(run.scene, ((float(run.t[k]), run.q[k], run.v[k]) for k in places), run=True)
+        check_derivatives(run.scene, states(), run=True)
     except ValueError as error:
         raise SimulationError(str(error), run) from error
 

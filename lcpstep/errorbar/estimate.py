@@ -41,15 +41,25 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
     nothing = np.zeros(0)
     kept = Kept(1, False, nothing) if every else Kept(0, False, looks(run, run, every, end))
-    best: Found = []
+    known: dict[Companion, Trajectory | None] = {}
+    bar, reach, clear = unknown(run, "no companion"), start, True
     for group in companions(run):
-        runs = [(c, followed(c, scene, kept, seconds)) for c in group]
-        found = [(c, x) for c, x in runs if x is not None and len(x.t) > 1]
-        if runs[0][1] is not None and found and (not best or _reach(found) > _reach(best)):
-            best = found
-        if best and _reach(best) >= end:
+        for c in group:
+            if c not in known:
+                known[c] = followed(c, scene, kept, seconds)
+        found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
+        if (
+            known[group[0]] is None
+            or not found
+            or _reach(found) < reach
+            or (_reach(found) == reach and clear)
+        ):
+            continue
+        bar, reach = against(run, every, found), _reach(found)
+        clear = group[0].tells(run, bar)
+        if reach >= end and clear:
             break
-    return against(run, every, best) if best and _reach(best) > start else unknown(run, "no companion")
+    return bar
 
 
 def _reach(found: Found) -> float:

@@ -114,4 +114,17 @@ def sources(scene: Scene) -> list[Source]:
         found.append(Source("contacts.motion", contacts.motion, None, state, scene.n_c))
     if isinstance(contacts, Contacts) and contacts.gap_t is not None:
         found.append(Source("contacts.gap_t", contacts.gap_t, contacts.gap, state, scene.n_c))
+    return _own(found)
+
+
+def belts(scene: Scene) -> list[Source]:
+    """The belts of a scene, told from their sliding velocity alone, which stands for place and curve."""
+    friction = None if scene.contacts is None else scene.contacts.friction
+    if friction is None or not callable(friction.slip):
+        return []
+    state = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
+    return _own([Source("friction.slip", friction.slip, friction.slip, state, scene.n_c)])
+
+
+def _own(found: list[Source]) -> list[Source]:
     return [x for x in found if not f"{getattr(plain(x.f), '__module__', '')}.".startswith(OURS)]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.turns.refine import MUCH, Leaves, leaves
-from lcpstep.turns.source import Source, sources
+from lcpstep.turns.source import Source, belts, sources
 
 Array = NDArray[np.float64]
 PER_PERIOD, PER_SPAN = 16, 50  # intervals of the scan in a period, or in a span without one
@@ -52,10 +52,13 @@ class Turns(NamedTuple):
         return np.asarray(np.append(self.fast[:, 1], -np.inf)[k] < t)
 
 
-def turns(scene: Scene) -> Turns:
-    """Where what moves by itself in a scene turns fast; one warning per scene where samples alone tell."""
+def turns(scene: Scene, with_belts: bool = False) -> Turns:
+    """Where what moves by itself in a scene turns fast; one warning per scene where samples alone tell.
+
+    with_belts : also where a belt does
+    """
     corners = np.asarray(scene.corners, dtype=float)
-    found = sources(scene) if scene.n_c else []
+    found = sources(scene) + (belts(scene) if with_belts else []) if scene.n_c else []
     if not found:
         return Turns(corners, np.zeros((0, 2)), "")
     span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span

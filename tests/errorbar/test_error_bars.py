@@ -139,7 +139,7 @@ def test_without_every_step_the_kept_states_are_compared(keep):
 @pytest.mark.parametrize("scene", [scenes.sliding_block(), scenes.coulomb_oscillator()], ids=lambda s: s.name)
 def test_steps_with_friction_are_held_against_the_event_driven_run(scene):
     run = simulate(scene, Moreau(1.3e-3), error=True)
-    assert run.error.companions == ("EventDriven(rtol=1e-13, atol=1e-13)",)
+    assert run.error.companions[0].startswith("EventDriven(")
     t = np.linspace(*scene.t_span, 2001)
     true = np.max(np.abs(run.at(t)[0] - scene.exact(t)[0]))
     assert 0.5 < true / run.error.position.sup < 2.0
@@ -193,6 +193,7 @@ def test_the_run_itself_is_the_same_with_and_without_a_bar():
 def test_a_companion_that_takes_too_long_is_told(monkeypatch):
     monkeypatch.setattr(companions, "PATIENCE", 0.0)
     monkeypatch.setattr(companions, "BEST", Located(1e-6, 4))
+    monkeypatch.setattr(companions, "FIRST", {})
     run = simulate(scenes.impact_oscillator(t_end=50.0), Located(1e-2))
     bar = estimate.error_bar(run, True, 0.0)
     assert "takes longer than the run" in bar.reason

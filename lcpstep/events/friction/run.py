@@ -19,23 +19,31 @@ from lcpstep.kernels.clock import Clock
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Status
+from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
 
 
 def start(
-    scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any, yields: bool = False
+    scene: Scene,
+    kind: Callable[..., Any],
+    rtol: float,
+    atol: float,
+    *more: Any,
+    yields: bool = False,
+    belts: bool = False,
 ) -> Any:
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
 
     yields : whether sliding that jams ends in an impact
+    belts : whether the motion also stops to look where a belt turns fast
     """
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
     friction = given and given.friction
     tangential = np.zeros(scene.n_c) if friction is None else friction.tangential(given.restitution)
     scan = scan_interval(scene, contacts, 0.0)
-    clock = Clock(scene.t_span, scene.corners, scene.period)
+    clock = Clock(scene.t_span, turns(scene, belts).stops, scene.period)
     s = kind(
         contacts, joints, tangents, coefficients(scene), tangential,
         friction is not None and friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol,
@@ -59,7 +67,7 @@ class FrictionRun(running.EventRun):
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
-        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
+        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact", belts=True)
 
     @property
     def now(self) -> float:
