@@ -81,9 +81,9 @@ def _along(
     place = q - d * (T @ q)  # G q_N = -offset, T q_N = 0
     M, C, K = system.M, system.C, system.K
     constant, cosine, sine = force.terms(2)
-    for row, column in ((e @ M, d), (e @ C, d), (e @ K, d), (e, cosine), (e, sine)):
-        if not _nothing(row * column):
-            return None
+    pushes = [e[:, None] * A * d for A in (M, C, K)] + [e * f for f in (cosine, sine)]
+    if not all(map(_nothing, pushes)):
+        return None
     normal = float(e @ (K @ place - constant))
     mass, forces = float(d @ M @ d), (float(d @ (constant - K @ place)), float(d @ cosine), float(d @ sine))
     o = oscillator(mass, float(d @ C @ d), float(d @ K @ d), *forces, force.omega)
