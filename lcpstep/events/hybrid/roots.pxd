@@ -17,6 +17,7 @@ cdef class Scan:
     cdef double* sample
     cdef double* c
     cdef double* half
+    cdef double* mean
     cdef double* stack
     cdef double* low
     cdef double* high
