@@ -24,8 +24,10 @@ if not cython.compiled:
 
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.arcs.motion import (
+        NOISE,
         Arc,
         belt_slip,
+        bend_at,
         bends,
         look,
         pay,
@@ -37,7 +39,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.pointers import abs, inf, max, min
 
-STILL, NOISE = 100.0, 64 * 2.0**-52  # a sliding velocity this small at the start is zero: tolerances, roundings
+STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
 
 
 def advance(s: Arc, goal: int) -> int:
@@ -84,7 +86,7 @@ def note(s: Arc, kind: int) -> None:
 def decide(s: Arc) -> None:
     """Whether it sticks, or which way it will slide, at a base without sliding velocity."""
     s.direction = 0.0
-    if abs(s.phi) > s.most:
+    if abs(s.phi) > s.most + s.noise:
         s.direction = -1.0 if s.phi > 0.0 else 1.0
 
 
@@ -110,7 +112,7 @@ def first_end(s: Arc, limit: float) -> float:
             start = s.room if sides == 1 else s.most + way * s.phi
             g, u = start + way * D, way * rate
             if tau == 0.0 and g == 0.0:
-                clear = leave(u, way * here, second, third, NOISE * (s.most + abs(s.a)))
+                clear = leave(u, way * here, second, third, s.noise)
             else:
                 clear = stride(g, u, second)
             if clear < h:
@@ -119,9 +121,24 @@ def first_end(s: Arc, limit: float) -> float:
             return inf
         tau += h
         if not h > RESOLUTION * tau:
-            s.side = side
-            return tau
+            past = touch(s, tau, side * rate) if s.direction != 0.0 else 0.0
+            if past == 0.0:
+                s.side = side
+                return tau
+            tau += past
         D, rate = rise(s, tau)
+
+
+def touch(s: Arc, tau: float, u: float) -> float:
+    """How long the sliding velocity, zero at tau with the rate u, is below by no more than rounding; 0: it falls on.
+
+    What a belt of constant velocity lets off slides round and round, and just reaches that velocity each time.
+    """
+    bend = s.direction * bend_at(s, tau)
+    _, dz = state_at(s, tau)
+    if u <= 0.0 and bend > 0.0 and 0.5 * u * u <= NOISE * bend * abs(dz):
+        return max(-2.0 * u / bend, RESOLUTION * tau)
+    return 0.0
 
 
 def stride(g: float, u: float, most: float) -> float:

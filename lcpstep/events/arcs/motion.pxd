@@ -8,6 +8,9 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs, after, inf
 
 
+cdef double NOISE
+
+
 cdef class Arc(Clock):
     cdef readonly object state
     cdef object space
@@ -17,7 +20,7 @@ cdef class Arc(Clock):
     cdef readonly double pull, most, normal, mass, direction, z, dz, phi, end, side
     cdef readonly double now, t_end, stride, rtol, atol, paid, friction
     cdef readonly bint begun
-    cdef double a, line, room, spring, zeta, dzeta, P1, Q1, P2, Q2, cos1, sin1, cos2, sin2
+    cdef double noise, a, line, room, spring, zeta, dzeta, P1, Q1, P2, Q2, cos1, sin1, cos2, sin2
     cdef double* place
     cdef double* way
     cdef double* q
@@ -31,6 +34,7 @@ cdef double belt_slip(Arc s) noexcept nogil
 cdef void set_out(Arc s, bint slides) noexcept nogil
 cdef (double, double) rise(Arc s, double tau) noexcept nogil
 cdef (double, double, double) bends(Arc s) noexcept nogil
+cdef double bend_at(Arc s, double tau) noexcept nogil
 cdef (double, double) state_at(Arc s, double tau) noexcept nogil
 cdef double friction_until(Arc s, double tau) noexcept nogil
 cdef void pay(Arc s, double tau) noexcept nogil

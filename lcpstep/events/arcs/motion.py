@@ -26,6 +26,9 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf
 
 
+NOISE = 64 * 2.0**-52
+
+
 class Arc(Clock):
     """One coordinate under way.
 
@@ -34,7 +37,7 @@ class Arc(Clock):
     pull, most, normal, mass              see `line.Line`
     direction       of sliding; 0 where it sticks
     z, dz           state at the base time
-    phi             friction there, over the mass
+    phi, noise      friction there, over the mass; its rounding, and that of `most`
     end             time after the base at which the arc ends, infinite where it does not within the span
     side            of that end: the direction in which what has stuck will slide
     now, t_end      time reached, end of the span
@@ -69,7 +72,7 @@ class Arc(Clock):
         self.now, self.t_end, self.stride, self.rtol, self.atol = t_span[0], t_span[1], stride, rtol, atol
         self.record, self.tally, self.begun = record, tally, False
         self.end, self.side, self.paid, self.friction = inf, 0.0, 0.0, 0.0
-        self.phi = self.a = self.line = self.room = self.spring = self.zeta = self.dzeta = 0.0
+        self.noise = self.phi = self.a = self.line = self.room = self.spring = self.zeta = self.dzeta = 0.0
         self.P1 = self.Q1 = self.P2 = self.Q2 = 0.0
         self.cos1 = self.cos2 = 1.0
         self.sin1 = self.sin2 = 0.0
@@ -102,7 +105,10 @@ def rebase(s: Arc, t: float) -> None:
         s.cos2, s.sin2 = cos(s.Omega * t), sin(s.Omega * t)
     rate = s.belt * (s.slip_sine * s.cos1 - s.slip_cosine * s.sin1)
     force = s.f0 + s.fc * s.cos2 + s.fs * s.sin2
-    s.phi = -rate - 2.0 * s.delta * belt_slip(s) + s.w2 * s.z - force
+    damping, spring = 2.0 * s.delta * belt_slip(s), s.w2 * s.z
+    s.phi = -rate - damping + spring - force
+    terms = abs(s.f0) + abs(s.fc) + abs(s.fs) + abs(rate) + abs(damping) + abs(spring)
+    s.noise = NOISE * (s.most + terms)
 
 
 def belt_slip(s: Arc) -> float:
@@ -166,6 +172,20 @@ def bends(s: Arc) -> tuple[float, float, float]:
         second += sqrt(b * b + (c + s.delta * b) * (c + s.delta * b) / w)
         third += sqrt(c * c + (d + s.delta * c) * (d + s.delta * c) / w)
     return here, second, third
+
+
+def bend_at(s: Arc, tau: float) -> float:
+    """D'' of what slides, at tau after the base."""
+    S, dS, P = fundamental(s.delta, s.w2, tau)
+    w, rate = s.dzeta + s.a * S - s.w2 * s.dzeta * P, s.a * dS - s.w2 * s.dzeta * S
+    bend = -2.0 * s.delta * rate - s.w2 * w
+    if s.belt != 0.0:
+        c, sn = turned(s.cos1, s.sin1, 0.5 * s.belt * tau)
+        bend -= s.belt * s.belt * (s.P1 * (s.cos1 + c) + s.Q1 * (s.sin1 + sn))
+    if s.Omega != 0.0:
+        c, sn = turned(s.cos2, s.sin2, 0.5 * s.Omega * tau)
+        bend -= s.Omega * s.Omega * (s.P2 * (s.cos2 + c) + s.Q2 * (s.sin2 + sn))
+    return bend
 
 
 def state_at(s: Arc, tau: float) -> tuple[float, float]:
