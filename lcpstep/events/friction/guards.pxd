@@ -5,11 +5,11 @@ from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport add, clear, copy, finite, largest, product
+from lcpstep.kernels.vectors cimport copy, finite, largest, product
 from lcpstep.pointers cimport abs, after, max, min
 
 cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
-cdef double RESOLVED, PRECISE, OFF
+cdef double RESOLVED, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(opened=bint)

@@ -19,13 +19,12 @@ if not cython.compiled:
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import add, clear, copy, finite, largest, product
+    from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 
 SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
-PRECISE = 1e-13  # the same where its mean is that of the motion
 REFINEMENTS = 6  # of an event's time by repeated steps
 UNKNOWN = -2  # in place of a guard: one is not finite
 OFF = 1.0  # value of a guard that a contact does not have
@@ -98,7 +97,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
 def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
     n, parts, part = GUARDS * s.n_c, 1, 0
-    s.guard, s.found, s.summed = -1, 2.0, s.n_j == 0
+    s.guard, s.found = -1, 2.0
     while part < parts:
         a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
         if not sample(s, h, a, b):
@@ -108,9 +107,8 @@ def first_event(s: Rubbing, h: float) -> int:
             if not has(s, g):
                 continue
             copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
-            error, size = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
-            s.summed = s.summed and error <= PRECISE * size + s.band[g]
-            if error > RESOLVED * size + s.band[g] and parts < PARTS:
+            error = convert(s.scan)
+            if error > RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[g] and parts < PARTS:
                 fine = False
                 break
             place = first_fall(s, g)
@@ -136,8 +134,7 @@ def has(s: Rubbing, g: int) -> bool:
 
 
 def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
-    """All guards at the points of the part a .. b of a step, and the means of forces; False where one is not finite."""
-    clear(s.means, s.n_r)
+    """All guards at the points of the part a .. b of a step; False where one is not finite."""
     for j in range(SAMPLES):
         place = a + (b - a) * s.scan.points[j]
         s.at(place, s.seen)
@@ -145,8 +142,6 @@ def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
             return False
         for g in range(GUARDS * s.n_c):
             s.samples[g * SAMPLES + j] = s.value[g]
-        if j <= DEGREE:
-            add(s.means, s.scan.mean[j], s.multiplier, s.n_r)
     return True
 
 

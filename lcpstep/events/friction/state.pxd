@@ -26,7 +26,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
-    cdef bint constant, moving, measured, summed
+    cdef bint constant, moving, measured
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -56,7 +56,6 @@ cdef class Rubbing(RungeKutta):
     cdef double* impulse
     cdef double* account
     cdef double* shifted_rate
-    cdef double* means
     cdef double* mu
     cdef double* mu_s
     cdef double* slip

@@ -57,7 +57,6 @@ class Rubbing(RungeKutta):
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
-    means : (n_r,)               means of the multipliers over the step at hand, if they are known (`summed`)
     jams                         how often it did;  rounds    problems of impacts at this instant
     culprit                      contact or joint that a failure is about, or -1
 
@@ -103,7 +102,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 11 * r)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 10 * r)
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -130,8 +129,6 @@ class Rubbing(RungeKutta):
         self.impulse = after(self.multiplier, r)
         self.account = after(self.impulse, r)
         self.shifted_rate = after(self.account, r)
-        self.means = after(self.shifted_rate, r)
-        self.summed = False
         self.per_contact = np.zeros(8 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport add_impulse, lift, measure
+from lcpstep.events.friction.equations cimport lift, measure
 from lcpstep.events.friction.guards cimport UNKNOWN, finish_step, first_event, locate
 from lcpstep.events.friction.held cimport hold_modes, list_multipliers, project, right_hand_side
 from lcpstep.events.friction.impact cimport find_touching, forget_terms, still
@@ -24,4 +24,3 @@ cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void find_standing(Rubbing s) noexcept nogil
 cdef void take_over(Rubbing s, Record record, Tally tally, double t, double tau) noexcept nogil
 cdef void press_between(Rubbing s, double a, double b) noexcept nogil
-cdef void press(Rubbing s, double time, double* force) noexcept nogil

@@ -8,7 +8,7 @@ from lcpstep.events.friction.codes import DECIDE, JUMP, LEANS, OBEY, OPEN, STICK
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import add_impulse, lift, measure
+    from lcpstep.events.friction.equations import lift, measure
     from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate
     from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, min
+    from lcpstep.pointers import abs, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
 # far at most
@@ -45,7 +45,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
-    s.summed, tau = False, locate(s, g, h, border - t0)
+    tau = locate(s, g, h, border - t0)
     if tau > 0.0 and not finish_step(s, tau):
         return NOT_FINITE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
@@ -141,18 +141,15 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
     """Add the impulses of the forces between a and b after the base: Gauss' quadrature."""
     if s.n_held == 0 or b <= a:
         return
-    if s.summed and a == 0.0 and b == s.length:  # `first_event` has looked at the forces of this step
-        press(s, b, s.means)
-        return
     for k in range(s.n_nodes):
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
         right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
         list_multipliers(s)
-        press(s, s.weights[k] * (b - a), s.multiplier)
-
-
-def press(s: Rubbing, time: float, force: Doubles) -> None:
-    """Add the impulses of forces, one a row, that last so long."""
-    for i in range(s.n_r):
-        add_impulse(s, i, time * force[i])
+        share = s.weights[k] * (b - a)
+        for c in range(s.n_c):
+            s.impulse[c] = s.impulse[c] + share * s.multiplier[s.n_j + c]
+            tangent = s.multiplier[s.n_j + s.n_c + c]
+            s.impulse[s.n_c + c] = s.impulse[s.n_c + c] + share * tangent
+        for i in range(s.n_j):
+            s.impulse[2 * s.n_c + i] = s.impulse[2 * s.n_c + i] + share * s.multiplier[i]

@@ -17,7 +17,6 @@ cdef class Scan:
     cdef double* sample
     cdef double* c
     cdef double* half
-    cdef double* mean
     cdef double* stack
     cdef double* low
     cdef double* high

@@ -43,7 +43,7 @@ class Scan:
     """Sample points, conversion to Bernstein form, and work space; N = DEGREE + 1.
 
     points, sample : (N + CHECKS,)   where the guard is sampled, in [0, 1]; its values there
-    to_bernstein : (N, N);  at_checks : (CHECKS, N);  mean : (N,)   shares of the samples in the mean
+    to_bernstein : (N, N);  at_checks : (CHECKS, N)
     c, half : (N,)   Bernstein coefficients of the guard; work space
     stack : (DEPTH + 3, N);  low, high : (DEPTH + 3,)   polynomials on parts of the interval, and their ends
     """
@@ -61,8 +61,6 @@ class Scan:
         self.points, self.to_bernstein = doubles(self.arrays[0]), doubles(self.arrays[1])
         self.at_checks, self.sample = doubles(self.arrays[2]), doubles(self.arrays[3])
         self.c, self.stack = doubles(self.arrays[4]), doubles(self.arrays[5])
-        self.arrays.append(FROM_NODES.mean(axis=0))
-        self.mean = doubles(self.arrays[6])
         self.half, self.low = after(self.c, n), after(self.stack, (DEPTH + 3) * n)
         self.high = after(self.low, DEPTH + 3)
 
