@@ -37,11 +37,15 @@ def drawn(seed):
     )  # fmt: skip
     mu = rng.uniform(0.1, 0.6)
     belt = -rng.choice([0.0, rng.uniform(-0.5, 0.5)])
-    slip = Harmonic(belt, rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), omega) if rng.random() < 0.5 else belt
+    slip = (
+        Harmonic(belt, rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), omega) if rng.random() < 0.5 else belt
+    )
     friction = Coulomb(mu, [2.0 * along], slip=slip, mu_s=mu * rng.choice([1.0, rng.uniform(1.0, 2.0)]))
     offset = rng.uniform(-1.0, 1.0)
     return Scene(
-        system=LinearSystem(mass * np.eye(2), damping * np.outer(along, along), spring * np.outer(along, along), force),
+        system=LinearSystem(
+            mass * np.eye(2), damping * np.outer(along, along), spring * np.outer(along, along), force
+        ),
         contacts=LinearContacts([normal], offset=[offset], friction=friction),
         q0=rng.uniform(-2.0, 2.0) * along - offset * normal,
         v0=rng.choice([0.0, 1.0]) * rng.uniform(-2.0, 2.0) * along,
@@ -50,7 +54,7 @@ def drawn(seed):
 
 
 def lasting(run):
-    """What happens to the contact, but for touches: what an even belt lets off just reaches its velocity each turn."""
+    """What happens to the contact, but for touches: what a belt lets off just reaches its velocity."""
     log = run.impacts
     touch = (log.kind[:-1] == Kind.STICK_TANGENT) & (log.kind[1:] == Kind.SLIP) & (np.diff(log.time) < 1e-6)
     short = np.append(touch, False) | np.append(False, touch)

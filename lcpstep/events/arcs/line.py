@@ -1,7 +1,7 @@
-"""Which scenes with friction move along a line under a constant normal force: their equation of one coordinate.
+"""Which scenes with friction move along a line under a constant normal force, and their equation of motion.
 
-Two coordinates, one contact that is closed and stays so: q = q_N + d z with G d = 0, T d = 1, and from the equation of
-motion, multiplied by d and by e (e T = 0, e G = 1),
+Two coordinates, one contact that is closed and stays so: q = q_N + d z with G d = 0, T d = 1, and from the equation
+of motion, multiplied by d and by e (e T = 0, e G = 1),
 
     m z'' + c z' + k z = F(t) + lambda_T,    lambda_N = e (M d z'' + C d z' + K (q_N + d z) - F(t))
 
@@ -60,7 +60,12 @@ def line_of(scene: Scene) -> Line | None:
     shape = scene.n_q == 2 and scene.n_c == 1 and scene.n_j == 0 and len(scene.corners) == 0
     if not shape or friction is None or not isinstance(force, Harmonic):
         return None
-    if system.frame is not None or contacts.motion is not None or callable(friction.mu) or callable(friction.tangent):
+    if (
+        system.frame is not None
+        or contacts.motion is not None
+        or callable(friction.mu)
+        or callable(friction.tangent)
+    ):
         return None
     mu = float(np.asarray(friction.mu)[0])
     mu_s = mu if friction.mu_s is None else float(np.asarray(friction.mu_s)[0])

@@ -96,7 +96,7 @@ def look(s: Arc, z: float, dz: float) -> None:
 
 
 def rebase(s: Arc, t: float) -> None:
-    """The angles of belt and force at time t, where the next arc begins, and the friction that would make it stick."""
+    """The angles of belt and force at time t, where an arc begins, and the friction that would make it stick."""
     s.start_at(t)
     s.paid = s.friction = 0.0
     if s.belt != 0.0:
