@@ -486,7 +486,11 @@ def impact_of_the_orbit(scene, method):
 def test_the_woodpeckers_orbit_is_the_same_to_ten_digits():
     period, x = impact_of_the_orbit(scenes.woodpecker(t_end=30.0), EventDriven(1e-13, 1e-13))
     scene = replace(scenes.woodpecker(), q0=x[:3], v0=x[3:], t_span=(0.0, 6.2 * period))
-    for method, digits in ((EventDriven(1e-12, 1e-12), 11.0), (Located(1e-5, order=4), 10.0), (Located(1e-5), 5.5)):
+    for method, digits in (
+        (EventDriven(1e-12, 1e-12), 11.0),
+        (Located(1e-5, order=4), 10.0),
+        (Located(1e-5), 5.5),
+    ):
         found, y = impact_of_the_orbit(scene, method)
         assert abs(found / period - 1.0) < 10.0**-digits
         assert np.max(np.abs(y - x)[1:]) < 10.0**-digits * np.max(np.abs(x[1:]))
