@@ -109,7 +109,7 @@ def periods() -> None:
     print("| belt | method | CPU time [s] | error [m] |\n|---|---|---|---|")
     for name, scene in belts().items():
         end = scene.t_span[1]
-        times = end * (1.0 - 0.01 * (np.arange(40)[::-1] + 0.5) / 40.0)
+        times: Any = end * (1.0 - 0.01 * (np.arange(40)[::-1] + 0.5) / 40.0)
         truth = scene.exact(times)[0] if scene.exact else reference(scene, times)
         methods: list[Any] = [EventDriven(), *(Moreau(h) for h in (1e-1, 1e-2, 1e-3, 1e-4))]
         for method in methods:

@@ -57,7 +57,7 @@ def line_of(scene: Scene) -> Line | None:
     if not (isinstance(system, LinearSystem) and isinstance(contacts, LinearContacts)) or system.sparse:
         return None
     friction, force = contacts.friction, system.force
-    shape = scene.n_q == 2 and scene.n_c == 1 and scene.n_j == 0 and len(scene.corners) == 0
+    shape = scene.n_q == 2 and scene.n_c == 1 and scene.n_j == 0 and np.size(scene.corners) == 0
     if not shape or friction is None or not isinstance(force, Harmonic):
         return None
     if (
