@@ -1,4 +1,4 @@
-"""Functions of the ready scenes as C, written from their Python source when the package is built.
+"""Functions of the ready scenes, and of belts, as C, written from their Python source when the package is built.
 
 A function f(t, q, v, p, out), or f(t, x, p, out) of a system with modes, of scalars and entries of arrays, with
 `math`, numbers and such functions of its module, branches and loops over ranges is translated word for word; q, v, x
@@ -302,7 +302,11 @@ def source(folder: Path) -> str:
     """The module in Cython, of all functions of the ready scenes that can be translated."""
     parts = [HEAD]
     for file in sorted(
-        [folder / "lagrangian" / "profiles.py", *(folder / "lagrangian" / "scenes").glob("*.py")]
+        [
+            folder / "lagrangian" / "friction.py",
+            folder / "lagrangian" / "profiles.py",
+            *(folder / "lagrangian" / "scenes").glob("*.py"),
+        ]
     ):
         module = Module(file, ".".join(file.relative_to(folder).with_suffix("").parts))
         for node in module.tree.body:

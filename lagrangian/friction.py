@@ -20,6 +20,7 @@ of a System of Rigid Bodies (1905), volume 1, chapter 5; W. J. Stronge, Impact M
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -30,6 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.pickling import Pickled
+from lagrangian.system import Harmonic
 
 LAWS = ("moreau", "newton", "stronge")
 Normals = Callable[[float, Array, Array, Array], Array]  # G (n_c, n_q) at a state t, q, v, p
@@ -48,7 +50,7 @@ class Coulomb(Pickled):
     mu : (n_c,) or one number for all contacts, mu >= 0   coefficient of friction [-]; 0 for a contact without;
         or a callback f(t, q, u, p, out) filling out (n_c,) from the sliding velocities u (n_c,), 0 of what sticks
     tangent : (n_c, n_q) constant matrix, or callback filling out (n_c, n_q)   T [-]
-    slip : (n_c,) constants where the tangent is constant, callback filling out (n_c,) where it is one; or None
+    slip : (n_c,) constants or a Harmonic where the tangent is constant, callback filling out (n_c,) where it is one
         Sliding velocity at v = 0 [m/s]: a belt that runs with velocity b along the tangent has slip = -b.
         None for obstacles at rest.
     restitution : (n_c,) or one number, 0 <= r <= 1, or None
@@ -66,7 +68,7 @@ class Coulomb(Pickled):
 
     mu: ArrayLike | Callback
     tangent: ArrayLike | Callback
-    slip: ArrayLike | Callback | None = None
+    slip: ArrayLike | Harmonic | Callback | None = None
     restitution: ArrayLike | None = None
     mu_s: ArrayLike | None = None
     law: str = "moreau"
@@ -87,7 +89,13 @@ class Coulomb(Pickled):
         slip = self.slip
         if slip is not None and callable(slip) != callable(tangent):
             raise ValueError("friction.slip: expected a callback exactly where friction.tangent is one")
-        if not callable(slip) and not callable(tangent):
+        if isinstance(slip, Harmonic):
+            if callable(tangent):
+                raise ValueError(
+                    "friction.slip: expected a callback where friction.tangent is one, got a Harmonic"
+                )
+            slip = Harmonic(*slip.terms(n_c, "friction.slip"), slip.omega)
+        elif not callable(slip) and not callable(tangent):
             slip = checks.per_contact("friction.slip", 0.0 if slip is None else slip, n_c)
         r = None if self.restitution is None else checks.restitution(self.restitution, n_c)
         if self.law not in LAWS:
@@ -115,6 +123,8 @@ class Coulomb(Pickled):
         u = np.asarray(T @ v)
         if callable(self.slip):
             u = u + checks.evaluate("friction.slip", self.slip, at, (n_c,))
+        elif isinstance(self.slip, Harmonic):
+            u = u + self.slip.at(t, n_c)
         elif self.slip is not None:
             u = u + np.asarray(self.slip)
         if callable(self.mu):
@@ -175,6 +185,21 @@ class Coulomb(Pickled):
         across = sizes - np.einsum("ij,ij->i", N, T) ** 2
         rough = np.full(len(N), True) if callable(self.mu) else np.asarray(self.mu) > 0.0
         return np.flatnonzero(rough & (sizes > 0.0) & (across <= PARALLEL * sizes))
+
+
+def swaying(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+    """What a harmonic slip makes of the tangents' obstacles: velocity and acceleration; see `sway`."""
+    cosine, sine = math.cos(p[1] * t), math.sin(p[1] * t)
+    for c in range(int(p[0])):
+        k = 2 + 3 * c
+        out[c, 0] = 0.0
+        out[c, 1] = -p[k] - p[k + 1] * cosine - p[k + 2] * sine
+        out[c, 2] = p[1] * (p[k + 1] * sine - p[k + 2] * cosine)
+
+
+def sway(slip: Harmonic, n_c: int) -> Array:
+    """The parameters of `swaying`: n_c, omega, and constant, cosine and sine of each contact."""
+    return np.concatenate([[float(n_c), slip.omega], np.stack(slip.terms(n_c), axis=1).ravel()])
 
 
 def _coefficients(name: str, value: ArrayLike, n_c: int) -> Array:

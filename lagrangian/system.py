@@ -30,7 +30,7 @@ TURN = 1e-6  # by how much a period may differ from whole turns of the force
 class Harmonic:
     """Force F(t) = constant + cosine cos(omega t) + sine sin(omega t) [N], each term of shape (n_q,).
 
-    A linear system under such a force has its motion in closed form.
+    A linear system under such a force has its motion in closed form. Also the velocities of belts, one a contact.
     """
 
     constant: ArrayLike = 0.0
@@ -38,17 +38,25 @@ class Harmonic:
     sine: ArrayLike = 0.0
     omega: float = 0.0
 
-    def terms(self, n_q: int) -> tuple[Array, Array, Array]:
-        """The three amplitudes as arrays of shape (n_q,); a scalar stands for all coordinates."""
+    def terms(self, n_q: int, name: str = "force") -> tuple[Array, Array, Array]:
+        """The three amplitudes as arrays of shape (n_q,); a scalar stands for all coordinates.
+
+        name : of what they belong to, in errors
+        """
         named = {"constant": self.constant, "cosine": self.cosine, "sine": self.sine}
         constant, cosine, sine = (
             checks.array(
-                f"force.{name}", np.broadcast_to(value, (n_q,)) if np.ndim(value) == 0 else value, (n_q,)
+                f"{name}.{term}", np.broadcast_to(value, (n_q,)) if np.ndim(value) == 0 else value, (n_q,)
             )
-            for name, value in named.items()
+            for term, value in named.items()
         )
-        checks.number("force.omega", self.omega)
+        checks.number(f"{name}.omega", self.omega)
         return constant, cosine, sine
+
+    def at(self, t: float, n_q: int) -> Array:
+        """The value at time t, (n_q,)."""
+        constant, cosine, sine = self.terms(n_q)
+        return np.asarray(constant + cosine * math.cos(self.omega * t) + sine * math.sin(self.omega * t))
 
     def repeats_after(self, period: float) -> bool:
         """Whether the force is the same a period later; infinity is no period."""

@@ -34,6 +34,7 @@ from lagrangian.sparse import is_sparse
 from lcpstep import functions
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.events.arcs.run import Arcs
 from lcpstep.events.flight.run import Flights
 from lcpstep.events.general.run import Moved
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
@@ -49,7 +50,7 @@ MODELS = (
     LinearSystem, Mode, Scene, Surface, System,
 )  # fmt: skip
 METHODS = (EventDriven, Located, Moreau)
-MOTIONS = (Again, Bent, Flights, Linear, Moved, Parabolic, Pieces, States)
+MOTIONS = (Again, Arcs, Bent, Flights, Linear, Moved, Parabolic, Pieces, States)
 KINDS = {kind.__name__: kind for kind in (*MODELS, *METHODS, *MOTIONS, Counts, Trajectory, HybridTrajectory)}
 LEFT_OUT = {"Flights": ("model",)}  # good in one process only
 COLUMNS = {"impacts": "impact", "switches": "switch"}  # what the log's columns begin with

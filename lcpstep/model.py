@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scene, System
 from lagrangian.checks import Callback
+from lagrangian.friction import sway, swaying
 from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
 from lcpstep import callbacks
@@ -254,8 +255,11 @@ def _tangents(scene: Scene) -> dict[str, Any]:
         fields |= {"flat": False, "jacobian": friction.tangent, "gap_t": slip}
         fields["G"] = np.zeros((scene.n_c, scene.n_q))
     else:
-        motion[:, 1] = -np.asarray(friction.slip)
         fields |= {"G": np.array(friction.tangent)}
+        if isinstance(friction.slip, Harmonic):
+            fields |= {"motion": swaying, "p": sway(friction.slip, scene.n_c)}
+        else:
+            motion[:, 1] = -np.asarray(friction.slip)
     return fields | {"motion_now": motion}
 
 

@@ -34,14 +34,15 @@ Motion = Callable[[Array], tuple[Array, Array]]
 SAMPLES = 2000  # of half a period, at which the sliding velocity must have kept its sign
 
 
-def along(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
-    """The tangent."""
-    out[0, 0], out[0, 1] = 1.0, 0.0
+ALONG = [[1.0, 0.0]]  # the tangent
 
 
-def backwards(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
-    """Sliding velocity of a mass at rest; p = (belt, amplitude, omega, phase)."""
-    out[0] = -p[0] + p[1] * p[2] * math.sin(p[2] * t + p[3])
+def backwards(belt: float, amplitude: float, omega: float, phase: float) -> float | Harmonic:
+    """Sliding velocity of a mass at rest."""
+    if amplitude == 0.0:
+        return -belt
+    speed = amplitude * omega
+    return Harmonic([-belt], [speed * math.sin(phase)], [speed * math.cos(phase)], omega)
 
 
 @checked
@@ -74,9 +75,8 @@ def mass_on_belt(
     parameters = {
         "belt": belt, "mu": mu, "amplitude": amplitude, "omega": omega, "x0": x0, "v0": v0, "phase": phase
     }  # fmt: skip
-    return _scene(
-        "mass-on-belt", parameters, [belt, amplitude, omega, phase], coulomb(mu), (x0, v0), t_end, exact
-    )
+    p = [belt, amplitude, omega, phase]
+    return _scene("mass-on-belt", parameters, p, coulomb(mu, p), (x0, v0), t_end, exact)
 
 
 def falling(t: float, q: Any, u: Any, p: Any, out: Any) -> None:
@@ -114,7 +114,7 @@ def stick_slip_belt(
         "belt": belt, "mu": mu, "mu_s": mu_s, "decay": decay, "amplitude": amplitude, "omega": omega, "x0": x0
     }  # fmt: skip
     p = [belt, amplitude, omega, 0.0, mu, mu_s, decay]
-    friction = Coulomb(falling if decay > 0.0 else mu, along, slip=backwards, mu_s=mu_s)
+    friction = Coulomb(falling if decay > 0.0 else mu, ALONG, slip=backwards(*p[:4]), mu_s=mu_s)
     return _scene("stick-slip-belt", parameters, p, friction, (x0, belt), t_end, exact)
 
 
@@ -147,7 +147,7 @@ def mass_on_shaken_belt(
     parameters = {"mu": mu, "amplitude": amplitude, "omega": omega}
     start = float(x(np.zeros(1))[0]), float(v(np.zeros(1))[0])
     p = [0.0, amplitude, omega, phase]
-    return _scene("mass-on-shaken-belt", parameters, p, coulomb(mu), start, t_end, exact)
+    return _scene("mass-on-shaken-belt", parameters, p, coulomb(mu, p), start, t_end, exact)
 
 
 def shaken_arc(mu: float, omega: float) -> tuple[Callable[[Array], Array], ...]:
@@ -236,9 +236,9 @@ def even_belt(x: float, v: float, belt: float, static: float, kinetic: float) ->
     return motion
 
 
-def coulomb(mu: float) -> Coulomb:
-    """Friction with one coefficient, against the belt."""
-    return Coulomb(mu, along, slip=backwards)
+def coulomb(mu: float, belt: list[float]) -> Coulomb:
+    """Friction with one coefficient, against the belt; see `backwards`."""
+    return Coulomb(mu, ALONG, slip=backwards(*belt))
 
 
 def _with_height(x: Array, v: Array) -> tuple[Array, Array]:

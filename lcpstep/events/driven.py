@@ -35,8 +35,9 @@ class EventDriven:
 
     Notes
     -----
-    One linear degree of freedom under constant and harmonic forces moves in closed form between events, and so does
-    a system under constant forces with flat contacts at rest; all others by DOP853.
+    One linear degree of freedom under constant and harmonic forces moves in closed form between events, and so do
+    a body that a constant force presses on a floor or belt with constant coefficients of friction, and a system under
+    constant forces with flat contacts at rest; all others by DOP853.
 
     What the tolerances control is the error of each step, at its end and in between. Positions at any time were at
     most six times atol + rtol |q| off on the catalogue's motions, from 1e-4 to 1e-12 (docs/accuracy.md); where the
@@ -85,8 +86,14 @@ class EventDriven:
         from lcpstep.model import model
 
         if scene.contacts is not None and scene.contacts.friction is not None:
+            from lcpstep.events.arcs.line import line_of
             from lcpstep.events.friction.run import FrictionRun
 
+            line = line_of(scene)
+            if line is not None:
+                from lcpstep.events.arcs.run import ArcRun
+
+                return ArcRun(self, scene, kept, line).finish(progress)
             return FrictionRun(self, scene, kept).finish(progress)
         if scene.n_c <= 1 and scene.n_j == 0:
             from lcpstep.events.flight.oscillator import oscillator_of

@@ -31,3 +31,17 @@ def test_flights_are_the_same_uncompiled(tmp_path, scene):
     built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", expression))
     assert int(built[0].split()[0]) >= least
     assert built == plain
+
+
+ARCS = {
+    "an even belt, two coefficients": "scenes.stick_slip_belt(t_end=20.0)",
+    "a belt that sways": "scenes.stick_slip_belt(amplitude=0.5, t_end=20.0)",
+    "reversals": "scenes.coulomb_oscillator()",
+}
+
+
+@pytest.mark.parametrize("scene", ARCS)
+def test_arcs_are_the_same_uncompiled(tmp_path, scene):
+    built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", ARCS[scene]))
+    assert int(built[0].split()[0]) >= 4
+    assert built == plain

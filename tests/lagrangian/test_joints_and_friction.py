@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.kernels import states
 from lcpstep.model import joint_model, tangent_model
 
@@ -52,6 +53,36 @@ def test_tangents_are_evaluated_as_rates_are():
     assert states.own_rates(m, *at(0.5, [0.0, 0.0]), True)[0, 0] == 0.2 - 1.0
 
 
+def turning(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, 0.0
+
+
+def swaying_belt(t, q, v, p, out):
+    out[0] = -0.1 + 0.4 * np.cos(1.7 * t) - 0.3 * np.sin(1.7 * t)
+
+
+@pytest.mark.parametrize("method", [EventDriven(1e-11, 1e-11), Moreau(1e-3), Located(1e-3)])
+def test_a_harmonic_belt_is_that_of_a_callback(method):
+    runs = []
+    for tangent, slip in ((turning, swaying_belt), ([[1.0, 0.0]], Harmonic(-0.1, 0.4, -0.3, 1.7))):
+        friction = Coulomb(0.3, tangent, slip=slip, mu_s=0.4)
+        runs.append(
+            simulate(
+                scene(
+                    system=LinearSystem(np.eye(2), K=np.diag([2.0, 0.0]), force=[0.0, -1.0]),
+                    contacts=LinearContacts([[0.0, 1.0]], friction=friction),
+                    v0=[0.0, 0.0],
+                    t_span=(0.0, 10.0),
+                ),
+                method,
+                keep=np.linspace(0.0, 10.0, 50),
+            )
+        )
+    assert np.max(np.abs(runs[0].q - runs[1].q)) < 1e-9
+    assert np.max(np.abs(runs[0].friction_impulse - runs[1].friction_impulse)) < 1e-9
+    assert list(runs[0].impacts.kind) == list(runs[1].impacts.kind)
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
@@ -64,6 +95,11 @@ def test_tangents_are_evaluated_as_rates_are():
             "friction.tangent: expected 1 rows",
         ),
         (lambda: LinearContacts(1.0, friction=Coulomb(0.1, [[1.0]], slip=belt)), "friction.slip"),
+        (lambda: LinearContacts(1.0, friction=Coulomb(0.1, belt, slip=Harmonic(1.0))), "friction.slip"),
+        (
+            lambda: LinearContacts(1.0, friction=Coulomb(0.1, [[1.0]], slip=Harmonic([1.0, 2.0]))),
+            "friction.slip.constant",
+        ),
         (lambda: LinearContacts(1.0, friction=Coulomb(0.1, [[1.0]], restitution=2.0)), "restitution"),
         (
             lambda: scene(contacts=LinearContacts([[0.0, 1.0]], friction=Coulomb(0.1, [[1.0]]))),

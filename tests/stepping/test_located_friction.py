@@ -474,3 +474,23 @@ for order, tolerance in ((2, None), (4, None), (4, 1e-5)):
 def test_the_kernels_as_plain_python_give_the_same(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain
+
+
+def impact_of_the_orbit(scene, method):
+    """Period and state at the last but one impact of contact 0."""
+    run = simulate(scene, method, keep="impacts")
+    hit = run.impacts.time[(run.impacts.kind == Kind.IMPACT) & (run.impacts.contact == 0)]
+    return hit[-1] - hit[-2], np.concatenate(run.at(hit[-2:-1]), axis=1)[0]
+
+
+def test_the_woodpeckers_orbit_is_the_same_to_ten_digits():
+    period, x = impact_of_the_orbit(scenes.woodpecker(t_end=30.0), EventDriven(1e-13, 1e-13))
+    scene = replace(scenes.woodpecker(), q0=x[:3], v0=x[3:], t_span=(0.0, 6.2 * period))
+    for method, digits in (
+        (EventDriven(1e-12, 1e-12), 11.0),
+        (Located(1e-5, order=4), 10.0),
+        (Located(1e-5), 5.5),
+    ):
+        found, y = impact_of_the_orbit(scene, method)
+        assert abs(found / period - 1.0) < 10.0**-digits
+        assert np.max(np.abs(y - x)[1:]) < 10.0**-digits * np.max(np.abs(x[1:]))

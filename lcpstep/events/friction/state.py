@@ -92,7 +92,8 @@ class Rubbing(RungeKutta):
         self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
         self.constant = self.constant and not coefficients.varies
-        self.moving, self.measured = contacts.motion.given or joints.motion.given, False
+        self.moving = contacts.motion.given or joints.motion.given or tangents.motion.given
+        self.measured = False
         self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients

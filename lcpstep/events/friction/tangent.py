@@ -121,9 +121,15 @@ class Walk:
         return self.log[np.abs(self.log.time - time) <= SAME * self.scale]
 
     def begin(self) -> Piece:
-        """The first piece."""
+        """The first piece; at the edge of the cone, to rounding, the log says whether it slips at once."""
         t, x = float(self.run.t[0]), self.state(float(self.run.t[0]))
-        return self.piece(t, x, *self.found(t, x))
+        mode, direction = self.found(t, x)
+        slips = [e.contact for e in self.happened(t) if e.kind == Kind.SLIP and mode[e.contact] == STICKS]
+        if slips and point.hold(self.s, t, x, mode, direction):
+            pulled = point.forces(self.s, t, x)[self.s.n_j + self.s.n_c :]
+            for c in slips:
+                mode[c], direction[c] = SLIDES, -np.sign(pulled[c])
+        return self.piece(t, x, mode, direction)
 
     def state(self, time: float) -> Array:
         """The state right after the events at this time."""

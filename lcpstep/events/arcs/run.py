@@ -1,0 +1,90 @@
+"""Runs of one contact that stays closed and rubs along a line, whose arcs are known in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep.events.arcs.line import Line, line_of
+from lcpstep.events.arcs.loop import advance, evaluate, keep_now, show
+from lcpstep.events.arcs.motion import Arc
+from lcpstep.events.flight.contact import SLACK
+from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
+from lcpstep.events.scan import PER_PERIOD
+from lcpstep.recording import Kept, Recorder, States
+
+Array = NDArray[np.float64]
+
+
+def longest_step(scene: Scene, line: Line) -> float:
+    """Time between states that are kept by steps: a part of the fastest oscillation, or of the span [s]."""
+    o = line.oscillator
+    rate = max(math.sqrt(o.w2), abs(o.Omega), abs(line.slip[3]))
+    span = scene.t_span[1] - scene.t_span[0]
+    return min(span, 2.0 * math.pi / rate if rate > 0.0 else math.inf) / PER_PERIOD
+
+
+class ArcRun(EventRun):
+    """A run in closed form."""
+
+    def __init__(self, method: Any, scene: Scene, kept: Kept, line: Line) -> None:
+        recorder = Recorder(2, 2, kept, PORTION + len(kept.times) + 2 * SLACK)
+        super().__init__(method, scene, kept, recorder)
+        stride = longest_step(scene, line) if kept.every > 0 else math.inf
+        record = self.recorder.record
+        self.arc = Arc(line, scene.t_span, stride, method.rtol, method.atol, record, self.tally)
+
+    @property
+    def now(self) -> float:
+        """Time reached [s]."""
+        return float(self.arc.now)
+
+    @property
+    def interval_end(self) -> float:
+        """End of the interval at hand [s]."""
+        return float(self.arc.t_end)
+
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        show(self.arc)
+        return self.arc.state[0], self.arc.state[1]
+
+    @property
+    def evaluations(self) -> int:
+        """Forces are not evaluated: their motion is known."""
+        return 0
+
+    def advance(self, goal: int) -> int:
+        """Call the kernel, up to step number `goal`; why it returned."""
+        return int(advance(self.arc, goal))
+
+    def keep_now(self) -> None:
+        """Write the current state into the recorder's buffers."""
+        keep_now(self.arc)
+
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones and the arcs that start there."""
+        return Arcs(without_impulses(s), self.kept.all or self.kept.on_events, self.scene)
+
+
+@dataclass(eq=False)
+class Arcs(Between):
+    """States between kept ones, in closed form."""
+
+    scene: Scene
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        line: Any = line_of(self.scene)
+        arc = Arc(line, self.scene.t_span, math.inf, 0.0, 0.0)
+        tangent = np.asarray(self.scene.contacts.friction.tangent)[0]  # type: ignore[union-attr]
+        q, v = np.zeros((2, len(times), 2))
+        evaluate(arc, self.s, np.stack([self.s.q @ tangent, self.s.v @ tangent], axis=1), times, row, q, v)
+        return q, v
