@@ -147,10 +147,12 @@ def fits(name: str, d: Description, method: str) -> bool:
     """Whether a variant is the same question to a method; steps treat general systems by other formulas.
 
     Of order two, they carry the force at their end over, found with the velocity foretold for it: where it depends on
-    velocities, a run begun anew differs by the order.
+    velocities, as that of a contact beside round joints does, a run begun anew differs by the order.
     """
     round_joints = any(d.joint_bend)
-    carried = (d.general or d.nonlinear or bool(d.J)) and (bool(d.C) or d.spread != 0.0)
+    carried = (d.general or d.nonlinear or bool(d.J)) and (
+        bool(d.C) or d.spread != 0.0 or (round_joints and d.contacts > 0)
+    )
     return {
         "contacts": d.contacts > 1,
         "order": d.n > 1,
