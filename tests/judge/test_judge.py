@@ -3,6 +3,7 @@
 import os
 import signal
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from benchmarks.judge.pool import Answer, answers
 from benchmarks.judge.report import Tally, report
 from benchmarks.judge.runs import Clock, run
 from benchmarks.judge.shrink import shrunk
-from benchmarks.judge.variants import VARIANTS, fits
+from benchmarks.judge.variants import VARIANTS, fits, rest
 from benchmarks.judge.vary import base, same, varied
 
 BALL = Description(
@@ -198,3 +199,19 @@ def test_anomalies_are_made_small():
     """What is wrong with this scene is its second contact."""
     small = shrunk(CORNER, lambda d: 1.0 in [row[-1] for row in d.G], seconds=30.0)
     assert (small.contacts, small.constant, small.restitution) == (1, (), 0.0)
+
+
+def test_rest_between_walls_without_room_begins_anew():
+    """A speed of rounding towards a wall, and no room: Newton's law has no answer, and the motion is rest."""
+    jammed = Description(
+        M=((0.00313, 0.0), (0.0, 0.407)), q0=(-0.759, 1.32), v0=(0.0, 0.0), t_span=(0.0, 0.3), h=0.0164,
+        G=((-1.0, 1.0), (1.0, 0.0), (-0.0, -1.0)), offset=(-2.079, 0.759, 1.32), restitution=(0.0, 0.015, 0.69),
+        constant=(-0.0307, 0.0), function=True, family="beads",
+    )  # fmt: skip
+    assert run(replace(jammed, v0=(0.0, 1.1e-15)), "located").status == "LCP_FAILED"
+    for speed, taken in ((1.1e-15, 0.0), (1.1e-3, 1.1e-3)):
+        q, v = np.array(jammed.q0), np.array([0.0, speed])
+        motion = SimpleNamespace(q=q[None], v=v[None], at=lambda t, q=q, v=v: (q, v))
+        second = rest(jammed, np.random.default_rng(1), motion).scene
+        assert second.v0 == (0.0, taken)
+        assert run(second, "located").done is (taken == 0.0)
