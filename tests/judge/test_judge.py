@@ -17,7 +17,7 @@ from benchmarks.judge.pool import Answer, answers
 from benchmarks.judge.report import Tally, report
 from benchmarks.judge.runs import Clock, run
 from benchmarks.judge.shrink import shrunk
-from benchmarks.judge.variants import VARIANTS, fits, rest
+from benchmarks.judge.variants import VARIANTS, Variant, fits, rest
 from benchmarks.judge.vary import base, same, varied
 
 BALL = Description(
@@ -215,3 +215,47 @@ def test_rest_between_walls_without_room_begins_anew():
         second = rest(jammed, np.random.default_rng(1), motion).scene
         assert second.v0 == (0.0, taken)
         assert run(second, "located").done
+
+
+def test_what_is_rounding_is_no_finding():
+    """The law of impact at speeds that are the difference of larger ones; a start that a slit stops at once."""
+    r = run(CORNER, "located")
+    hit = r.motion.impacts.copy()
+    hit.before[0], hit.after[0] = -6e-11, hit.after[0] * 0.0 + 6e-11 * CORNER.rates()[hit.contact[0]] - 3e-16
+    assert "law of impact" not in kinds(check(CORNER, replace(r, motion=replace(r.motion, impacts=hit[:1]))))
+    hit.after[0] -= 1e-12
+    assert "law of impact" in kinds(check(CORNER, replace(r, motion=replace(r.motion, impacts=hit[:1]))))
+    slit = Description(
+        M=((1.0,),), q0=(0.0,), v0=(-0.569,), t_span=(0.0, 0.0474), h=0.0474, G=((1.0,), (-1.0,)), offset=(0.0, 0.0),
+        restitution=0.84, K=((2.14,),), constant=(0.109,), general=True, family="slit",
+    )  # fmt: skip
+    assert check(slit, run(slit, "located")) == []
+
+
+def test_a_later_end_may_lie_where_there_is_no_way_on():
+    """The obstacle closes upon the body after the end of the shorter span."""
+    d = Description(
+        M=((2.09, 0.133), (0.133, 0.382)), q0=(0.25, 0.0491), v0=(0.0, 0.0), t_span=(0.0, 0.23333), h=0.0135,
+        G=((0.576, 0.0804), (-0.117, 0.127)), offset=(-0.1687190992, 0.025640936527832614), restitution=(0.35, 0.24),
+        K=((0.0479, -0.0332), (-0.0332, 0.0716)), constant=(0.010344879999999999, -0.00478443999999989),
+        amplitude=(-0.0089, 0.0178), phase=(0.0, 4.46), omega=8.49, bend=(0.64, -0.612), round=(0.0, 0.0),
+        family="curved",
+    )  # fmt: skip
+    b = base(d, run(d, "event-driven"))
+    later = Variant("another end", replace(d, t_span=(0.0, 0.31433)))
+    other = run(later.scene, "event-driven")
+    assert not other.done
+    assert list(same(b, other, later)) == []
+    assert list(same(b, replace(other, motion=None), later)) != []
+
+
+def test_a_light_bead_at_rest_that_impulses_move_by_rounding_is_pressed():
+    beads = Description(
+        M=((6.84e-05, 0.0), (0.0, 0.255)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.4856), h=0.0607,
+        G=((-1.0, 1.0), (1.0, 0.0)), offset=(0.0, 0.0), restitution=(1.0, 0.12), constant=(0.0, -2.5), family="beads",
+    )  # fmt: skip
+    r = run(beads, "moreau")
+    q = r.motion.q + 3e-14
+    assert "impulse while open" not in kinds(check(beads, replace(r, motion=replace(r.motion, q=q))))
+    q = r.motion.q + 1e-9
+    assert "impulse while open" in kinds(check(beads, replace(r, motion=replace(r.motion, q=q))))
