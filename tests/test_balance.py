@@ -9,6 +9,7 @@ import pytest
 from lagrangian import Contacts, LinearContacts, Scene, System, scenes
 from lcpstep import Located, Moreau, simulate
 from lcpstep.trajectory import Status
+from tests.uncompiled import both_ways
 
 METHODS = (Located(1e-2), Located(1e-2, 4), Moreau(1e-2))
 
@@ -106,3 +107,27 @@ def test_states_that_are_no_step_apart_say_nothing(keep):
 @pytest.mark.parametrize("order", [2, 4])
 def test_a_pendulum_is_balanced(order):
     assert simulate(scenes.pendulum_stop(), Located(1e-2, order)).doubt == ""
+
+
+PROGRAM = """
+import numpy as np
+from lcpstep import Located, simulate
+from lcpstep.kernels.surplus import surplus
+from lcpstep.model import model
+from lagrangian import Scene, System
+
+def mass(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[1, 0], out[1, 1] = 2.0 + np.sin(9.0 * q[0]), 0.1, 0.1, 1.0
+
+def force(t, q, v, p, out):
+    out[0], out[1] = 5.0 - 4.5 * np.cos(9.0 * q[0]) * v[0] * v[0], -3.0 * q[1]
+
+m = simulate(Scene(System(2, mass, force), [0.0, 0.3], [0.0, 0.1], (0.0, 0.6)), Located(0.05))
+both = np.column_stack([np.arange(12), np.arange(1, 13)]).ravel()
+print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.v[both], 5e-5)))
+"""
+
+
+def test_the_balance_of_the_sources_alone_is_that_of_what_is_built(tmp_path):
+    built, plain = both_ways(tmp_path, PROGRAM)
+    assert built == plain
