@@ -5,6 +5,7 @@
 The quotient of Rayleigh along the motion is never above the highest frequency there, so what exceeds the bound of
 velocity Verlet (of Runge-Kutta's steps 2.8^2) exceeds it for certain: explicit steps gain energy then, and implicit
 ones skip what the motion does. Steps by a tolerance are not asked, nor those that take linear forces implicitly.
+What passes is asked for the balance of its energy too (`balance.py`).
 Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section I.5.
 """
 
@@ -15,6 +16,7 @@ import math
 import numpy as np
 
 from lagrangian import LinearSystem
+from lcpstep.balance import unbalanced
 from lcpstep.faults import cause, forget
 from lcpstep.trajectory import Status, Trajectory
 
@@ -36,10 +38,11 @@ def unresolved(run: Trajectory) -> str:
 
     last, m = len(run.t) - 1, looked_at(run.scene)
     square = highest(m, run.t, run.q, run.v, LOOKS, NEAR * h)
+    energy = unbalanced(run, m, h)
     cause()  # a callback that fails beside the motion, where the run has not asked it
     forget()
     if not h * math.sqrt(square) > bound:
-        return ""
+        return energy
     k = np.unique(((np.arange(LOOKS) + 1) * (last / LOOKS)).astype(int))
     t, q, v, near = run.t[k], run.q[k], run.v[k], NEAR * h
     with np.errstate(all="ignore"):
@@ -50,7 +53,7 @@ def unresolved(run: Trajectory) -> str:
     forget()
     told = np.flatnonzero(angle > bound)
     if not len(told):
-        return ""
+        return energy
     i = told[0]
     return (
         f"the forces along the motion change too fast for its steps at t = {t[i]:.9g} s, "

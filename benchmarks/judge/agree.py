@@ -24,6 +24,10 @@ SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
 FACTOR, NOISE = 30.0, 100.0
 CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
 COMPANIONS = 6
+EARLY, CLEAR = (
+    8,
+    30.0,
+)  # looks at which the order is seen; of the error of the reference: what is far above it
 
 
 def disturbed(d: Description, share: float, size: float, seed: int) -> Description:
@@ -98,7 +102,10 @@ class Reference:
         self.noise = np.zeros(len(self.looks))
         for k in range(2):
             self.noise = np.maximum(self.noise, self.companion(SMALL, k))
+        # What grazes after a plastic impact does so however it is disturbed, and rounding decides whether it strikes
+        self.noise = np.maximum(self.noise, self.apart(run(d, r.method, finer_by(r))))
         self.until = told_until(d, m, 1e-9 * d.length + 1e-6 * d.h)
+        self.orders: dict[str, float] = {}  # seen of the methods that were held against it
 
     def companion(self, share: float, k: int) -> Any:
         """How far a companion disturbed by so much has been from the reference until then; infinite where unknown."""
@@ -114,6 +121,18 @@ class Reference:
         if np.any(there):
             found[there] = np.max(np.abs(positions(r, self.looks[there]) - self.q[there]), axis=1)
         return np.maximum.accumulate(found)
+
+    def see_order(self, r: Run, coarse: Any, fine: Any, told: Any) -> None:
+        """Note by which order the error of steps of one size goes down at the first looks where it is clear.
+
+        Later the motion, which grows errors or forgets them, hides it.
+        """
+        own = self.run.tolerance * (1.0 + self.size) * np.maximum(1.0, self.noise / (SMALL * self.size))
+        clear = told & (fine > CLEAR * own) & (coarse < CONVERGED * self.size)
+        early = np.flatnonzero(clear)[:EARLY]
+        if len(early) and r.tolerance == 0.0:
+            ratio = coarse[early] / fine[early]
+            self.orders[r.method] = float(np.median(np.log(ratio)) / -np.log(finer_by(r)))
 
 
 def positions(r: Run, times: Any) -> Any:
@@ -165,6 +184,7 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     for x in (r, finer):
         if not x.done:  # what ends early, and says so, is counted among the endings
             told &= ref.looks <= x.motion.t[-1]
+    ref.see_order(r, *distances, told)
     converged = told & (own < CONVERGED * ref.size)
     settled = converged & (own > 1e-5 * ref.size) & (ref.noise < 1e3 * SMALL * ref.size)
     tests = {

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import REFERENCE, WAYS, Clock, Finding, Hung, run
+from benchmarks.judge.runs import REFERENCE, SAID, WAYS, Clock, Finding, Hung, Run, run
 from benchmarks.judge.vary import varied
 
 SHARE, SEVERAL = 0.25, 2
@@ -19,10 +19,11 @@ LONG = 20_000  # steps beyond which a run is looked at for itself only: finer on
 
 
 class Verdict(NamedTuple):
-    """How each method ended, and what was found."""
+    """How each method ended, what was found, and the orders that were seen."""
 
     endings: dict[str, str]
     findings: list[Finding]
+    orders: dict[str, float]
 
 
 def judged(
@@ -48,21 +49,26 @@ def judged(
             try:
                 r = run(d, name)
                 if name in methods:
-                    endings[name] = r.status
-                    findings += check(d, r)
+                    endings[name] = r.ending
+                    findings += said(r, check(d, r))
                     rng = chance(d, name, 1)
                     if compared and rng.random() < share:
-                        findings += varied(d, r, rng, SEVERAL)
+                        findings += said(r, varied(d, r, rng, SEVERAL))
                 if name == REFERENCE:
-                    if r.usable and compared:
+                    if r.usable and compared and not r.doubt:
                         Clock.evaluations = r.motion.counts.force_evaluations
                         reference = Reference(d, r)
                 elif reference is not None and r.status != "NOT_FINITE":
-                    findings += agrees(reference, r)
+                    findings += said(r, agrees(reference, r))
             except Hung as error:
                 endings[name] = "hang"
                 findings.append(Finding(name, "hang", str(error)))
-    return Verdict(endings, findings)
+    return Verdict(endings, findings, reference.orders if reference else {})
+
+
+def said(r: Run, findings: Iterable[Finding]) -> list[Finding]:
+    """Findings, of a run that says itself that it is wrong by another name: these are not silent."""
+    return [x._replace(kind=SAID + x.kind) if r.doubt else x for x in findings]
 
 
 def chance(d: Description, method: str, what: int) -> Any:

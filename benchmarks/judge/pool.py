@@ -30,6 +30,7 @@ class Answer(NamedTuple):
     scene: Description
     endings: dict[str, str]
     findings: list[Finding]
+    orders: dict[str, float] = {}  # noqa: RUF012  (nobody writes to it)
 
 
 def _work(pipe: Any, limit: float, share: float) -> None:
@@ -148,7 +149,7 @@ def _hear(w: _Worker) -> Any:
     if isinstance(word, str):
         w.at = word
         return None
-    return Answer(w.task[0], w.task[1], word.endings, word.findings)
+    return Answer(w.task[0], w.task[1], *word)
 
 
 def _replaced(w: _Worker, limit: float, share: float, lost: Any) -> _Worker:

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 
-from benchmarks.judge.pool import Answer
-from benchmarks.judge.runs import WAYS
+import numpy as np
 
-GOOD = ("DONE", "refused")
+from benchmarks.judge.pool import Answer
+from benchmarks.judge.runs import DOUBT, WAYS, silent
+
+GOOD = ("DONE", DOUBT, "refused")
+SHORT = 0.5  # by which an order seen may fall short of that of the method
 
 
 class Tally:
@@ -18,6 +21,7 @@ class Tally:
         self.scenes = 0
         self.ended: Counter[tuple[str, str, str]] = Counter()  # method, class of scene, ending
         self.found: Counter[tuple[str, str]] = Counter()  # method, kind
+        self.orders: dict[str, list[float]] = defaultdict(list)  # seen, by method
         self.classes: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
 
     def add(self, answer: Answer) -> None:
@@ -26,6 +30,8 @@ class Tally:
         family = answer.scene.family
         for method, ending in answer.endings.items():
             self.ended[method, family, ending] += 1
+        for method, order in answer.orders.items():
+            self.orders[method].append(order)
         for method, kind in {(x.method, x.kind) for x in answer.findings}:
             self.found[method, kind] += 1
             self.classes[method, kind][family] += 1
@@ -54,12 +60,14 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 
 def endings(t: Tally) -> str:
     """By method: how its runs ended."""
-    found = Counter[str]()
-    for (method, _), n in t.found.items():
-        found[method] += n
+    found, told = Counter[str](), Counter[str]()
+    for (method, kind), n in t.found.items():
+        (found if silent(kind) else told)[method] += n
     early = sorted({e for _, _, e in t.ended if e not in GOOD})
-    rows = [[m, t.count(m), *(t.count(m, None, e) for e in (*GOOD, *early)), found[m]] for m in t.methods]
-    return table(["method", "runs", *GOOD, *early, "anomalies"], rows)
+    rows = [
+        [m, t.count(m), *(t.count(m, None, e) for e in (*GOOD, *early)), found[m], told[m]] for m in t.methods
+    ]
+    return table(["method", "runs", *GOOD, *early, "anomalies in silence", "said"], rows)
 
 
 def by_class(t: Tally) -> str:
@@ -82,6 +90,18 @@ def anomalies(t: Tally) -> str:
     return table(["anomaly", "method", "scenes", "mostly in"], rows) if rows else "No anomaly."
 
 
+def orders(t: Tally) -> str:
+    """By method of steps of one size: the order of its error at the first looks at which that is clear."""
+    rows = []
+    for m in (m for m in t.methods if t.orders[m]):
+        seen = np.array(t.orders[m])
+        low, middle, high = np.percentile(seen, [10, 50, 90])
+        less = int(np.sum(seen < WAYS[m].order - SHORT))
+        rows.append([m, len(seen), f"{middle:.2f}", f"{low:.2f} to {high:.2f}", less])
+    head = ["order seen", "runs", "median", "eight of ten", f"less than the method's by {SHORT}"]
+    return table(head, rows) if rows else "No order was seen."
+
+
 def report(t: Tally) -> str:
     """All tables."""
-    return "\n\n".join([f"{t.scenes} scenes.", endings(t), by_class(t), anomalies(t)])
+    return "\n\n".join([f"{t.scenes} scenes.", endings(t), by_class(t), orders(t), anomalies(t)])

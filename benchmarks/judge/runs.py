@@ -23,6 +23,10 @@ for kernels in ("events.flight.run", "events.general.run", "stepping.moreau_run"
 MAX_EVENTS = 50_000
 CPU_EACH = 1e-4  # seconds of each step and event
 REFERENCE = "event-driven"
+DOUBT, SAID = (
+    "doubt",
+    "said: ",
+)  # ending of a run that says that it is wrong; before the kinds of what is found
 
 
 class Finding(NamedTuple):
@@ -31,6 +35,11 @@ class Finding(NamedTuple):
     method: str
     kind: str
     text: str
+
+
+def silent(kind: str) -> bool:
+    """Whether a run in which this was found has not said so."""
+    return not kind.startswith(SAID)
 
 
 class Hung(Exception):
@@ -128,6 +137,16 @@ class Run:
     def usable(self) -> bool:
         """Whether there is a motion to look at."""
         return self.motion is not None and len(self.motion.t) > 1 and bool(np.all(np.isfinite(self.motion.q)))
+
+    @property
+    def doubt(self) -> str:
+        """What it says itself of its being wrong, or nothing."""
+        return "" if self.motion is None else str(self.motion.doubt)
+
+    @property
+    def ending(self) -> str:
+        """Its status; DOUBT where it reached the end and says that it is wrong."""
+        return DOUBT if self.done and self.doubt else self.status
 
     @property
     def tolerance(self) -> float:

@@ -43,7 +43,7 @@ class Scales:
 
 def scales(d: Description, q: Any, v: Any) -> Scales:
     """Scales of a motion through states q, v (m, n)."""
-    far, fast = np.max(np.abs(q), axis=0), np.max(np.abs(v), axis=0)
+    far, fast = np.max(np.abs(q), axis=0), np.maximum(np.max(np.abs(v), axis=0), np.abs(d.v0))
     time = min(shortest(d), d.length)
     b = np.abs(d.row("b"))
     bend = abs(d.pendulum) + abs(d.spread) * (b @ fast) ** 2

@@ -113,7 +113,9 @@ def same(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
     """The same ending, places and events."""
     if other.status == "refused":
         return
-    if not other.done:
+    end = float(b.run.motion.t[-1])
+    beyond = other.usable and other.motion.t[-1] - v.shift > end and other.status != "cut short"
+    if not other.done and not beyond:  # a later end may lie where there is no way on
         if b.told == np.inf:
             yield Finding(b.run.method, f"other: {v.name}", f"{other.status} in place of DONE; {v.scene!r}")
         return

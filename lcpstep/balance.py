@@ -1,0 +1,82 @@
+"""Whether the steps of a finished run lose or gain energy that no force accounts for.
+
+    |sum of (T(end) - T(start) - W)| > share x (largest T + sum of |W|)            of steps without an event
+
+W is the work of the forces along the step (`kernels/surplus.py`); obstacles and joints that stand still do none.
+Where steps resolve the motion the left side is below a hundredth of the right one; where they do not, as where a
+mass turns with the place by radians in a step, energy comes or goes whatever the forces are, and nothing else tells.
+Steps by a tolerance are not asked, nor linear systems: steps take those implicitly, or `resolution` judges them.
+Source of the rule: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section IV.1.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lagrangian import LinearContacts, LinearJoints, System
+from lcpstep.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.kernels.model import Model
+
+LOOKS = 32  # steps that are looked at first; all where these raise a doubt
+SHARE = 0.05  # of the energy turned over
+NEAR = 1e-3  # of a step: of the differences of M, and of the time of an event
+STILL = 1e-6  # of the speed that forces alone would give within a step: that of a body at rest
+ROUNDING = 1e-12  # of the coordinates, in a step: no motion
+
+
+def unbalanced(run: Trajectory, m: Model, h: float) -> str:
+    """How much energy steps h of a general system, of that model, lose or gain, in words; "" where they do not."""
+    if not isinstance(run.scene.system, System) or _driven(run.scene.joints):
+        return ""
+    gained, turned_over = _surplus(run, m, h, LOOKS)
+    if not abs(gained) > SHARE * turned_over:
+        return ""
+    gained, turned_over = _surplus(
+        run, m, h, len(run.t) - 1
+    )  # what some steps give and others take is no loss
+    if not abs(gained) > SHARE * turned_over:
+        return ""
+    return (
+        f"its steps {'gain' if gained > 0.0 else 'lose'} energy that no force accounts for, {abs(gained):.3g} J of "
+        f"{turned_over:.3g} J in all: they are too long for this motion, and shorter ones change it"
+    )
+
+
+def _surplus(run: Trajectory, m: Model, h: float, looks: int) -> tuple[float, float]:
+    """Energy without a source in all steps, and all that is turned over, by so many of them."""
+    from lcpstep.kernels.surplus import surplus
+
+    k = _smooth(run, h, looks)
+    if len(k) == 0:
+        return 0.0, 0.0
+    both = np.column_stack([k, k + 1]).ravel()
+    gained, work, kinetic, pushed, placed = surplus(m, run.t[both], run.q[both], run.v[both], NEAR * h)
+    if kinetic < (STILL * h) ** 2 * pushed + (ROUNDING / h) ** 2 * placed:
+        return 0.0, 0.0
+    times = max(1.0, (len(run.t) - 1) / looks)
+    return times * gained, kinetic + times * work
+
+
+def _driven(rows: Any) -> bool:
+    """Whether contacts or joints move by themselves."""
+    if rows is None or isinstance(rows, LinearJoints):
+        return False
+    return (rows.motion if isinstance(rows, LinearContacts) else rows.gap_t) is not None
+
+
+def _smooth(run: Trajectory, h: float, looks: int) -> Any:
+    """Of so many kept states those from which a step leads to the next one without an event or work of a contact."""
+    last, t, events, near = len(run.t) - 1, run.t, run.impacts.time, NEAR * h
+    k = np.arange(last) if last <= looks else (np.arange(looks) * (last / looks)).astype(int)
+    way = t[k + 1] - t[k]
+    fits = (way > near) & (way < h + near)
+    if len(events):
+        fits &= np.searchsorted(events, t[k] - near) == np.searchsorted(events, t[k + 1] + near)
+    contacts = run.scene.contacts
+    if contacts is not None and (contacts.friction is not None or _driven(contacts)):
+        fits &= ~run.impulse[k + 1].any(axis=1)
+    return k[fits]

@@ -1,0 +1,133 @@
+"""Steps that lose or gain energy for which no force accounts are told; what has a source is not."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, LinearContacts, Scene, System, scenes
+from lcpstep import Located, Moreau, simulate
+from lcpstep.trajectory import Status
+from tests.uncompiled import both_ways
+
+METHODS = (Located(1e-2), Located(1e-2, 4), Moreau(1e-2))
+
+
+def wavy_mass(t, q, v, p, out):
+    out[0, 0] = 1.0 + 0.5 * math.sin(p[0] * q[0])
+
+
+def wavy_force(t, q, v, p, out):
+    out[0] = p[1] - 0.25 * p[0] * math.cos(p[0] * q[0]) * v[0] * v[0]
+
+
+def wavy(number, t_end, **given):
+    """A body whose mass is 1 + sin(number q)/2, pulled with 5 N: (1 + sin(number q)/2) v^2/2 - 5 q is constant."""
+    return Scene(System(1, wavy_mass, wavy_force), 0.0, 0.0, (0.0, t_end), p=(number, 5.0), **given)
+
+
+def energy_of_wavy(m, number):
+    q, v = m.q[:, 0], m.v[:, 0]
+    return 0.5 * (1.0 + 0.5 * np.sin(number * q)) * v * v - 5.0 * q
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_is_lost_where_the_mass_turns_within_a_step_is_told(method):
+    """At 60 rad/m and 5 m/s the mass turns by 3 rad in a step; at 1.5 rad/m hardly."""
+    m = simulate(wavy(60.0, 1.0), method)
+    assert m.status is Status.DONE
+    assert "that no force accounts for" in m.doubt
+    assert m.doubt in m.message
+    lost = float(re.search(r"for, (\S+) J of", m.doubt)[1])
+    E = energy_of_wavy(m, 60.0)
+    assert lost == pytest.approx(abs(E[-1] - E[0]), rel=0.1)
+    m = simulate(wavy(1.5, 1.5), method)
+    assert m.doubt == ""
+    assert np.ptp(energy_of_wavy(m, 1.5)) < 1e-2 * 5.0 * m.q[-1, 0]
+
+
+def unit(n):
+    return np.eye(n)
+
+
+def spring(t, q, v, p, out):
+    out[0] = -p[0] * q[0] - p[1] * v[0] + p[2]
+
+
+def floor(s=0.0, omega=0.0, e=0.8):
+    def gap(t, q, v, p, out):
+        out[0] = q[0] - s * math.sin(omega * t)
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0] = 1.0
+
+    def rate(t, q, v, p, out):
+        out[0] = -s * omega * math.cos(omega * t)
+
+    def curvature(t, q, v, p, out):
+        out[0] = s * omega * omega * math.sin(omega * t)
+
+    return Contacts(1, gap, jacobian, gap_t=rate if s else None, bias=curvature, restitution=e)
+
+
+EXPLAINED = {
+    "an oscillator, near the bound of Verlet": ((1e4, 0.0, 0.0), 0.1, 0.0, None),
+    "damping": ((0.0, 30.0, -9.81), 1.0, 0.0, None),
+    "a ball that bounces": ((0.0, 0.0, -9.81), 1.0, 0.0, floor()),
+    "a ball that rests": ((0.0, 0.0, -9.81), 0.0, 0.0, floor()),
+    "a force that starts at zero": ((0.0, 0.0, 0.0), 0.0, 0.0, floor()),
+    "a table that shakes": ((0.0, 0.0, -9.81), 0.0, 0.5, floor(0.05, 5.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", EXPLAINED)
+def test_what_has_a_source_is_no_doubt(name, method):
+    p, q0, v0, contacts = EXPLAINED[name]
+    m = simulate(Scene(System(1, unit(1), spring), q0, v0, (0.0, 5.0), contacts, p=p), method)
+    assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_wall_that_takes_energy_is_no_doubt(method):
+    """What impacts dissipate, e = 0.3, the steps have not lost."""
+    wall = LinearContacts([[-1.0]], 1.0, restitution=0.3)
+    m = simulate(wavy(1.5, 4.0, contacts=wall), method)
+    assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+@pytest.mark.parametrize(
+    "keep", [3, "impacts", np.linspace(0.0, 4.0, 50)], ids=["every third", "impacts", "times"]
+)
+def test_states_that_are_no_step_apart_say_nothing(keep):
+    assert simulate(wavy(60.0, 4.0), Located(1e-2), keep=keep).doubt == ""
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_a_pendulum_is_balanced(order):
+    assert simulate(scenes.pendulum_stop(), Located(1e-2, order)).doubt == ""
+
+
+PROGRAM = """
+import numpy as np
+from lcpstep import Located, simulate
+from lcpstep.kernels.surplus import surplus
+from lcpstep.model import model
+from lagrangian import Scene, System
+
+def mass(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[1, 0], out[1, 1] = 2.0 + np.sin(9.0 * q[0]), 0.1, 0.1, 1.0
+
+def force(t, q, v, p, out):
+    out[0], out[1] = 5.0 - 4.5 * np.cos(9.0 * q[0]) * v[0] * v[0], -3.0 * q[1]
+
+m = simulate(Scene(System(2, mass, force), [0.0, 0.3], [0.0, 0.1], (0.0, 0.6)), Located(0.05))
+both = np.column_stack([np.arange(12), np.arange(1, 13)]).ravel()
+print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.v[both], 5e-5)))
+"""
+
+
+def test_the_balance_of_the_sources_alone_is_that_of_what_is_built(tmp_path):
+    built, plain = both_ways(tmp_path, PROGRAM)
+    assert built == plain
