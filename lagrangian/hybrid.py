@@ -16,6 +16,10 @@ parameters p (n_p,).
 A map of states, x -> P(x), needs the mode that belongs to a state. Surfaces that part all modes tell it; other
 systems have a function `mode_of`, and one that remembers (a relay with hysteresis) keeps what it remembers as a state
 whose rate is zero, set by resets.
+
+A mechanical system, x = (q, v) with a mass matrix M(t, q), may have contacts in all its modes:
+
+    q' = v,    M v' = M a_mode(t, q, v) + G^T lambda,    0 <= g(t, q)  complementary to  lambda >= 0,    u+ = -r u-
 """
 
 from __future__ import annotations
@@ -29,8 +33,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lagrangian import checks
-from lagrangian.checks import Array
+from lagrangian.checks import Array, Callback
+from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.pickling import Pickled
+from lagrangian.scene import Scene
+from lagrangian.system import System
 
 Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
 ModeOf = Callable[[float, Any, Any], str]  # mode(t, x, p), its name
@@ -123,6 +130,8 @@ class HybridSystem:
     surfaces : switching surfaces; sliding on two of them at once is not described
     mode_of : function mode(t, x, p) giving the name of the mode that a motion through a state is in, in plain Python;
         Poincare maps need it, but where the modes are those of one surface, which tells them
+    mass : (n_q, n_q) matrix, callback f(t, q, v, p, out) filling out (n_q, n_q), or None
+        Mass matrix of a mechanical system, whose states are (q, v) and whose fields give (v, v'); contacts need it.
 
     Raises
     ------
@@ -133,9 +142,11 @@ class HybridSystem:
     modes: Mapping[str, Mode]
     surfaces: Sequence[Surface] = ()
     mode_of: ModeOf | None = None
+    mass: Callback | ArrayLike | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
+        self._check_mass()
         if self.mode_of is not None and not callable(self.mode_of):
             raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
         if not isinstance(self.modes, Mapping):
@@ -157,6 +168,18 @@ class HybridSystem:
             for side in (surface.below, surface.above):
                 if side not in self.modes:
                     raise ValueError(f"surface: unknown mode {side!r}; known: {', '.join(self.modes)}")
+
+    def _check_mass(self) -> None:
+        if self.mass is None:
+            return
+        if self.n_x % 2:
+            raise ValueError(
+                f"n_x: expected an even number of states (q, v) where a mass is given, got {self.n_x}"
+            )
+        if not callable(self.mass):
+            n_q = self.n_x // 2
+            M = checks.array("mass", self.mass, (n_q, n_q))
+            object.__setattr__(self, "mass", checks.mass_matrix("mass", M))
 
     def _check_targets(self, guards: Sequence[Guard]) -> None:
         for guard in guards:
@@ -192,7 +215,13 @@ class HybridSystem:
         if self.mode_of is not None:
             self.named_mode(*at)
         for name, mode in self.modes.items():
-            evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
+            rates = evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
+            v = x[self.n_x // 2 :]
+            if self.mass is not None and not np.array_equal(rates[: self.n_x // 2], v):
+                raise ValueError(
+                    f"field of mode {name!r}: expected (v, v') at the state (q, v), as `mass` is given; its first "
+                    f"{len(v)} numbers are {checks.shown(rates[: len(v)])} where v = {checks.shown(v)}"
+                )
         for name, guards in self.guards().items():
             for guard in guards:
                 evaluate(f"guard of mode {name!r}", guard.value, at, 1)
@@ -224,6 +253,8 @@ class HybridScene(Pickled):
     exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
     labels : name of each state with its unit, for axes: ("position [m]", ...); x1, x2, .. where not given
     drawing : function (t, x) -> shapes of `lagrangian.drawing`, or None
+    contacts : LinearContacts, Contacts, or None   of all modes, as of a `Scene`: callbacks are f(t, q, v, p, out);
+        the system needs its `mass` for them
 
     Raises
     ------
@@ -241,6 +272,7 @@ class HybridScene(Pickled):
     exact: Callable[[Array], Array] | None = None
     labels: Sequence[str] = ()
     drawing: Callable[[float, Any], Any] | None = None
+    contacts: LinearContacts | Contacts | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
@@ -261,15 +293,47 @@ class HybridScene(Pickled):
             raise ValueError(f"labels: expected {self.n_x} names of states, got {self.labels!r}")
         object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
+        if self.contacts is not None:
+            self._check_contacts()
 
     def __repr__(self) -> str:
         modes = f"modes {', '.join(self.system.names)}"
-        return checks.in_words(self, [f"{self.n_x} states", modes, f"starts in {self.mode}"])
+        met = [f"{self.n_c} contact{'s' * (self.n_c > 1)}"] if self.n_c else []
+        return checks.in_words(self, [f"{self.n_x} states", *met, modes, f"starts in {self.mode}"])
 
     @property
     def n_x(self) -> int:
         """Number of states."""
         return self.system.n_x
+
+    @property
+    def n_c(self) -> int:
+        """Number of contacts."""
+        return 0 if self.contacts is None else self.contacts.n_c
+
+    @property
+    def mechanics(self) -> Scene:
+        """Coordinates, masses and contacts, without modes but the one at the start; only with contacts."""
+        n_q = self.n_x // 2
+        x = np.asarray(self.x0)
+        mass: Any = self.system.mass
+        force = OfMode(self.system.modes.get(self.mode, next(iter(self.system.modes.values()))).field, mass)
+        return Scene(
+            system=System(n_q, mass, force), q0=x[:n_q], v0=x[n_q:], t_span=self.t_span, contacts=self.contacts,
+            p=self.p, parameters=self.parameters, period=self.period, name=self.name, coordinates=self.labels[:n_q],
+        )  # fmt: skip
+
+    def _check_contacts(self) -> None:
+        checks.instance("contacts", self.contacts, LinearContacts, Contacts)
+        if self.system.mass is None:
+            raise ValueError(
+                "contacts: expected a system with a mass matrix, HybridSystem(mass=...), whose states are (q, v); "
+                "impulses act through it"
+            )
+        try:
+            _ = self.mechanics
+        except ValueError as error:
+            raise ValueError(str(error).replace("q0: ", "x0: ").replace("system.mass", "mass")) from error
 
     @property
     def corners(self) -> Array:
@@ -279,6 +343,25 @@ class HybridScene(Pickled):
     def started(self, x0: ArrayLike, mode: str, t_span: tuple[float, float] | None = None) -> HybridScene:
         """The same system from another state and mode; a motion in closed form is dropped."""
         return replace(self, x0=x0, mode=mode, t_span=t_span or self.t_span, exact=None)
+
+
+@dataclass(frozen=True, eq=False)
+class OfMode:
+    """The force M a of the field (v, a) of a mode: a callback f(t, q, v, p, out)."""
+
+    field: Function
+    mass: Callback | ArrayLike
+
+    def __call__(self, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
+        """Fill out (n_q,)."""
+        n = len(q)
+        rates, M = np.zeros(2 * n), np.zeros((n, n))
+        self.field(t, np.concatenate([q, v]), p, rates)
+        if callable(self.mass):
+            self.mass(t, q, v, p, M)
+        else:
+            M[:] = self.mass
+        out[:] = M @ rates[n:]
 
 
 def evaluate(name: str, f: Function, at: tuple[float, Array, Array], n: int) -> Array:

@@ -25,6 +25,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.coefficients import Coefficients
+from lcpstep.kernels.function import Functions
 from lcpstep.kernels.uncompiled import CalledBack
 
 Array = NDArray[np.float64]
@@ -51,6 +52,12 @@ def dense(name: str, matrix: Any) -> Array:
 def model(scene: Scene) -> kernels.Model:
     """The scene's model as kernels built ahead of time take it."""
     return _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0]
+
+
+def model_of_modes(scene: Scene, fields: Functions) -> kernels.Model:
+    """The same of a system whose force is that of a mode, by the fields (v, a) of all modes."""
+    own = _system(scene) | {"force": ABSENT, "modes": fields}
+    return _models(scene, own, contacts=_contacts(scene, scene.contacts))[0]
 
 
 def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
