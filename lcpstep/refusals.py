@@ -77,19 +77,19 @@ REFUSALS: dict[str, Refusal] = {
         "bounds of guards along the motion are not known, as they are of gaps", "audit=False",
     ),
     "modes-friction": Refusal(
-        "contacts", "EventDriven, for systems with modes,", "friction",
+        "contacts", "EventDriven of systems with modes", "friction",
         "a switch may end sticking or turn sliding at the instant at which the contact forces change, and no one "
         "problem decides both", "modes for sticking and sliding",
     ),
     "modes-surfaces": Refusal(
-        "surfaces", "EventDriven, for systems with modes that have contacts,", "surfaces with sliding",
+        "surfaces", "EventDriven of systems with modes and contacts", "surfaces with sliding",
         "the contact force differs on both sides of a surface, and depends on where between them the motion slides",
         "guards",
     ),
     "modes-maps": Refusal(
         "scene", "a map or a derivative of motions (orbits, attractors, basins, exponents)",
         "systems with modes that have contacts",
-        "states would have to tell their contacts besides their mode, and a switch at an impact has no derivative",
+        "velocities jump and contacts rest between switches, which the flow of the modes' fields alone does not",
         "simulate",
     ),
     "together": Refusal(
