@@ -35,9 +35,8 @@ from numpy.typing import ArrayLike
 from lagrangian import checks
 from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.pickling import Pickled
-from lagrangian.scene import Scene
-from lagrangian.system import System
 
 Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
 ModeOf = Callable[[float, Any, Any], str]  # mode(t, x, p), its name
@@ -146,7 +145,7 @@ class HybridSystem:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
-        self._check_mass()
+        object.__setattr__(self, "mass", mass_of(self.n_x, self.mass))
         if self.mode_of is not None and not callable(self.mode_of):
             raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
         if not isinstance(self.modes, Mapping):
@@ -168,18 +167,6 @@ class HybridSystem:
             for side in (surface.below, surface.above):
                 if side not in self.modes:
                     raise ValueError(f"surface: unknown mode {side!r}; known: {', '.join(self.modes)}")
-
-    def _check_mass(self) -> None:
-        if self.mass is None:
-            return
-        if self.n_x % 2:
-            raise ValueError(
-                f"n_x: expected an even number of states (q, v) where a mass is given, got {self.n_x}"
-            )
-        if not callable(self.mass):
-            n_q = self.n_x // 2
-            M = checks.array("mass", self.mass, (n_q, n_q))
-            object.__setattr__(self, "mass", checks.mass_matrix("mass", M))
 
     def _check_targets(self, guards: Sequence[Guard]) -> None:
         for guard in guards:
@@ -216,12 +203,8 @@ class HybridSystem:
             self.named_mode(*at)
         for name, mode in self.modes.items():
             rates = evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
-            v = x[self.n_x // 2 :]
-            if self.mass is not None and not np.array_equal(rates[: self.n_x // 2], v):
-                raise ValueError(
-                    f"field of mode {name!r}: expected (v, v') at the state (q, v), as `mass` is given; its first "
-                    f"{len(v)} numbers are {checks.shown(rates[: len(v)])} where v = {checks.shown(v)}"
-                )
+            if self.mass is not None:
+                check_rates(name, rates, x)
         for name, guards in self.guards().items():
             for guard in guards:
                 evaluate(f"guard of mode {name!r}", guard.value, at, 1)
@@ -294,7 +277,7 @@ class HybridScene(Pickled):
         object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
         if self.contacts is not None:
-            self._check_contacts()
+            check_contacts(self)
 
     def __repr__(self) -> str:
         modes = f"modes {', '.join(self.system.names)}"
@@ -312,30 +295,6 @@ class HybridScene(Pickled):
         return 0 if self.contacts is None else self.contacts.n_c
 
     @property
-    def mechanics(self) -> Scene:
-        """Coordinates, masses and contacts, without modes but the one at the start; only with contacts."""
-        n_q = self.n_x // 2
-        x = np.asarray(self.x0)
-        mass: Any = self.system.mass
-        force = OfMode(self.system.modes.get(self.mode, next(iter(self.system.modes.values()))).field, mass)
-        return Scene(
-            system=System(n_q, mass, force), q0=x[:n_q], v0=x[n_q:], t_span=self.t_span, contacts=self.contacts,
-            p=self.p, parameters=self.parameters, period=self.period, name=self.name, coordinates=self.labels[:n_q],
-        )  # fmt: skip
-
-    def _check_contacts(self) -> None:
-        checks.instance("contacts", self.contacts, LinearContacts, Contacts)
-        if self.system.mass is None:
-            raise ValueError(
-                "contacts: expected a system with a mass matrix, HybridSystem(mass=...), whose states are (q, v); "
-                "impulses act through it"
-            )
-        try:
-            _ = self.mechanics
-        except ValueError as error:
-            raise ValueError(str(error).replace("q0: ", "x0: ").replace("system.mass", "mass")) from error
-
-    @property
     def corners(self) -> Array:
         """Times of corners of the forcing: a system with modes has none, its guards are what is watched."""
         return np.zeros(0)
@@ -343,25 +302,6 @@ class HybridScene(Pickled):
     def started(self, x0: ArrayLike, mode: str, t_span: tuple[float, float] | None = None) -> HybridScene:
         """The same system from another state and mode; a motion in closed form is dropped."""
         return replace(self, x0=x0, mode=mode, t_span=t_span or self.t_span, exact=None)
-
-
-@dataclass(frozen=True, eq=False)
-class OfMode:
-    """The force M a of the field (v, a) of a mode: a callback f(t, q, v, p, out)."""
-
-    field: Function
-    mass: Callback | ArrayLike
-
-    def __call__(self, t: float, q: Any, v: Any, p: Any, out: Any) -> None:
-        """Fill out (n_q,)."""
-        n = len(q)
-        rates, M = np.zeros(2 * n), np.zeros((n, n))
-        self.field(t, np.concatenate([q, v]), p, rates)
-        if callable(self.mass):
-            self.mass(t, q, v, p, M)
-        else:
-            M[:] = self.mass
-        out[:] = M @ rates[n:]
 
 
 def evaluate(name: str, f: Function, at: tuple[float, Array, Array], n: int) -> Array:

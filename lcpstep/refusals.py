@@ -87,7 +87,7 @@ REFUSALS: dict[str, Refusal] = {
         "guards",
     ),
     "modes-maps": Refusal(
-        "scene", "a map or a derivative of motions (orbits, attractors, basins, exponents)",
+        "scene", "stroboscopic maps and derivatives (attractors, orbits, exponents, basins)",
         "systems with modes that have contacts",
         "velocities jump and contacts rest between switches, which the flow of the modes' fields alone does not",
         "simulate",

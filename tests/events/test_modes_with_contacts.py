@@ -18,7 +18,8 @@ from lagrangian import (
     Scene,
     System,
 )
-from lcpstep import EventDriven, Kind, SimulationError, Status, simulate
+from lcpstep import EventDriven, Kind, LcpStepError, SimulationError, Status, simulate
+from lcpstep.maps import StroboscopicMap, SwitchMap
 
 METHOD = EventDriven()
 FLOOR, LIVELY = LinearContacts([[1.0]], restitution=0.7), LinearContacts([[1.0]], restitution=0.95)
@@ -238,8 +239,20 @@ def chain_force(t, q, v, p, out):
     out[1] = -3.0 * (q[1] - q[0]) - 0.2 * v[1] - 2.0
 
 
+def shaken(t, q, v, p, out):
+    for c in range(3):
+        out[c, 0] = out[c, 1] = out[c, 2] = 0.0
+    out[0, 0], out[0, 1], out[0, 2] = (
+        0.05 * math.sin(2.0 * t),
+        0.1 * math.cos(2.0 * t),
+        -0.2 * math.sin(2.0 * t),
+    )
+
+
 def test_with_one_mode_a_scene_is_what_it_is_without_modes():
-    contacts = LinearContacts([[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]], [0.4, 0.2, 0.5], [0.6, 0.3, 0.9])
+    contacts = LinearContacts(
+        [[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]], [0.4, 0.2, 0.5], [0.6, 0.3, 0.9], shaken
+    )
     mass, x0, span = [[1.0, 0.0], [0.0, 2.0]], [0.1, 0.2, 0.0, 0.3], (0.0, 12.0)
     modes = HybridScene(
         HybridSystem(4, {"only": Mode(chain)}, mass=mass), x0, "only", span, contacts=contacts, period=math.pi
@@ -380,6 +393,7 @@ def test_a_run_keeps_what_is_asked_for():
     np.testing.assert_allclose(some.x, whole.at(times), rtol=0, atol=1e-13)
     np.testing.assert_array_equal(some.mode, whole.mode_at(times))
     np.testing.assert_array_equal(some.at(times), some.x)
+    assert some.mode_at(whole.switches.time[3]) == whole.switches.target[3]
     with pytest.raises(ValueError, match="keep=1"):
         some.at(0.051)
     events = simulate(scene, METHOD, keep="impacts")
@@ -409,6 +423,22 @@ def test_a_run_is_saved_drawn_tabled_and_continued(tmp_path):
     whole = simulate(replace(scene, t_span=(0.0, 20.0)), METHOD)
     rest = simulate(lcpstep.continued(run, t_end=20.0), METHOD)
     np.testing.assert_allclose(rest.at(20.0), whole.at(20.0), rtol=0, atol=1e-10)
+
+
+def height_tells(t, x, p):
+    return "high" if x[0] > p[2] else "low"
+
+
+def test_returns_to_a_mode_are_found_and_derivatives_refused():
+    scene = two_gravities()
+    run, P = simulate(scene, METHOD), SwitchMap(scene, METHOD, "low")
+    entered = run.switches[run.switches.target == "low"]
+    np.testing.assert_allclose(P(P.entry()), entered.after[1], rtol=0, atol=1e-11)
+    with pytest.raises(LcpStepError, match="velocities jump and contacts rest"):
+        P.jacobian(P.entry())
+    told = replace(scene, system=replace(scene.system, mode_of=height_tells), period=1.0)
+    with pytest.raises(LcpStepError, match="velocities jump and contacts rest"):
+        StroboscopicMap(told, METHOD)([0.7, 0.0])
 
 
 # --------------------------------------------------------------------------- bad input

@@ -55,7 +55,10 @@ def slow(t, x, p, out):
 def kicked(t, x, p, out):
     out[0], out[1] = x[0], 0.9 * x[1]
 
-modes = {"heavy": Mode(heavy, [Guard(low, "light", at_once=False)]), "light": Mode(light, [Guard(slow, "heavy", -1, kicked)])}
+modes = {
+    "heavy": Mode(heavy, [Guard(low, "light", at_once=False)]),
+    "light": Mode(light, [Guard(slow, "heavy", -1, kicked)]),
+}
 ball = HybridScene(
     HybridSystem(2, modes, mass=[[2.0]]), [0.1, 0.0], "heavy", (0.0, 0.7), contacts=LinearContacts([[1.0]], 0.0, 0.6)
 )

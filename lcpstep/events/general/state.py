@@ -155,6 +155,8 @@ class Mechanism(Clock):
     scan, t_span, corners, period, nodes, weights   as above and in `Clock`
     """
 
+    watch: Any
+
     def __init__(
         self,
         model: Model,

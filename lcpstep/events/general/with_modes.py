@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.hybrid import HybridScene
+from lagrangian import HybridScene, Scene
+from lagrangian.mechanical import mechanics
 from lcpstep.events.general.ends import INSIDE
 from lcpstep.events.general.run import General, mechanism
 from lcpstep.events.general.smooth import Watched
@@ -23,9 +24,9 @@ from lcpstep.refusals import refused
 from lcpstep.trajectory import Status
 
 
-def start(scene: HybridScene, method: Any) -> Mechanism:
-    """The state at the start of the span, in its mode."""
-    m, part = machine(scene), scene.mechanics
+def start(scene: HybridScene, part: Scene, method: Any) -> Mechanism:
+    """The state at the start of the span, in its mode; `part` is the scene without modes."""
+    m = machine(scene)
     smooth = Watched(
         m, scene.t_span[1], method.rtol, method.atol, scene.t_span[1] - scene.t_span[0], method.max_events, 0,
         SWITCHES, part.n_q,
@@ -46,9 +47,9 @@ class RunWithModes(General):
         if modes.system.surfaces:
             raise refused("modes-surfaces", modes)
         self.modes = modes
-        system = start(modes, method)
-        super().__init__(method, modes.mechanics, kept, system)
-        self.log = np.zeros((0, system.watch.take()[2].shape[1]))
+        part = mechanics(modes)
+        super().__init__(method, part, kept, start(modes, part, method))
+        self.log = self.system.watch.take()[2]
 
     @property
     def mode(self) -> str:

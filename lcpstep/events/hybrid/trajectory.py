@@ -92,9 +92,9 @@ class HybridTrajectory(Answer):
 
     def mode_at(self, t: ArrayLike) -> Any:
         """Name of the mode at any time of the run, or (m,) names; the later one at a switch."""
-        names = np.array(self.scene.system.names)
-        _, row = self._rows(t)
-        result = names[self.pieces.mode[row]]
+        times, _ = self._rows(t)
+        entered = np.array([self.scene.mode, *self.switches.target])
+        result = entered[np.searchsorted(self.switches.time, times, side="right")]
         return str(result[0]) if np.ndim(t) == 0 else result
 
     def _rows(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
