@@ -16,6 +16,10 @@ parameters p (n_p,).
 A map of states, x -> P(x), needs the mode that belongs to a state. Surfaces that part all modes tell it; other
 systems have a function `mode_of`, and one that remembers (a relay with hysteresis) keeps what it remembers as a state
 whose rate is zero, set by resets.
+
+A mechanical system, x = (q, v) with a mass matrix M(t, q), may have contacts in all its modes:
+
+    q' = v,    M v' = M a_mode(t, q, v) + G^T lambda,    0 <= g(t, q)  complementary to  lambda >= 0,    u+ = -r u-
 """
 
 from __future__ import annotations
@@ -29,7 +33,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lagrangian import checks
-from lagrangian.checks import Array
+from lagrangian.checks import Array, Callback
+from lagrangian.contacts import Contacts, LinearContacts
+from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.pickling import Pickled
 
 Function = Callable[[float, Any, Any, Any], Any]  # f(t, x, p, out), fills out, returns None
@@ -123,6 +129,8 @@ class HybridSystem:
     surfaces : switching surfaces; sliding on two of them at once is not described
     mode_of : function mode(t, x, p) giving the name of the mode that a motion through a state is in, in plain Python;
         Poincare maps need it, but where the modes are those of one surface, which tells them
+    mass : (n_q, n_q) matrix, callback f(t, q, v, p, out) filling out (n_q, n_q), or None
+        Mass matrix of a mechanical system, whose states are (q, v) and whose fields give (v, v'); contacts need it.
 
     Raises
     ------
@@ -133,9 +141,11 @@ class HybridSystem:
     modes: Mapping[str, Mode]
     surfaces: Sequence[Surface] = ()
     mode_of: ModeOf | None = None
+    mass: Callback | ArrayLike | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_x", checks.count("n_x", self.n_x))
+        object.__setattr__(self, "mass", mass_of(self.n_x, self.mass))
         if self.mode_of is not None and not callable(self.mode_of):
             raise ValueError(f"mode_of: expected a function mode(t, x, p), got {self.mode_of!r}")
         if not isinstance(self.modes, Mapping):
@@ -192,7 +202,9 @@ class HybridSystem:
         if self.mode_of is not None:
             self.named_mode(*at)
         for name, mode in self.modes.items():
-            evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
+            rates = evaluate(f"field of mode {name!r}", mode.field, at, self.n_x)
+            if self.mass is not None:
+                check_rates(name, rates, x)
         for name, guards in self.guards().items():
             for guard in guards:
                 evaluate(f"guard of mode {name!r}", guard.value, at, 1)
@@ -224,6 +236,8 @@ class HybridScene(Pickled):
     exact : function of times (m,) giving x (m, n_x), the motion where it is known in closed form, or None
     labels : name of each state with its unit, for axes: ("position [m]", ...); x1, x2, .. where not given
     drawing : function (t, x) -> shapes of `lagrangian.drawing`, or None
+    contacts : LinearContacts, Contacts, or None   of all modes, as of a `Scene`: callbacks are f(t, q, v, p, out);
+        the system needs its `mass` for them
 
     Raises
     ------
@@ -241,6 +255,7 @@ class HybridScene(Pickled):
     exact: Callable[[Array], Array] | None = None
     labels: Sequence[str] = ()
     drawing: Callable[[float, Any], Any] | None = None
+    contacts: LinearContacts | Contacts | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
@@ -261,15 +276,23 @@ class HybridScene(Pickled):
             raise ValueError(f"labels: expected {self.n_x} names of states, got {self.labels!r}")
         object.__setattr__(self, "labels", labels)
         self.system.trial(self.t_span[0], np.array(self.x0), np.array(self.p))
+        if self.contacts is not None:
+            check_contacts(self)
 
     def __repr__(self) -> str:
         modes = f"modes {', '.join(self.system.names)}"
-        return checks.in_words(self, [f"{self.n_x} states", modes, f"starts in {self.mode}"])
+        met = [f"{self.n_c} contact{'s' * (self.n_c > 1)}"] if self.n_c else []
+        return checks.in_words(self, [f"{self.n_x} states", *met, modes, f"starts in {self.mode}"])
 
     @property
     def n_x(self) -> int:
         """Number of states."""
         return self.system.n_x
+
+    @property
+    def n_c(self) -> int:
+        """Number of contacts."""
+        return 0 if self.contacts is None else self.contacts.n_c
 
     @property
     def corners(self) -> Array:

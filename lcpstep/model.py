@@ -27,6 +27,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.coefficients import Coefficients
+from lcpstep.kernels.function import Functions
 from lcpstep.kernels.uncompiled import CalledBack
 
 Array = NDArray[np.float64]
@@ -70,6 +71,12 @@ def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:
     few = scene.n_q <= LARGEST_KEPT
     LATEST.scene, LATEST.model = (scene, made) if few else (None, None)
     return made
+
+
+def model_of_modes(scene: Scene, fields: Functions) -> kernels.Model:
+    """The same of a system whose force is that of a mode, by the fields (v, a) of all modes."""
+    own = _system(scene) | {"force": ABSENT, "modes": fields}
+    return _models(scene, own, contacts=_contacts(scene, scene.contacts))[0]
 
 
 def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:

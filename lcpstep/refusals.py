@@ -76,9 +76,21 @@ REFUSALS: dict[str, Refusal] = {
         "audit", "EventDriven with audit=True", "systems with modes",
         "bounds of guards along the motion are not known, as they are of gaps", "audit=False",
     ),
-    "modes-contacts": Refusal(
-        "system", "HybridScene", "contacts",
-        "which law of impact holds where a mode changes is said by neither", "a guard with a reset",
+    "modes-friction": Refusal(
+        "contacts", "EventDriven of systems with modes", "friction",
+        "a switch may end sticking or turn sliding at the instant at which the contact forces change, and no one "
+        "problem decides both", "modes for sticking and sliding",
+    ),
+    "modes-surfaces": Refusal(
+        "surfaces", "EventDriven of systems with modes and contacts", "surfaces with sliding",
+        "the contact force differs on both sides of a surface, and depends on where between them the motion slides",
+        "guards",
+    ),
+    "modes-maps": Refusal(
+        "scene", "stroboscopic maps and derivatives (attractors, orbits, exponents, basins)",
+        "systems with modes that have contacts",
+        "velocities jump and contacts rest between switches, which the flow of the modes' fields alone does not",
+        "simulate",
     ),
     "together": Refusal(
         "run", "the derivative of a motion (multipliers, exponents)", "contacts that strike together",

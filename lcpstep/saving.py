@@ -61,14 +61,19 @@ def to_dataframe(run: Any, of: str = "states") -> Any:
 
     Parameters
     ----------
-    of : "states", columns q0, q1, ..., v0, ..., impulse0, ...; or "events"
+    of : "states", columns q0, q1, ..., v0, ..., impulse0, ...; or "events", impacts and switches in the order of time
     """
     import pandas
 
-    logs = [log for log in COLUMNS if hasattr(run, log)]
+    logs = [lines for lines in (getattr(run, log, None) for log in COLUMNS) if lines is not None]
     if of == "events":
-        lines = getattr(run, logs[0])
-        return pandas.DataFrame(_columns({name: np.asarray(lines[name]) for name in lines.dtype.names}))
+        tables = [
+            pandas.DataFrame(_columns({name: np.asarray(lines[name]) for name in lines.dtype.names}))
+            for lines in logs
+        ]
+        if len(tables) == 1:
+            return tables[0]
+        return pandas.concat(tables, ignore_index=True).sort_values("time", kind="stable", ignore_index=True)
     if of != "states":
         raise ValueError(f'of: expected "states" or "events", got {of!r}')
     arrays = {name: getattr(run, name) for name in DIMENSIONS if name != "t" and hasattr(run, name)}

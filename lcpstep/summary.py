@@ -76,7 +76,9 @@ def _marks(run: Any) -> Array:
 
 def _events(run: Any) -> tuple[str, str]:
     """How many events of each kind."""
-    if not isinstance(run, Trajectory):
-        return "switches", str(len(run.switches))
+    switches = "" if isinstance(run, Trajectory) else f"{len(run.switches)}"
+    if run.impacts is None:
+        return "switches", switches
     counts = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
+    counts |= {"switches": len(run.switches)} if switches else {}
     return "events", ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "none"

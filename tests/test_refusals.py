@@ -1,16 +1,19 @@
 """One list of what is refused: every line of it is raised in its words, and the table of the docs is made from it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy.sparse
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, Surface, scenes
 from lcpstep import EventDriven, LcpStepError, Located, Moreau, simulate
+from lcpstep.analysis.hybrid_variation import monodromy as hybrid_monodromy
 from lcpstep.analysis.variation import monodromy
 from lcpstep.refusals import REFUSALS, with_table
 from tests.events.test_friction import block
+from tests.events.test_modes_with_contacts import two_gravities
 
 PAGE = Path(__file__).parent.parent / "docs" / "choosing.md"
 EXACT = Located(1e-2, "exact")
@@ -44,6 +47,20 @@ def falls_flat():
     return monodromy(scene, EventDriven(), [0.0, 0.2, 0.0, 0.5, 0.0, 0.0], (0.0, 0.3))
 
 
+def with_friction():
+    contacts = LinearContacts([[1.0]], friction=Coulomb(0.3, [[0.0]]))
+    return replace(two_gravities(), contacts=contacts)
+
+
+def height(t, x, p, out):
+    out[0] = x[0] - p[2]
+
+
+def with_a_surface():
+    scene = two_gravities()
+    return replace(scene, system=replace(scene.system, surfaces=[Surface(height, "low", "high")]))
+
+
 def comes_to_rest_in_a_corner():
     scene = block(61045)
     x = np.concatenate([scene.q0, scene.v0]) + np.array([0.0, 0.1, 0.0, 0.0, 0.0, 0.3])
@@ -63,6 +80,9 @@ ASKED = {
     "sparse-solver": lambda: simulate(sparse(), Moreau(1e-2, lcp="pgs")),
     "modes-method": lambda: simulate(scenes.bilinear_oscillator(), Moreau(1e-2)),
     "modes-audit": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(audit=True)),
+    "modes-friction": lambda: simulate(with_friction(), EventDriven()),
+    "modes-surfaces": lambda: simulate(with_a_surface(), EventDriven()),
+    "modes-maps": lambda: hybrid_monodromy(simulate(two_gravities(0.3), EventDriven())),
     "together": falls_flat,
     "endless-together": comes_to_rest_in_a_corner,
 }
@@ -78,7 +98,7 @@ def test_what_is_refused_is_raised_in_the_words_of_the_list(key):
 
 
 def test_every_line_of_the_list_is_asked_for():
-    assert set(ASKED) | {"modes-contacts"} == set(REFUSALS)  # a HybridScene has no place for contacts
+    assert set(ASKED) == set(REFUSALS)
 
 
 def test_the_table_of_the_docs_is_that_of_the_list():

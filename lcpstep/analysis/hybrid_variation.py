@@ -15,6 +15,7 @@ from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
+from lcpstep.refusals import refused
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
@@ -25,8 +26,10 @@ def monodromy(run: HybridTrajectory) -> Array:
 
     Raises
     ------
-    LcpStepError   the motion ended early, or a guard of it is not transversal
+    LcpStepError   the system has contacts, the motion ended early, or a guard of it is not transversal
     """
+    if run.scene.contacts is not None:
+        raise refused("modes-maps", run.scene)
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
     scene = run.scene

@@ -169,31 +169,41 @@ def _ended(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
     }
 
 
+def _kinds(run: Trajectory | HybridTrajectory) -> dict[str, int]:
+    """How many events of each kind."""
+    return {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
+
+
 def _modes_summary(run: HybridTrajectory) -> dict[str, Any]:
     entered, counts = np.unique(run.switches.target, return_counts=True)
-    return _ended(run) | {
-        "x_end": run.x[-1].tolist(),
-        "mode_end": str(run.mode[-1]),
-        "steps": run.counts.steps,
-        "force_evaluations": run.counts.force_evaluations,
-        "switches": {str(name): int(n) for name, n in zip(entered, counts, strict=True)},
-    }
+    return (
+        _ended(run)
+        | {
+            "x_end": run.x[-1].tolist(),
+            "mode_end": str(run.mode[-1]),
+            "steps": run.counts.steps,
+            "force_evaluations": run.counts.force_evaluations,
+            "switches": {str(name): int(n) for name, n in zip(entered, counts, strict=True)},
+        }
+        | ({} if run.impacts is None else {"events": _kinds(run)})
+    )
 
 
 def _modes_sentence(run: HybridTrajectory) -> str:
     s = _modes_summary(run)
     to = ", ".join(f"{n} to {name}" for name, n in s["switches"].items())
+    met = "".join(f", {n} {kind}" for kind, n in s.get("events", {}).items() if n)
     return (
         f"{s['scene']} by {s['method']}: {s['status']}, {s['message']}\n"
         f"t = {s['t_end']:g} s, x = {s['x_end']}, mode {s['mode_end']}\n"
-        f"{s['steps']} steps; switches: {to or 'none'}"
+        f"{s['steps']} steps; switches: {to or 'none'}{met}"
     )
 
 
 def _summary(run: Trajectory | HybridTrajectory) -> dict[str, Any]:
     if isinstance(run, HybridTrajectory):
         return _modes_summary(run)
-    kinds = {kind.name.lower(): int(np.sum(run.impacts.kind == kind)) for kind in Kind}
+    kinds = _kinds(run)
     return (
         _ended(run)
         | {
@@ -256,6 +266,8 @@ def _save(file: Path | None, run: Trajectory | HybridTrajectory) -> None:
         arrays: dict[str, Any] = {"t": run.t}
         if isinstance(run, HybridTrajectory):
             arrays |= {"x": run.x, "mode": run.mode, "switches": np.asarray(run.switches)}
+            if run.impacts is not None:
+                arrays |= {"impulse": run.impulse, "impacts": np.asarray(run.impacts)}
         else:
             log = np.asarray(run.impacts)
             arrays |= {"q": run.q, "v": run.v, "impulse": run.impulse, "impacts": log}

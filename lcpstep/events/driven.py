@@ -77,6 +77,10 @@ class EventDriven:
         self, scene: HybridScene, kept: Kept, progress: Callable[[float], None]
     ) -> HybridTrajectory:
         """The motion of a system with modes; see `lcpstep.simulate`."""
+        if scene.contacts is not None:
+            from lcpstep.events.general.with_modes import RunWithModes
+
+            return RunWithModes(self, scene, kept).finish(progress)
         from lcpstep.events.hybrid.run import HybridRun
 
         return HybridRun(self, scene, kept).finish(progress)

@@ -2,13 +2,14 @@ cimport cython
 from libc.math cimport cos, pow, sin, sqrt
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.pointers cimport abs, after, inf, max, min
 
 cdef double DIFFERENCE, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
 cdef Py_ssize_t SHORTENINGS, TURNS
 
 cdef void external_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
 cdef void total_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
+cdef void force_of_mode(Model m, double t, double* q, double* v, double* out) noexcept nogil
 cdef void mass(Model m, double t, double* q, double* v, double* out) noexcept nogil
 cdef void gaps(Model m, double t, double* q, double* v, double* g) noexcept nogil
 cdef void gap_rates(Model m, double t, double* q, double* v, double* G, double* g_t) noexcept nogil

@@ -14,7 +14,7 @@ if not cython.compiled:
 
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, inf, max
+    from lcpstep.pointers import Doubles, abs, after, inf, max
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
 # to the terms of the rate, that they may show, and what a shorter step aims at; how often it is shortened, and beyond
@@ -47,6 +47,9 @@ def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> 
 
 def total_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
     """f(t, q, v): all forces but those of the contacts."""
+    if m.moded:
+        force_of_mode(m, t, q, v, out)
+        return
     if not m.linear:
         m.force.fill(t, q, v, out)
         return
@@ -54,6 +57,17 @@ def total_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> Non
     for i in range(m.n_q):
         for j in range(m.n_q):
             out[i] -= m.C[i * m.n_q + j] * v[j] + m.K[i * m.n_q + j] * q[j]
+
+
+def force_of_mode(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
+    """M a, with the acceleration a that the field of the mode at hand gives."""
+    n = m.n_q
+    copy(m.x, q, n)
+    copy(after(m.x, n), v, n)
+    m.modes.fill(m.mode, t, m.x, m.x, m.x_t)
+    mass(m, t, q, v, m.mass_now)
+    for i in range(n):
+        out[i] = product(m.mass_now, after(m.x_t, n), i, n)
 
 
 def mass(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:

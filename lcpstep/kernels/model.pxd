@@ -1,14 +1,17 @@
 cimport cython
 from lcpstep.arrays cimport doubles
-from lcpstep.kernels.function cimport Function
+from lcpstep.kernels.function cimport Function, Functions
+from lcpstep.pointers cimport after
 
 
 @cython.final
 cdef class Model:
-    cdef object kept
+    cdef object kept, of_modes
     cdef readonly dict arrays
     cdef readonly Py_ssize_t n_q, n_c
-    cdef readonly bint linear, flat
+    cdef public Py_ssize_t mode
+    cdef readonly bint linear, flat, moded
+    cdef Functions modes
     cdef public bint carried
     cdef readonly double omega
     cdef double* M
@@ -23,4 +26,7 @@ cdef class Model:
     cdef double* restitution
     cdef double* frame_now
     cdef double* motion_now
+    cdef double* x
+    cdef double* x_t
+    cdef double* mass_now
     cdef readonly Function force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias

@@ -1,7 +1,7 @@
 """A scene as kernels see it: numbers, arrays and the user's functions; `lcpstep.model` makes it.
 
 linear      M v' + C v + K q = F(t), F = constant + cosine cos(omega t) + sine sin(omega t) or force(t)
-otherwise   M(t, q) v' = force(t, q, v)
+otherwise   M(t, q) v' = force(t, q, v), with modes M a of the field (v, a) of the mode at hand
 flat        g = G q + offset - s(t)
 otherwise   g = gap(t, q),  u = jacobian(t, q) v + gap_t(t, q)
 """
@@ -16,6 +16,7 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.function import Function
+    from lcpstep.pointers import after
 
 
 class Model:
@@ -24,6 +25,8 @@ class Model:
     M, M_inverse, C, K : (n_q, n_q);  constant, cosine, sine : (n_q,);  omega
     G : (n_c, n_q);  offset, restitution : (n_c,)
     force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias : Function, `given` or not
+    modes, mode      fields of the modes as `Functions` of x = (q, v), and the one at hand; `moded` or not
+    x, x_t : (2 n_q,)   work space: x, its field;  mass_now : (n_q, n_q)   M, beside these
     carried     kernels see q + c, in which the frame rests and obstacles move with it instead
     frame_now : (n_q, 3)    work space: c, c', c''
     motion_now : (n_c, 3)   work space: s, s', s''
@@ -56,6 +59,12 @@ class Model:
         self.force_q, self.force_v = made["force_q"], made["force_v"]
         self.motion, self.gap, self.jacobian = made["motion"], made["gap"], made["jacobian"]
         self.gap_t, self.bias = made["gap_t"], made["bias"]
+        self.mode, self.moded = 0, "modes" in fields
+        if self.moded:
+            self.modes = fields["modes"]
+            self.of_modes = np.zeros(4 * n_q + n_q * n_q)
+            self.x = doubles(self.of_modes)
+            self.x_t, self.mass_now = after(self.x, 2 * n_q), after(self.x, 4 * n_q)
 
 
 def shapes(n_q: int, n_c: int) -> dict[str, tuple[int, ...]]:

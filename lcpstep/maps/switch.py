@@ -27,6 +27,7 @@ from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
 from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
+from lcpstep.refusals import refused
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
@@ -125,6 +126,8 @@ class SwitchMap:
 
     def jacobian(self, x: ArrayLike) -> Array:
         """DP(x), (d, d)."""
+        if self.scene.contacts is not None:
+            raise refused("modes-maps", self.scene)
         back, scene, n = self.next(x), self.scene, self.scene.n_x
         t, time, start = (
             float(back.run.pieces.t[0]),

@@ -131,7 +131,7 @@ def _curves(run: Trajectory) -> tuple[Any, tuple[Any, Any]]:
         return run.t, (run.q, run.v)
 
 
-def _impulses(ax: Any, run: Trajectory) -> None:
+def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
     """The impulse of every impact, one colour a contact."""
     jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
     stems = []
@@ -162,18 +162,24 @@ def _legend(ax: Any, handles: Any, names: Sequence[str]) -> None:
 
 
 def _states_and_mode(run: HybridTrajectory) -> Any:
-    """One panel a state, and the mode as steps."""
+    """One panel a state, one of impulses where there are contacts, and the mode as steps."""
     from lcpstep.plot.figures import Figure
 
-    n, names = run.scene.n_x, run.scene.system.names
-    figure = Figure(figsize=(10, 1.0 + 2.1 * (n + 1)), layout="constrained")
-    axes = figure.subplots(n + 1, 1, sharex=True)
+    n, names, met = run.scene.n_x, run.scene.system.names, run.impacts is not None
+    figure = Figure(figsize=(10, 1.0 + 2.1 * (n + 1 + met)), layout="constrained")
+    axes = figure.subplots(n + 1 + met, 1, sharex=True)
     jumps = np.nextafter(run.switches.time, run.t[0])
     t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps]))
-    x, modes = run.at(t), run.mode_at(t)
+    try:
+        x = run.at(t)
+    except ValueError:  # what `at` raises between states of which some were not kept
+        t, x = run.t, run.x
+    modes = run.mode_at(t)
     for ax, values, label in zip(axes, x.T, run.scene.labels, strict=False):
         ax.plot(t, values, lw=1.0)
         ax.set_ylabel(label)
+    if met:
+        _impulses(axes[n], run)
     seen = [name for name in names if name in set(modes.tolist())]
     axes[-1].step(t, [seen.index(str(name)) for name in modes], where="post", lw=1.0)
     axes[-1].set(yticks=range(len(seen)), yticklabels=seen, ylabel="mode", xlabel="time t [s]")

@@ -36,6 +36,44 @@ for scene in (ball, pendulum, beads):
 """
 
 
+WITH_MODES = """
+from lagrangian import Guard, HybridScene, HybridSystem, LinearContacts, Mode
+from lcpstep import EventDriven, simulate
+
+def heavy(t, x, p, out):
+    out[0], out[1] = x[1], -9.81
+
+def light(t, x, p, out):
+    out[0], out[1] = x[1], -2.0
+
+def low(t, x, p, out):
+    out[0] = 0.05 - x[0]
+
+def slow(t, x, p, out):
+    out[0] = x[1] - 0.3
+
+def kicked(t, x, p, out):
+    out[0], out[1] = x[0], 0.9 * x[1]
+
+modes = {
+    "heavy": Mode(heavy, [Guard(low, "light", at_once=False)]),
+    "light": Mode(light, [Guard(slow, "heavy", -1, kicked)]),
+}
+ball = HybridScene(
+    HybridSystem(2, modes, mass=[[2.0]]), [0.1, 0.0], "heavy", (0.0, 0.7), contacts=LinearContacts([[1.0]], 0.0, 0.6)
+)
+run = simulate(ball, EventDriven(rtol=1e-7, atol=1e-7))
+print(run.status.name, len(run.t), run.counts, *run.switches.target, *run.impacts.kind)
+print(*(float(x).hex() for x in (*run.x[-1], *run.impacts.impulse, *run.switches.time)))
+"""
+
+
+def test_systems_with_modes_and_contacts_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
+    built, plain = both_ways(tmp_path, WITH_MODES)
+    assert built == plain
+    assert built[0].startswith("DONE")
+
+
 def test_motions_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

@@ -3,8 +3,9 @@ from lcpstep.events.general.keep cimport keep
 from lcpstep.events.general.modes cimport jump, obey, settle
 from lcpstep.events.general.motion cimport touching
 from lcpstep.events.general.parabolas cimport fly
-from lcpstep.events.general.state cimport JUMP, MOVE, Mechanism, OBEY, SETTLE
+from lcpstep.events.general.state cimport ENTERED, JUMP, JUMPED, LOOKED, MOVE, Mechanism, OBEY, SETTLE, SWITCH
 from lcpstep.events.general.step cimport complete, step
+from lcpstep.events.general.switching cimport look_at_guards, switch
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy

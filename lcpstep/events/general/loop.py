@@ -3,7 +3,8 @@
 Between events the closed contacts and the joints are held on acceleration level; an event is a contact that closes
 (an impact, of all contacts closed at that time) or a multiplier that turns negative (a release, after which the
 contact forces are sought anew). The motion is a DOP853 step, or exact where the acceleration is constant. See `held`
-for the equations, `step` and `parabolas` for the motion, and `modes` for the events.
+for the equations, `step` and `parabolas` for the motion, `modes` for the events, and `switching` for systems with
+modes of their own.
 """
 
 from __future__ import annotations
@@ -20,8 +21,19 @@ if not cython.compiled:
     from lcpstep.events.general.modes import jump, obey, settle
     from lcpstep.events.general.motion import touching
     from lcpstep.events.general.parabolas import fly
-    from lcpstep.events.general.state import JUMP, MOVE, OBEY, SETTLE, Mechanism
+    from lcpstep.events.general.state import (
+        ENTERED,
+        JUMP,
+        JUMPED,
+        LOOKED,
+        MOVE,
+        OBEY,
+        SETTLE,
+        SWITCH,
+        Mechanism,
+    )
     from lcpstep.events.general.step import complete, step
+    from lcpstep.events.general.switching import look_at_guards, switch
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
@@ -62,12 +74,18 @@ def go_on(s: Mechanism, record: Record, tally: Tally, goal: int) -> int:
         if s.next == JUMP:
             s.next = SETTLE
             code = jump(s, record, tally)
+            s.guards = ENTERED if s.guards == ENTERED else JUMPED
         elif s.next == SETTLE:
             s.next = MOVE
             code = settle(s, record, tally)
         elif s.next == OBEY:
             s.next = MOVE
             obey(s, record, tally)
+        elif s.next == SWITCH:
+            s.next = JUMP
+            code = switch(s, tally)
+        elif s.watched and s.guards != LOOKED:
+            look_at_guards(s)
         elif record.row == 0 and record.n_times == 0:
             keep(s, record, s.t0)
         elif 2 * record.event > record.event_capacity or record.row + SLACK > record.row_capacity:

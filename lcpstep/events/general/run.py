@@ -14,7 +14,7 @@ from lagrangian import Scene
 from lcpstep.events import running
 from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.events.general.loop import keep_state, run
-from lcpstep.events.general.smooth import Smooth
+from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
 from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
@@ -47,10 +47,13 @@ def quadrature() -> tuple[Array, Array]:
 
 def start(scene: Scene, method: Any) -> Mechanism:
     """The state at the start of the span; `method` has rtol and atol."""
-    m = model(scene)
+    return mechanism(scene, model(scene), Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol))
+
+
+def mechanism(scene: Scene, m: Model, smooth: Smooth | Watched) -> Mechanism:
+    """The same by the motion that goes from event to event."""
     joints = joint_model(scene) if scene.n_j > 0 else m
     constant, scan = is_constant(m, joints), scan_interval(scene, m, 0.0)
-    smooth = Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol)
     smooth.state[: scene.n_q], smooth.state[scene.n_q :] = scene.q0, scene.v0
     smooth.next_step = FIRST_STEP * scan
     corners = () if constant else turns(scene).stops
@@ -61,10 +64,10 @@ def start(scene: Scene, method: Any) -> Mechanism:
 
 
 class General(running.EventRun):
-    """A run with any number of contacts and joints."""
+    """A run with any number of contacts and joints; `system`: its state at the start, if made elsewhere."""
 
-    def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
-        self.system = start(scene, method)
+    def __init__(self, method: Any, scene: Scene, kept: Kept, system: Mechanism | None = None) -> None:
+        self.system = system or start(scene, method)
         width = (1, scene.n_q) if self.system.constant else (7, 2 * scene.n_q)
         rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
         columns = scene.n_c + scene.n_j

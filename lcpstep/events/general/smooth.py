@@ -8,6 +8,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.held import right_hand_side
+    from lcpstep.events.hybrid.state import Motion
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.pointers import Doubles
 
@@ -19,4 +20,14 @@ class Smooth(RungeKutta):
 
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v'); False where it is not finite or the rows have become dependent."""
+        return right_hand_side(self.mechanism, t, y, dy)
+
+
+class Watched(Motion):
+    """The same of a system with modes, whose guards are watched along it."""
+
+    mechanism: Any
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Dy = (v, v') in the mode at hand; as above."""
         return right_hand_side(self.mechanism, t, y, dy)

@@ -1,11 +1,12 @@
 from lcpstep.arrays cimport doubles, indices
+from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.clock cimport Clock, RESOLUTION
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport after, indices_after, inf
 
-cdef Py_ssize_t ROWS, CONTACTS, MARKS, MOVE, JUMP, SETTLE, OBEY
+cdef Py_ssize_t ROWS, CONTACTS, MARKS, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
 cdef double NOISE
 
 
@@ -56,6 +57,8 @@ cdef class Mechanism(Clock):
     cdef object rule, numbers, lists
     cdef readonly Model model, joints
     cdef readonly RungeKutta smooth
+    cdef readonly Motion watch
+    cdef readonly bint watched
     cdef readonly Contacts contact
     cdef Rows joint
     cdef Seen start, left, right
@@ -63,9 +66,9 @@ cdef class Mechanism(Clock):
     cdef readonly bint constant
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit
     cdef readonly double scan, t_end, rtol, atol
-    cdef double length, found, seen_to
+    cdef double length, found, seen_to, slope
     cdef bint bare
-    cdef Py_ssize_t next, event_contact, event_kind, n_nodes, n_held, n_held_joints
+    cdef Py_ssize_t guards, next, event_contact, event_kind, n_nodes, n_held, n_held_joints
     cdef double* nodes
     cdef double* weights
     cdef double* q0

@@ -9,6 +9,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.events.hybrid.state import Motion
     from lcpstep.kernels.clock import RESOLUTION, Clock
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
@@ -16,7 +17,8 @@ if not cython.compiled:
     from lcpstep.pointers import after, indices_after, inf
 
 ROWS, CONTACTS, MARKS = 5, 14, 6  # numbers per row, per contact besides, and marks of a contact
-MOVE, JUMP, SETTLE, OBEY = range(4)  # what comes next
+MOVE, JUMP, SETTLE, OBEY, SWITCH = range(5)  # what comes next
+LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
 NOISE = 64 * RESOLUTION
 
 
@@ -129,7 +131,10 @@ class Mechanism(Clock):
     length            duration of the step at hand
     found, seen_to    event within it, looked for up to here; which contact and what it does
     bare              whether the acceleration is that without contacts
-    next              what comes next: MOVE, JUMP, SETTLE or OBEY
+    next              what comes next: MOVE, JUMP, SETTLE, OBEY or SWITCH
+    watch, watched    of a system with modes: `smooth` again, which watches its guards; whether there is one
+    guards            LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
+    slope             of the guard found within the step
     q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
     a_free, force     acceleration M^-1 f without contacts and joints, f
     contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
@@ -149,6 +154,8 @@ class Mechanism(Clock):
     smooth : RungeKutta    the motion between events, from q0, v0
     scan, t_span, corners, period, nodes, weights   as above and in `Clock`
     """
+
+    watch: Any
 
     def __init__(
         self,
@@ -174,6 +181,8 @@ class Mechanism(Clock):
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
         self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, MOVE
+        self.watched = isinstance(smooth, Motion)
+        self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
         self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0
         self.culprit = -1
         self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c)

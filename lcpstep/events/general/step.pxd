@@ -6,7 +6,8 @@ from lcpstep.events.general.held cimport constrain, hold_again, note, parted, pr
 from lcpstep.events.general.hops cimport carry, find_landings, reach_corner, shortest_hop, speed_at
 from lcpstep.events.general.keep cimport keep, keep_wanted, store_dense
 from lcpstep.events.general.motion cimport arrive, press_between, rebase
-from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE
+from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE, SWITCH
+from lcpstep.events.general.switching cimport SWITCHES, reach_guard, watch
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
@@ -20,6 +21,7 @@ cdef double LOOK_AHEAD, BALANCED, FURTHER
 cdef Py_ssize_t step(Mechanism s) noexcept nogil
 cdef Py_ssize_t scan(Mechanism s, double h) noexcept nogil
 cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t complete_to_guard(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef void make_dense(Mechanism s, double tau) noexcept nogil
 cdef double shorten(Mechanism s, Py_ssize_t c, double tau, Py_ssize_t kind) noexcept nogil
 @cython.locals(solved=bint, found=bint, balanced=bint)

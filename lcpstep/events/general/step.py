@@ -25,7 +25,8 @@ if not cython.compiled:
     from lcpstep.events.general.hops import carry, find_landings, reach_corner, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted, store_dense
     from lcpstep.events.general.motion import arrive, press_between, rebase
-    from lcpstep.events.general.state import JUMP, OBEY, SETTLE, Mechanism
+    from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
+    from lcpstep.events.general.switching import SWITCHES, reach_guard, watch
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -50,7 +51,8 @@ def step(s: Mechanism) -> int:
     h = s.length = s.smooth.length
     s.found, s.seen_to = NONE, 0.0
     find_landings(s, h)
-    return scan(s, h) if s.n_c > 0 else DONE
+    code = scan(s, h) if s.n_c > 0 else DONE
+    return watch(s) if s.watched and code == DONE else code
 
 
 def scan(s: Mechanism, h: float) -> int:
@@ -82,6 +84,8 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         take_over(s, record, tally, t_next, h)
         return pass_end(s, record, tally)
     c, kind, u = s.event_contact, s.event_kind, 0.0
+    if kind == SWITCHES:
+        return complete_to_guard(s, record, tally)
     if kind == OPENS and not look_ahead(s, c, tau, end):
         return NO_FORCES
     if tau > 0.0:
@@ -100,6 +104,21 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         s.contact.speed[c] = min(u, 0.0)
     elif kind == NEVER_LEFT:
         s.contact.speed[c], s.contact.closed[c], s.contact.held_until[c] = 0.0, 1, s.t0 + end
+    return DONE
+
+
+def complete_to_guard(s: Mechanism, record: Record, tally: Tally) -> int:
+    """The same up to the guard that acts."""
+    tau = reach_guard(s)
+    if tau > 0.0:
+        make_dense(s, tau)
+        reach_corner(s, tau)
+    take_over(s, record, tally, min(s.after(tau), min(s.t_end, s.high)), tau)
+    if not measure_on(s, s.t0):
+        return NOT_FINITE
+    if tau > 0.0:
+        carry(s)
+    s.next = SWITCH
     return DONE
 
 

@@ -14,7 +14,8 @@ cdef class Machine:
     cdef object numbers, out_array, signs, kept
     cdef readonly Py_ssize_t n, n_guards
     cdef readonly double dt
-    cdef Functions fields, surfaces, values, resets
+    cdef readonly Functions fields
+    cdef Functions surfaces, values, resets
     cdef Py_ssize_t* has_reset
     cdef Py_ssize_t* first
     cdef Py_ssize_t* at_once

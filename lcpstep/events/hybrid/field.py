@@ -194,9 +194,11 @@ def guard_gradient(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float
 def band_and_rate(
     m: Machine, mode: int, k: int, t: float, x: Doubles, rtol: float, atol: float
 ) -> tuple[float, float, float]:
-    """How well guard k is known under these tolerances; its rate along the motion, and how well that is known."""
+    """How well guard k is known under these tolerances; its rate along the motion, and how well that is known.
+
+    The rate of the state is in F.
+    """
     g_t = guard_gradient(m, mode, k, t, x)
-    field(m, mode, t, x, m.F)
     rate, band, size = g_t, TINY + abs(g_t) * 16.0 * RESOLUTION * abs(t), abs(g_t)
     for i in range(m.n):
         rate += m.g_x[i] * m.F[i]

@@ -24,8 +24,8 @@ REFINEMENTS = 8  # of an event's time by repeated steps
 JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
 
-def find(s: Motion, h: float) -> tuple[int, float, float, float]:
-    """The first guard that acts within the step: guard, fraction of the step, its slope and curvature there.
+def find(s: Motion, h: float, share: float) -> tuple[int, float, float, float]:
+    """The first guard that acts within this share of the step: guard, fraction of the step, slope, curvature.
 
     The guard is -1 where none acts, UNKNOWN where one is not finite.
     """
@@ -33,7 +33,7 @@ def find(s: Motion, h: float) -> tuple[int, float, float, float]:
     found, at, slope, curvature = -1, 2.0, 0.0, 0.0
     part = 0
     while part < parts and first < end:
-        a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
+        a, b = share * part / parts, share * (part + 1) / parts
         for j in range(SAMPLES):
             s.at(a + (b - a) * s.scan.points[j], after(s.states, j * s.n))
         fine = True
@@ -51,7 +51,8 @@ def find(s: Motion, h: float) -> tuple[int, float, float, float]:
             if place != NONE and a + (b - a) * place < at:
                 found, at = k, a + (b - a) * place
                 _, slope, curvature = taylor(s.scan.c, place, s.scan.half)
-                slope, curvature = slope * parts, curvature * parts * parts
+                per_step = parts / share
+                slope, curvature = slope * per_step, curvature * per_step * per_step
                 s.event_at, s.was_armed = 0.0 if armed else s.band[k], armed
         if not fine:  # the same place again, more finely
             part, parts = 2 * part, 2 * parts

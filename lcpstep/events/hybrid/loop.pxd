@@ -17,5 +17,6 @@ cdef Py_ssize_t advance(Motion s) noexcept nogil
 cdef Py_ssize_t settle(Motion s, Py_ssize_t k) noexcept nogil
 cdef Py_ssize_t switch(Motion s, Py_ssize_t k) noexcept nogil
 cdef (Py_ssize_t, Py_ssize_t) target_of(Motion s, Py_ssize_t k) noexcept nogil
-@cython.locals(passed=bint)
-cdef Py_ssize_t enter(Motion s, Py_ssize_t left) noexcept nogil
+cdef Py_ssize_t leave(Motion s, Py_ssize_t k) noexcept nogil
+@cython.locals(passed=bint, may_act=bint)
+cdef Py_ssize_t enter(Motion s, Py_ssize_t left, bint jumped) noexcept nogil

@@ -50,7 +50,7 @@ def go_on(s: Motion, goal: int) -> int:
     """The same from within a kernel."""
     if not s.begun:
         s.begun = True
-        s.culprit = enter(s, -1)
+        s.culprit = enter(s, -1, False)
     while s.now < s.t_end and s.steps < goal:
         if s.culprit >= 0:  # a switch is due
             code = settle(s, s.culprit)
@@ -79,7 +79,7 @@ def advance(s: Motion) -> int:
     if code != DONE:
         return code
     h = s.length
-    k, at, slope, curvature = find(s, h)
+    k, at, slope, curvature = find(s, h, 1.0)
     if k == UNKNOWN:
         return NOT_FINITE
     tau = h
@@ -119,7 +119,12 @@ def settle(s: Motion, k: int) -> int:
 
 
 def switch(s: Motion, k: int) -> int:
-    """Guard k acts at y: log, reset, new mode. Returns the guard that acts at once in that mode, or -1."""
+    """Guard k acts at y, and a mode begins. Returns the guard that acts at once in that mode, or -1."""
+    return enter(s, leave(s, k), False)
+
+
+def leave(s: Motion, k: int) -> int:
+    """Guard k acts at y: log, reset, new mode. Returns the sliding mode that it ends, or -1."""
     t, n = s.now, s.n
     if t - s.last_switch <= 4.0 * RESOLUTION * abs(t):
         s.stalled += 1
@@ -136,7 +141,7 @@ def switch(s: Motion, k: int) -> int:
     s.note(target, k, s.m.moved)
     copy(s.y, s.m.moved, n)
     s.mode, s.last_switch = target, t
-    return enter(s, left)
+    return left
 
 
 def target_of(s: Motion, k: int) -> tuple[int, int]:
@@ -156,16 +161,20 @@ def target_of(s: Motion, k: int) -> tuple[int, int]:
     return target, left
 
 
-def enter(s: Motion, left: int) -> int:
-    """Begin a mode at y; the guard that leaves it at once, or -1. left: the sliding mode just ended, or -1."""
+def enter(s: Motion, left: int, jumped: bool) -> int:
+    """Begin a mode at y; the guard that leaves it at once, or -1. left: the sliding mode just ended, or -1.
+
+    jumped: the mode has not just begun, but an impact has moved y; a guard that this has carried through zero acts.
+    """
     mode, t, leaves = s.mode, s.now, -1
+    s.rates(t, s.y, s.m.F)
     for k in range(s.m.first[mode], s.m.first[mode + 1]):
         band, rate, noise = band_and_rate(s.m, mode, k, t, s.y, s.rtol, s.atol)
-        g = guard(s.m, mode, k, t, s.y)
+        g, may_act = guard(s.m, mode, k, t, s.y), s.m.at_once[k] != 0 or (jumped and s.armed[k] != 0)
         s.band[k], s.armed[k] = band, g < -band
         passed = g > band or (g >= -band and rate > noise)
         if s.m.kind[k] == ARRIVE and s.m.target[k] == left:
             passed = g > band
-        if passed and s.m.at_once[k] != 0 and leaves < 0:
+        if passed and may_act and leaves < 0:
             leaves = k
     return leaves

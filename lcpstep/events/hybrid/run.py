@@ -18,6 +18,7 @@ from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
 from lcpstep.model import hybrid_culprit
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept
+from lcpstep.refusals import refused
 from lcpstep.running import Portions
 from lcpstep.trajectory import Counts, Status
 
@@ -32,6 +33,8 @@ def prepared(scene: HybridScene, method: Any, rows: int, switches: int) -> Motio
 
     The buffers have this many rows and lines of the switch log; rows = 0 where nothing but switches is kept.
     """
+    if scene.contacts is not None:
+        raise refused("modes-maps", scene)
     span = scene.t_span[1] - scene.t_span[0]
     longest = min(scene.period / PER_PERIOD, span / PER_SPAN)
     motion = Motion(
@@ -83,7 +86,7 @@ class HybridRun(Portions):
         log = np.concatenate(logs)
         whole = HybridTrajectory(
             scene=self.scene, method=self.method, t=pieces.t, x=pieces.x,
-            mode=np.array(self.scene.system.names)[pieces.mode], switches=self._switches(log), status=status,
+            mode=np.array(self.scene.system.names)[pieces.mode], switches=switch_log(self.scene, log), status=status,
             message=self._message(status, log),
             counts=Counts(
                 steps=motion.steps, force_evaluations=motion.evaluations, events=motion.events,
@@ -92,39 +95,10 @@ class HybridRun(Portions):
         )  # fmt: skip
         return chosen(whole, self.kept)
 
-    def _switches(self, log: Array) -> Any:
-        n, names = self.scene.system.n_x, np.array(self.scene.system.names)
-        kind = f"U{max(map(len, names))}"
-        dtype = [
-            ("time", "f8"),
-            ("source", kind),
-            ("target", kind),
-            ("guard", "i8"),
-            ("before", "f8", (n,)),
-            ("after", "f8", (n,)),
-        ]
-        result = np.zeros(len(log), dtype=dtype)
-        result["time"] = log[:, 0]
-        result["source"], result["target"] = names[log[:, 1].astype(int)], names[log[:, 2].astype(int)]
-        result["guard"] = log[:, 3]
-        result["before"] = log[:, SWITCH_LEAD : SWITCH_LEAD + n]
-        result["after"] = log[:, SWITCH_LEAD + n :]
-        return result.view(np.recarray)
-
     def _message(self, status: Status, log: Array) -> str:
-        names, t = self.scene.system.names, f"t = {self.now:.12g}"
-        mode = names[self.motion.mode]
-        if status == Status.ENDLESS_SWITCHING:
-            chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
-            return (
-                f"at {t} the modes {' -> '.join([*chain, chain[0]])} follow one another for ever at one instant, or "
-                f"ever faster; where two fields point at each other, describe the switching as a lagrangian.Surface"
-            )
-        if status == Status.NOT_TRANSVERSAL:
-            return (
-                f"at {t} the motion in mode {mode!r} touches the guard towards {self._target()!r} and turns back "
-                f"within the tolerance: the guard is not transversal there, and whether it acts is undecided"
-            )
+        t, mode = f"t = {self.now:.12g}", self.scene.system.names[self.motion.mode]
+        if status in (Status.ENDLESS_SWITCHING, Status.NOT_TRANSVERSAL):
+            return undecided(self.scene, self.motion, status, log)
         return {
             Status.DONE: "ran to the end of the span",
             Status.INTERRUPTED: f"interrupted at {t}",
@@ -133,8 +107,42 @@ class HybridRun(Portions):
             Status.STEP_TOO_SMALL: f"at {t} in mode {mode!r} the tolerance cannot be met by any step",
         }[status]
 
-    def _target(self) -> str:
-        return self.scene.system.names[self.motion.m.target_of(self.motion.culprit)]
+
+def undecided(scene: HybridScene, motion: Motion, status: Status, log: Array) -> str:
+    """Why no mode follows, in words."""
+    names, t = scene.system.names, f"t = {motion.now:.12g}"
+    if status == Status.ENDLESS_SWITCHING:
+        chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
+        return (
+            f"at {t} the modes {' -> '.join([*chain, chain[0]])} follow one another for ever at one instant, or "
+            f"ever faster; where two fields point at each other, describe the switching as a lagrangian.Surface"
+        )
+    return (
+        f"at {t} the motion in mode {names[motion.mode]!r} touches the guard towards "
+        f"{names[motion.m.target_of(motion.culprit)]!r} and turns back within the tolerance: the guard is not "
+        f"transversal there, and whether it acts is undecided"
+    )
+
+
+def switch_log(scene: HybridScene, log: Array) -> Any:
+    """The switches that kernels have written, as a record array."""
+    n, names = scene.system.n_x, np.array(scene.system.names)
+    kind = f"U{max(map(len, names))}"
+    dtype = [
+        ("time", "f8"),
+        ("source", kind),
+        ("target", kind),
+        ("guard", "i8"),
+        ("before", "f8", (n,)),
+        ("after", "f8", (n,)),
+    ]
+    result = np.zeros(len(log), dtype=dtype)
+    result["time"] = log[:, 0]
+    result["source"], result["target"] = names[log[:, 1].astype(int)], names[log[:, 2].astype(int)]
+    result["guard"] = log[:, 3]
+    result["before"] = log[:, SWITCH_LEAD : SWITCH_LEAD + n]
+    result["after"] = log[:, SWITCH_LEAD + n :]
+    return result.view(np.recarray)
 
 
 def chosen(whole: HybridTrajectory, kept: Kept) -> HybridTrajectory:

@@ -40,14 +40,15 @@ class Motion(RungeKutta):
     t_end, longest, max_events   as above
     rtol, atol : tolerances
     rows, switches : int   room; rows = 0 where nothing but switches is kept
+    positions : int   see `RungeKutta`
     """
 
     def __init__(
         self, machine: Machine, t_end: float, rtol: float, atol: float, longest: float, max_events: int,
-        rows: int, switches: int,
+        rows: int, switches: int, positions: int = 0,
     ) -> None:  # fmt: skip
         n = machine.n
-        super().__init__(n, 0, rtol, atol)
+        super().__init__(n, positions, rtol, atol)
         self.m, self.scan = machine, Scan()
         self.t_end, self.longest, self.max_events = t_end, longest, max_events
         self.kept_rows, self.kept_dense = np.zeros((rows, LEAD + n)), np.zeros((rows, 7, n))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Steps: start t (n,), length h (n,), mode (n,), state x (n, n_x) and dense output (n, 7, n_x)."""
+    """Steps: start t (n,), length h (n,), mode (n,), state x (n, n_x) and dense output (n, 7, n_x), or none."""
 
     t: Array
     h: Array
@@ -42,6 +42,8 @@ class HybridTrajectory(Answer):
     status : Status   DONE, or why the run ended early; `message` says it in words
     counts : Counts   steps, evaluations of the field, switches (`events`)
     scene, method : the question, and how it was answered
+    impulse : (n, n_c)   impulse of each contact since the state before [N s], the contact force's included
+    impacts : record array, the log of the contacts as of a `Trajectory`, or None where there are none
     """
 
     scene: HybridScene
@@ -54,6 +56,8 @@ class HybridTrajectory(Answer):
     message: str
     counts: Counts
     pieces: Pieces
+    impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    impacts: Any = None
 
     def at(self, t: ArrayLike) -> Array:
         """State at any time of the run; the right limit where it jumps.
@@ -68,10 +72,14 @@ class HybridTrajectory(Answer):
 
         Raises
         ------
-        ValueError   a time lies outside the run
+        ValueError   a time lies outside the run, or, of a system with contacts, between states that were not kept
         """
         times, row = self._rows(t)
         s = self.pieces
+        if len(s.dense) == 0:
+            if not np.all(np.isin(times, s.t)):
+                raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+            return s.x[row[0]] if np.ndim(t) == 0 else s.x[row]
         with np.errstate(invalid="ignore"):
             fraction = np.clip((times - s.t[row]) / np.where(s.h[row] > 0.0, s.h[row], np.inf), 0.0, 1.0)[
                 :, None
@@ -84,9 +92,9 @@ class HybridTrajectory(Answer):
 
     def mode_at(self, t: ArrayLike) -> Any:
         """Name of the mode at any time of the run, or (m,) names; the later one at a switch."""
-        names = np.array(self.scene.system.names)
-        _, row = self._rows(t)
-        result = names[self.pieces.mode[row]]
+        times, _ = self._rows(t)
+        entered = np.array([self.scene.mode, *self.switches.target])
+        result = entered[np.searchsorted(self.switches.time, times, side="right")]
         return str(result[0]) if np.ndim(t) == 0 else result
 
     def _rows(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
@@ -97,9 +105,10 @@ class HybridTrajectory(Answer):
         return times, np.searchsorted(s.t, times, side="right") - 1
 
     def __repr__(self) -> str:
+        met = f"{len(self.impacts)} events of contacts, " if self.impacts is not None else ""
         return (
             f"HybridTrajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g}, "
-            f"{len(self.t)} states, {len(self.switches)} switches, {self.status.name})"
+            f"{len(self.t)} states, {len(self.switches)} switches, {met}{self.status.name})"
         )
 
 
