@@ -19,6 +19,7 @@ from lagrangian.scenes.chain import elastic_chain
 from lagrangian.scenes.double_pendulum import double_pendulum
 from lagrangian.scenes.dry_friction import coulomb_oscillator, sliding_block, slipping_wheel, slope_landing
 from lagrangian.scenes.grazing import grazing
+from lagrangian.scenes.hinged_chain import hinged_chain
 from lagrangian.scenes.hybrid_abs import hybrid_abs
 from lagrangian.scenes.hybrid_oscillators import (
     bilinear_oscillator,
