@@ -11,8 +11,8 @@ A contact is open, sticks, or slides either way; for given modes all this is one
     [ T        mu s    d   ]        rows of other impulses say what they are: p_N = 0, or p_T + s mu p_N = 0
 
 solved by refinement down to rounding. Contacts whose answer does not fit their mode change it, all together as long as
-that makes headway, then one by one, and where few contacts are active Lemke's method says the modes. The answer is
-judged by its residuals before it is accepted.
+that makes headway; then those that are in doubt get their modes by Lemke's method, from a small dense problem in which
+the others keep theirs. The answer is judged by its residuals before it is accepted.
 
 Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353; M. Hintermueller, K. Ito, K. Kunisch,
 SIAM J. Optim. 13 (2003) 865; `kernels.coulomb` for the law and its linear complementarity problem.
@@ -36,9 +36,9 @@ SIGN = np.array([0.0, 0.0, 1.0, -1.0])  # of the sliding velocity
 PROXIMAL = 1e-10  # d, relative to the mobility of a row
 SMALLEST = 1e-300
 REFINEMENTS = 20
-ONE_BY_ONE = 200  # changes of a single mode
+EXCHANGES = 60
 AT_LIMIT = 1e-9  # of the friction that a contact can give: at its limit
-FEW = 60  # contacts whose dense problem is handed to Lemke's method
+FEW = 60  # contacts whose dense problem may be handed to Lemke's method
 
 
 class Problem(NamedTuple):
@@ -138,27 +138,37 @@ class Coupled:
         try:
             yield from self.exchange(problem, modes, p)
             if 0 < np.count_nonzero(problem.active) <= FEW:
-                yield from self.exchange(problem, self.by_lemke(problem), p)
+                yield self.settle(problem, *self.by_lemke(problem, modes, p, problem.active))
         except Singular:
             return
 
     def exchange(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
-        """Change modes that do not fit: all together while fewer and fewer do not, then one by one."""
-        fewest, patience = self.n_c + 1, PATIENCE
-        for _ in range(ONE_BY_ONE):
+        """Change modes that do not fit: all together while fewer and fewer do not, then those in doubt by Lemke."""
+        fewest, patience, doubt, before = self.n_c + 1, PATIENCE, np.zeros(self.n_c, dtype=bool), False
+        for _ in range(EXCHANGES):
             try:
                 point = self.settle(problem, modes, p)
             except Singular:  # of slides that jam
                 modes = np.minimum(modes, STICK)
                 point = self.settle(problem, modes, p)
             yield point
-            wrong = np.flatnonzero(point.fitting != modes)
-            if len(wrong) == 0:
+            wrong = point.fitting != modes
+            count = int(np.count_nonzero(wrong))
+            if count == 0:
                 return
-            patience = PATIENCE if len(wrong) < fewest else patience - 1
-            fewest = min(fewest, len(wrong))
-            modes, chosen = modes.copy(), wrong if patience >= 0 else wrong[:1]
-            modes[chosen] = point.fitting[chosen]
+            patience = PATIENCE if count < fewest else patience - 1
+            fewest = min(fewest, count)
+            if patience >= 0:
+                modes = point.fitting
+            else:
+                known = np.count_nonzero(doubt)
+                doubt |= wrong | before
+                if np.count_nonzero(doubt) == known:
+                    doubt = self.around(problem, modes, doubt)
+                if np.count_nonzero(doubt) in (known, *range(FEW + 1, self.n_c + 1)):
+                    return
+                modes, p = self.by_lemke(problem, modes, p, doubt)
+            before = wrong
 
     def held(self, problem: Problem, modes: Any) -> Any:
         """Rows whose rates vanish: all joints, closed contacts, and tangents of those that stick."""
@@ -184,7 +194,8 @@ class Coupled:
         u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
         left = np.append(-(self.L @ u), np.where(held, -problem.b, 0.0))
         for _ in range(REFINEMENTS):
-            u = u + solve(left)
+            change = solve(left)
+            u = u + change
             u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
             rates = self.R @ u[:n] + problem.b
             left = np.append(-(self.L @ u), np.where(held, -rates, 0.0))
@@ -194,7 +205,10 @@ class Coupled:
             if not REFINED < error < 0.5 * before:
                 break
             before = error
-        return self.judged(problem, modes, u, size_x, away, largest(left[:n] / size_x))
+        point = self.judged(problem, modes, u, size_x, away, largest(left[:n] / size_x))
+        if error > TOLERANCE and np.array_equal(point.fitting, modes):
+            return point._replace(fitting=self.gives_way(problem, point, change[n:]))
+        return point
 
     def sizes(self, problem: Problem, u: Any) -> tuple[Any, Any, Any]:
         """Sizes of the terms of A x and of the rates, and what the rounding of x makes of rates."""
@@ -223,36 +237,75 @@ class Coupled:
         residual = max(defect, *map(largest, kinds)) if np.all(np.isfinite(size_x)) else np.inf
         return Point(modes, x, p, size_x, residual, largest(away_J), fitting)
 
+    def gives_way(self, problem: Problem, point: Point, change: Any) -> Any:
+        """Modes where rows that are held contradict each other, as rods and sticking hinges in one line do.
+
+        Their impulses grow against each other along `change` until the first contact opens or begins to slide.
+        """
+        cuts = self.n_j, self.n_j + self.n_c
+        _, p_N, p_T = np.split(point.p, cuts)
+        _, d_N, d_T = np.split(change, cuts)
+        stick, limit, growth = (point.modes == STICK) & problem.rough, problem.mu * p_N, problem.mu * d_N
+        ways = (
+            (BACKWARDS, stick, limit - p_T, d_T - growth), (FORWARDS, stick, limit + p_T, -d_T - growth),
+            (OPEN, point.modes != OPEN, p_N, -d_N),
+        )  # fmt: skip
+        reach = np.array([np.where(may & (speed > 0.0), room / speed, np.inf) for _, may, room, speed in ways])
+        way, contact = np.unravel_index(int(np.argmin(reach)), reach.shape)
+        modes = point.modes.copy()
+        if np.isfinite(reach[way, contact]):
+            modes[contact] = ways[way][0]
+        return modes
+
     def shares(self, size_x: Any) -> Any:
         """The largest part that a unit impulse of each row has in an equation of x."""
         weighted = np.append(self.abs_R.data / size_x[self.R.indices], 0.0)
         felt = np.maximum.reduceat(weighted, self.R.indptr[:-1]) if self.n_r else np.zeros(0)
         return np.where(np.diff(self.R.indptr) > 0, felt, 0.0)
 
-    def by_lemke(self, problem: Problem) -> Any:
-        """Modes by Lemke's method, from the dense problem of the active contacts; see `kernels.coulomb`."""
-        contacts, rough = np.flatnonzero(problem.active), np.flatnonzero(problem.rough)
+    def by_lemke(self, problem: Problem, modes: Any, p: Any, doubt: Any) -> tuple[Any, Any]:
+        """Modes of the contacts in doubt by Lemke's method, from their dense problem, the other modes kept.
+
+        For the problem see `kernels.coulomb`. Its impulses are among those that do the same, and within their limits.
+        Where it has no answer modes and impulses stay as they are.
+        """
+        contacts, rough = np.flatnonzero(doubt), np.flatnonzero(doubt & problem.rough)
+        others, n, a, f = np.where(doubt, OPEN, modes), self.n_q, len(contacts), len(rough)
         rows = self.n_j + np.append(contacts, self.n_c + rough)
-        solve, n, rest = self.factor(problem, np.full(self.n_c, OPEN)), self.n_q, np.zeros(self.n_r)
-        H = self.R[rows].toarray()
-        X = np.column_stack([solve(np.append(h, rest))[:n] for h in H])
-        rest[: self.n_j] = -problem.b[: self.n_j]
-        b = problem.b[rows] + H @ solve(np.append(np.zeros(n), rest))[:n]
-        W, a, f = H @ X, len(contacts), len(rough)
+        solve, held, H = self.factor(problem, others), self.held(problem, others), self.R[rows].toarray()
+        X = np.column_stack([solve(np.append(h, np.zeros(self.n_r)))[:n] for h in H])
+        x = solve(np.append(np.zeros(n), np.where(held, -problem.b, 0.0)))[:n]
+        W, b = H @ X, problem.b[rows] + H @ x
         carrier, mu, m = np.searchsorted(contacts, rough), problem.mu[rough], a + f
         M = np.zeros((m + f, m + f))
         M[:m, :m] = W
         M[:m, carrier] -= W[:, a:] * mu
         M[a:m, m:] = np.eye(f)
         M[m + np.arange(f), carrier], M[m:, a:m] = 2.0 * mu, -np.eye(f)
-        z = solve_lcp(M, np.append(b, np.zeros(f)), method="lemke").z
-        modes = np.full(self.n_c, OPEN)
-        modes[contacts] = np.where(z[:a] > 0.0, STICK, OPEN)
+        answer = solve_lcp(M, np.append(b, np.zeros(f)), method="lemke")
+        if not answer.solved:
+            return modes, p
+        z, found = answer.z, others.copy()
+        found[contacts] = np.where(z[:a] > 0.0, STICK, OPEN)
         right, left = z[a:m], 2.0 * mu * z[carrier] - z[a:m]  # what is missing to either limit
         moving = np.minimum(np.abs(right), np.abs(left)) <= AT_LIMIT * (np.abs(right) + np.abs(left))
         slides = np.where(np.abs(right) <= np.abs(left), FORWARDS, BACKWARDS)
-        modes[rough] = np.where(moving & (modes[rough] != OPEN), slides, modes[rough])
-        return modes
+        found[rough] = np.where(moving & (found[rough] != OPEN), slides, found[rough])
+        given = np.zeros(self.n_r)
+        given[rows[:a]], given[rows[a:]] = z[:a], z[a:m] - mu * z[carrier]
+        u = solve(np.append(np.zeros(n), np.where(held, -problem.b, given)))
+        return found, u[n:]
+
+    def around(self, problem: Problem, modes: Any, doubt: Any) -> Any:
+        """The contacts in doubt, and as many others that impulses of these move most."""
+        solve, others = self.factor(problem, np.where(doubt, OPEN, modes)), problem.active & ~doubt
+        normals = self.R[self.n_j : self.n_j + self.n_c]
+        pushed = normals.T @ np.where(doubt, 1.0, 0.0)
+        moved = np.abs(normals @ solve(np.append(pushed, np.zeros(self.n_r)))[: self.n_q])
+        most = np.argsort(np.where(others, -moved, 1.0))[: min(np.count_nonzero(doubt), np.count_nonzero(others))]
+        doubt = doubt.copy()
+        doubt[most] = True
+        return doubt
 
 
 def relative(value: Any, size: Any, rounding: Any) -> Any:

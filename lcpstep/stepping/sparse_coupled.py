@@ -32,6 +32,7 @@ CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next t
 CANCELLED = 0.1
 ROUNDING = 1e-13
 NO_APPROACH = 1e-11
+EPSILON = float(np.finfo(float).eps)
 
 
 class CoupledStep(Step):
@@ -94,7 +95,7 @@ class CoupledRun(SparseRun):
             modes, p, before = point.modes, point.p, v
             terms = np.abs(v_free) + point.size_x / step.coupled.diagonal
             v = v_free + point.x
-            v[np.abs(v) <= ROUNDING * terms] = 0.0
+            v[np.abs(v) <= np.maximum(ROUNDING * terms, EPSILON * problem.speed)] = 0.0
             scale = max(np.max(np.abs(v)), np.max(np.abs(self.v)), CANCELLED * np.max(terms))
             if not self.joints.turning or np.max(np.abs(v - before)) <= CONVERGED * scale:
                 break
