@@ -86,7 +86,9 @@ class Joints(Pickled):
 
     def as_contacts(self) -> Contacts:
         """The same gaps, with which everything that evaluates contacts evaluates joints; all of G is filled."""
-        jacobian = self.jacobian if self.pattern is None else _everywhere(self.jacobian, *np.array(self.pattern))
+        jacobian = (
+            self.jacobian if self.pattern is None else _everywhere(self.jacobian, *np.array(self.pattern))
+        )
         return Contacts(self.n_j, self.gap, jacobian, self.gap_t, self.bias)
 
     def matrix(self, entries: Array, n_q: int) -> Any:

@@ -10,9 +10,9 @@ A contact is open, sticks, or slides either way; for given modes all this is one
     [ G          d         ]        refinement takes its effect away
     [ T        mu s    d   ]        rows of other impulses say what they are: p_N = 0, or p_T + s mu p_N = 0
 
-solved by refinement down to rounding. Contacts whose answer does not fit their mode change it, all together as long as
-that makes headway; then those that are in doubt get their modes by Lemke's method, from a small dense problem in which
-the others keep theirs. The answer is judged by its residuals before it is accepted.
+solved by refinement down to rounding. Contacts whose answer does not fit their mode change it, all together as long
+as that makes headway; then those that are in doubt get their modes by Lemke's method, from a small dense problem in
+which the others keep theirs. The answer is judged by its residuals before it is accepted.
 
 Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353; M. Hintermueller, K. Ito, K. Kunisch,
 SIAM J. Optim. 13 (2003) 865; `kernels.coulomb` for the law and its linear complementarity problem.
@@ -58,7 +58,7 @@ class Problem(NamedTuple):
 
 
 class Point(NamedTuple):
-    """An attempt: modes, x, impulses of all rows, sizes of the terms of A x; residuals, modes that would fit better."""
+    """An attempt: modes, x, impulses of all rows, sizes of the terms of A x; residuals, modes that fit better."""
 
     modes: Any
     x: Any
@@ -250,7 +250,9 @@ class Coupled:
             (BACKWARDS, stick, limit - p_T, d_T - growth), (FORWARDS, stick, limit + p_T, -d_T - growth),
             (OPEN, point.modes != OPEN, p_N, -d_N),
         )  # fmt: skip
-        reach = np.array([np.where(may & (speed > 0.0), room / speed, np.inf) for _, may, room, speed in ways])
+        reach = np.array(
+            [np.where(may & (speed > 0.0), room / speed, np.inf) for _, may, room, speed in ways]
+        )
         way, contact = np.unravel_index(int(np.argmin(reach)), reach.shape)
         modes = point.modes.copy()
         if np.isfinite(reach[way, contact]):
@@ -302,7 +304,9 @@ class Coupled:
         normals = self.R[self.n_j : self.n_j + self.n_c]
         pushed = normals.T @ np.where(doubt, 1.0, 0.0)
         moved = np.abs(normals @ solve(np.append(pushed, np.zeros(self.n_r)))[: self.n_q])
-        most = np.argsort(np.where(others, -moved, 1.0))[: min(np.count_nonzero(doubt), np.count_nonzero(others))]
+        most = np.argsort(np.where(others, -moved, 1.0))[
+            : min(np.count_nonzero(doubt), np.count_nonzero(others))
+        ]
         doubt = doubt.copy()
         doubt[most] = True
         return doubt

@@ -108,7 +108,7 @@ class CoupledRun(SparseRun):
         return v, Status.DONE
 
     def rates(self, step: Any, v_free: Array, active: Any, s_t: Array) -> tuple[Array, Array]:
-        """Rates of normals and tangents at v_free, with what restitution adds to them, and the sizes of their terms."""
+        """Rates of normals and tangents at v_free and what restitution adds to them; the sizes of their terms."""
         e, speeds, rough = self.equations, np.abs(v_free), active & (self.mu > 0.0)
         b = [e.G @ v_free - s_t, self.T @ v_free + self.slip]
         sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(self.slip)]
@@ -118,7 +118,9 @@ class CoupledRun(SparseRun):
         slow = np.abs(b[0] - self.u) + ROUNDING * largest * np.max(np.abs(self.v))
         impact = rough.any() and np.any(active & (self.u < -slow))
         rebound = [e.restitution * self.u, impact * self.tangent_restitution * (self.T @ self.v + self.slip)]
-        return np.concatenate(b) + np.concatenate(rebound), np.concatenate(sizes) + np.abs(np.concatenate(rebound))
+        return np.concatenate(b) + np.concatenate(rebound), np.concatenate(sizes) + np.abs(
+            np.concatenate(rebound)
+        )
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene
+from lagrangian import Harmonic, Joints, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.function import Function
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.model import c_functions
@@ -100,7 +100,8 @@ class JointRows:
         addresses, self.kept = c_functions(scene, joints={k: f for k, f in given.items() if f is not None})
         self.shapes = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
         self.callbacks = {
-            name: Function(address, p, n_q, n_q, self.shapes[name]) for name, address in addresses["joints"].items()
+            name: Function(address, p, n_q, n_q, self.shapes[name])
+            for name, address in addresses["joints"].items()
         }
 
     def at(self, t: float, q: Array, v: Array) -> tuple[Array, Array]:
