@@ -265,7 +265,7 @@ __all__ = [
     "coulomb_oscillator", "double_pendulum", "driven_bilinear_oscillator", "dry_friction_oscillator", "dyadic_ball",
     "elastic_ball", "elastic_chain", "elastic_gas", "falling_gas", "falling_rod", "galperin", "grazing",
     "heavy_on_light", "hinged_chain", "hybrid_abs", "impact_oscillator", "inelastic_collapse", "jumping_table",
-    "kane_pendulum", "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block", "slider_crank",
-    "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack", "stick_slip_belt",
-    "stick_slip_oscillator", "sticking_oscillator", "superball", "woodpecker",
+    "kane_pendulum", "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block",
+    "slider_crank", "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack",
+    "stick_slip_belt", "stick_slip_oscillator", "sticking_oscillator", "superball", "woodpecker",
 ]  # fmt: skip
