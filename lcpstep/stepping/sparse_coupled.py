@@ -101,6 +101,12 @@ class CoupledRun(SparseRun):
                 break
         else:
             return v, Status.NEWTON_FAILED
+        most = max(np.max(np.abs(v)), problem.speed, np.max(np.abs(self.v)))
+        left = np.abs(J @ v + J_t) - CONTRADICTION * (np.abs(J_t) + most * (abs(J) @ np.ones(len(v))))
+        if np.any(
+            left > (np.abs(data - J_start).max(initial=0.0) * most) ** 2
+        ):  # what joints turn by is granted
+            return v, Status.JOINTS_FAILED
         self.modes, self.active = modes, active
         p_J, p_N, p_T = np.split(p, (self.joints.n, self.joints.n + len(s_t)))
         self.rows_p, self.p = p, np.maximum(p_N, 0.0)
