@@ -82,10 +82,9 @@ class LinearContacts(Pickled):
             self.friction.sliding(t, q, v, p, self.n_c)
         return G @ q + np.asarray(self.offset) - s[:, 0], G @ v - s[:, 1]
 
-    def normals(self, t: float, q: Array, v: Array, p: Array) -> Array:
-        """G as an array, the same at all states."""
-        G: Any = self.G
-        return np.asarray(G.toarray() if self.sparse else G)
+    def normals(self, t: float, q: Array, v: Array, p: Array) -> Any:
+        """G, the same at all states; sparse where it is kept so."""
+        return self.G
 
 
 @dataclass(frozen=True, eq=False)

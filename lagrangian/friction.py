@@ -28,13 +28,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import checks
+from lagrangian import checks, sparse
 from lagrangian.checks import Array, Callback
 from lagrangian.pickling import Pickled
 from lagrangian.system import Harmonic
 
 LAWS = ("moreau", "newton", "stronge")
-Normals = Callable[[float, Array, Array, Array], Array]  # G (n_c, n_q) at a state t, q, v, p
+Normals = Callable[[float, Array, Array, Array], Any]  # G (n_c, n_q) at a state t, q, v, p
 PARALLEL = 1e-12  # squared sine of the angle between normal and tangent, below which they are one direction
 ELSEWHERE = (
     1e-3  # where a tangent is looked at beside the initial state, relative to the size of the coordinates
@@ -49,7 +49,7 @@ class Coulomb(Pickled):
     ----------
     mu : (n_c,) or one number for all contacts, mu >= 0   coefficient of friction [-]; 0 for a contact without;
         or a callback f(t, q, u, p, out) filling out (n_c,) from the sliding velocities u (n_c,), 0 of what sticks
-    tangent : (n_c, n_q) constant matrix, or callback filling out (n_c, n_q)   T [-]
+    tangent : (n_c, n_q) constant matrix, dense or scipy.sparse, or callback filling out (n_c, n_q)   T [-]
     slip : (n_c,) constants or a Harmonic where the tangent is constant, callback filling out (n_c,) where it is one
         Sliding velocity at v = 0 [m/s]: a belt that runs with velocity b along the tangent has slip = -b.
         None for obstacles at rest.
@@ -81,8 +81,9 @@ class Coulomb(Pickled):
             _check_static(mu_s, mu)
         tangent = self.tangent
         if not callable(tangent):
-            tangent = checks.matrix("friction.tangent", tangent)
-            if len(tangent) != n_c:
+            read: Any = sparse.matrix if sparse.is_sparse(tangent) else checks.matrix
+            tangent = read("friction.tangent", tangent)
+            if tangent.shape[0] != n_c:
                 raise ValueError(
                     f"friction.tangent: expected {n_c} rows, one per contact, got shape {tangent.shape}"
                 )
@@ -131,11 +132,11 @@ class Coulomb(Pickled):
             self.coefficients(t, q, u, p)
         return u
 
-    def tangents(self, at: tuple[float, Array, Array, Array], n_c: int) -> Array:
-        """T at a state (t, q, v, p)."""
+    def tangents(self, at: tuple[float, Array, Array, Array], n_c: int) -> Any:
+        """T at a state (t, q, v, p), sparse where it was given so."""
         if callable(self.tangent):
             return checks.evaluate("friction.tangent", self.tangent, at, (n_c, len(at[1])))
-        return np.asarray(self.tangent)
+        return self.tangent
 
     def coefficients(self, t: float, q: Array, u: Array, p: Array) -> tuple[Array, Array]:
         """Mu at the sliding velocities u, and the coefficients of what sticks, each (n_c,)."""
@@ -180,10 +181,10 @@ class Coulomb(Pickled):
     def _parallel(self, at: tuple[float, Array, Array, Array], normals: Normals) -> NDArray[Any]:
         """Contacts with friction whose tangent lies along their normal."""
         N = normals(*at)
-        T = self.tangents(at, len(N))
-        sizes = np.einsum("ij,ij->i", N, N) * np.einsum("ij,ij->i", T, T)
-        across = sizes - np.einsum("ij,ij->i", N, T) ** 2
-        rough = np.full(len(N), True) if callable(self.mu) else np.asarray(self.mu) > 0.0
+        T = self.tangents(at, N.shape[0])
+        sizes = sparse.products(N, N) * sparse.products(T, T)
+        across = sizes - sparse.products(N, T) ** 2
+        rough = np.full(len(sizes), True) if callable(self.mu) else np.asarray(self.mu) > 0.0
         return np.flatnonzero(rough & (sizes > 0.0) & (across <= PARALLEL * sizes))
 
 

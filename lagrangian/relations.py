@@ -54,7 +54,9 @@ def _functions(scene: Scene) -> list[Any]:
     elif system.force_q is not None or system.force_v is not None:
         found += [system.force, system.force_q, system.force_v]
     for _, c in _constraints(scene):
-        found += [c.motion] if isinstance(c, LinearContacts) else [c.gap, c.jacobian, c.gap_t, c.bias]
+        found += [c.motion] if isinstance(c, LinearContacts) else [c.gap, c.gap_t, c.bias]
+    for c in (scene.contacts, scene.joints):
+        found += [getattr(c, "jacobian", None)]
     return found
 
 
@@ -95,7 +97,7 @@ def _chain(name: str, f: Callback, scene: Scene, n: int, at: State, duration: fl
 
 def _gap(name: str, c: Any, scene: Scene, at: State, duration: float) -> Relation:
     """g with G and g_t."""
-    G, g_t = _evaluated(c.jacobian, scene, (c.n_c, scene.n_q)), _evaluated(c.gap_t, scene, (c.n_c,))
+    G, g_t = _jacobian(name, c, scene), _evaluated(c.gap_t, scene, (c.n_c,))
     given = f"{name}.gap_t" + (" (not given)" if c.gap_t is None else "")
     names = lambda row: (f"{given}[{row}]", f"{name}.gap[{row}]")  # noqa: E731
     in_time = Direction(_beside(scene, at, 0.0), _ahead(scene, duration), duration, False, names)
@@ -109,7 +111,7 @@ def _gap(name: str, c: Any, scene: Scene, at: State, duration: float) -> Relatio
 
 def _bias(name: str, c: Any, scene: Scene, base: State, duration: float) -> Relation:
     """G v + g_t with its derivative along the motion."""
-    G, g_t = _evaluated(c.jacobian, scene, (c.n_c, scene.n_q)), _evaluated(c.gap_t, scene, (c.n_c,))
+    G, g_t = _jacobian(name, c, scene), _evaluated(c.gap_t, scene, (c.n_c,))
     bias, v = _evaluated(c.bias, scene, (c.n_c,)), base[2]
     duration = min(duration, _size(base[1]) / _size(v))
     names = lambda row: (f"{name}.bias[{row}]", f"{name}.jacobian v + {name}.gap_t along the motion")  # noqa: E731
@@ -118,6 +120,16 @@ def _bias(name: str, c: Any, scene: Scene, base: State, duration: float) -> Rela
         slope=lambda x, along: along[0] * bias(x),
         directions=[Direction(base, (duration, duration * v, 0.0 * v), duration, False, names)],
     )
+
+
+def _jacobian(name: str, c: Any, scene: Scene) -> Callable[[State], Any]:
+    """G of contacts or joints as a function of the state, sparse where it has a pattern."""
+    pattern = getattr(scene.joints, "pattern", None) if name == "joints" else None
+    if pattern is None:
+        return _evaluated(c.jacobian, scene, (c.n_c, scene.n_q))
+    joints: Any = scene.joints
+    entries = _evaluated(joints.jacobian, scene, (pattern.shape[1],))
+    return lambda x: joints.matrix(entries(x), scene.n_q)
 
 
 def _force(scene: Scene, system: Any, base: State) -> Relation:

@@ -65,6 +65,15 @@ def symmetric(name: str, K: Any) -> Any:
     return K
 
 
+def products(A: Any, B: Any) -> Any:
+    """Inner products of the rows of two matrices, each dense or sparse."""
+    if not (is_sparse(A) or is_sparse(B)):
+        return np.einsum("ij,ij->i", A, B)
+    from scipy.sparse import csr_array
+
+    return np.asarray(csr_array(A).multiply(B).sum(axis=1)).ravel()
+
+
 def empty_rows(G: Any) -> Any:
     """Numbers of the rows without an entry that is not zero."""
     return np.flatnonzero(abs(G).sum(axis=1) == 0.0)

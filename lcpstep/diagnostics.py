@@ -282,6 +282,10 @@ def _own_rates(
                 contacts.motion(t[k], q[k], v[k], np.array(scene.p), s)
                 out[k] = -s[:, 1]
         return out + (G @ v.T).T if moved else out
+    friction = None if contacts is None else contacts.friction
+    if tangents and friction is not None and not callable(friction.tangent):
+        T: Any = friction.tangent
+        return out + np.asarray(friction.slip) + ((T @ v.T).T if moved else 0.0)
     m = (tangent_model if tangents else model)(scene)
     return states.own_rates(
         m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved

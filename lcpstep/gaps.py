@@ -27,11 +27,30 @@ def lowest_and_highest(
     low, high = np.full(n, np.inf), np.full(n, -np.inf)
     if n == 0 or len(t) == 0:
         return np.zeros(n), np.zeros(n)
+    if joints and getattr(scene.joints, "pattern", None) is not None:
+        return _of_joints(scene, t, q, v)
     if isinstance(constraints, LinearContacts) and (constraints.motion is None or constraints.sparse):
         _flat(constraints, np.array(scene.p), t, q, v, low, high)
     else:
         m = (joint_model if joints else model)(scene)
         return states.extremes(m, *(np.ascontiguousarray(x, dtype=float) for x in (t, q, v)))
+    return low, high
+
+
+def _of_joints(scene: Scene, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
+    """The same of the joints of a large system, whose Jacobian is not asked for."""
+    from lcpstep.kernels.function import Function
+    from lcpstep.model import c_functions
+
+    joints: Any = scene.joints
+    addresses, _kept = c_functions(scene, joints={"gap": joints.gap})
+    shape = (scene.n_j,)
+    gap = Function(addresses["joints"]["gap"], np.array(scene.p), scene.n_q, scene.n_q, shape)
+    low, high, g = np.full(shape, np.inf), np.full(shape, -np.inf), np.zeros((1, *shape))
+    for k in range(len(t)):
+        gap.sample(t[k : k + 1], np.ascontiguousarray(q[k]), np.ascontiguousarray(v[k]), g)
+        np.minimum(low, g[0], out=low)
+        np.maximum(high, g[0], out=high)
     return low, high
 
 

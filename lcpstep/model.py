@@ -146,11 +146,11 @@ def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[s
 def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, int]:
     addresses = {}
     for name, f in given.items():
-        ndim = 1 if name in ("force", "gap", "gap_t", "bias", "mu") else 2
+        ndim = 1 if name in ("force", "gap", "gap_t", "bias", "mu", "entries") else 2
         try:
             addresses[name] = callbacks.address(f, ndim)
         except NotCompiled as why:
-            said = TANGENT.get(name, name) if part == "friction" else name
+            said = TANGENT.get(name, name) if part == "friction" else {"entries": "jacobian"}.get(name, name)
             prefix = "" if part in ("system", "contacts") else f"{part}."
             callbacks.warn(f"{prefix}{said} of scene {scene.name!r}", f, why)
     return addresses
@@ -262,7 +262,7 @@ def _tangents(scene: Scene) -> dict[str, Any]:
         fields |= {"flat": False, "jacobian": friction.tangent, "gap_t": slip}
         fields["G"] = np.zeros((scene.n_c, scene.n_q))
     else:
-        fields |= {"G": np.array(friction.tangent)}
+        fields |= {"G": dense("friction.tangent", friction.tangent)}
         if isinstance(friction.slip, Harmonic):
             fields |= {"motion": swaying, "p": sway(friction.slip, scene.n_c)}
         else:

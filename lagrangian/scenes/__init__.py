@@ -19,6 +19,7 @@ from lagrangian.scenes.chain import elastic_chain
 from lagrangian.scenes.double_pendulum import double_pendulum
 from lagrangian.scenes.dry_friction import coulomb_oscillator, sliding_block, slipping_wheel, slope_landing
 from lagrangian.scenes.grazing import grazing
+from lagrangian.scenes.hinged_chain import hinged_chain
 from lagrangian.scenes.hybrid_abs import hybrid_abs
 from lagrangian.scenes.hybrid_oscillators import (
     bilinear_oscillator,
@@ -263,8 +264,8 @@ __all__ = [
     "bouncing_ball", "bowl", "cam_follower", "chaotic_oscillator", "chattering_table", "column",
     "coulomb_oscillator", "double_pendulum", "driven_bilinear_oscillator", "dry_friction_oscillator", "dyadic_ball",
     "elastic_ball", "elastic_chain", "elastic_gas", "falling_gas", "falling_rod", "galperin", "grazing",
-    "heavy_on_light", "hybrid_abs", "impact_oscillator", "inelastic_collapse", "jumping_table", "kane_pendulum",
-    "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block", "slider_crank",
-    "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack", "stick_slip_belt",
-    "stick_slip_oscillator", "sticking_oscillator", "superball", "woodpecker",
+    "heavy_on_light", "hinged_chain", "hybrid_abs", "impact_oscillator", "inelastic_collapse", "jumping_table",
+    "kane_pendulum", "mass_on_belt", "mass_on_shaken_belt", "newtons_cradle", "pendulum_stop", "rocking_block",
+    "slider_crank", "sliding_block", "sliding_rocking_block", "slipping_wheel", "slope_landing", "stack",
+    "stick_slip_belt", "stick_slip_oscillator", "sticking_oscillator", "superball", "woodpecker",
 ]  # fmt: skip

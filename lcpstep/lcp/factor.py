@@ -49,6 +49,62 @@ def factoriser(W: Any) -> Factoriser:
     return Banded(permuted, order) if half_bandwidth(permuted) <= NARROW else General(W)
 
 
+class Patterned:
+    """Matrices whose entries change and keep their places: order and storage are found once.
+
+    Parameters
+    ----------
+    rows, columns : (n_e,)   places of the entries, none twice
+    n : int   rows of the matrix
+    """
+
+    def __init__(self, rows: Any, columns: Any, n: int) -> None:
+        from scipy.sparse import csc_array
+        from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+        numbered = csc_array((np.arange(1.0, len(rows) + 1.0), (rows, columns)), shape=(n, n))
+        self.n, self.entry = n, numbered.data.astype(np.intp) - 1  # which entry stands where in the columns
+        self.indices, self.indptr = numbered.indices, numbered.indptr
+        self.order = reverse_cuthill_mckee(numbered.tocsr(), symmetric_mode=False)
+        place = np.empty(n, dtype=np.intp)
+        place[self.order] = np.arange(n)
+        row, column = place[rows], place[columns]
+        self.k = k = int(np.max(np.abs(row - column), initial=0))
+        self.flat = column * (3 * k + 1) + 2 * k + row - column  # in LAPACK's storage of the band, transposed
+
+    def factor(self, values: Any) -> Solve:
+        """Solver for the matrix with these entries; raises Singular."""
+        return self._banded(values) if self.k <= NARROW else self._sparse(values)
+
+    def _banded(self, values: Any) -> Solve:
+        from scipy.linalg import lapack
+
+        k, n = self.k, self.n
+        storage = np.zeros((n, 3 * k + 1))
+        storage.ravel()[self.flat] = values
+        lu, pivots, info = lapack.dgbtrf(storage.T, k, k, overwrite_ab=True)
+        if info != 0:
+            raise Singular
+
+        def solve(rhs: Any) -> Any:
+            x = np.empty(n)
+            x[self.order] = lapack.dgbtrs(lu, k, k, rhs[self.order], pivots)[0]
+            return x
+
+        return solve
+
+    def _sparse(self, values: Any) -> Solve:
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
+        try:
+            matrix = csc_array((values[self.entry], self.indices, self.indptr), shape=(self.n, self.n))
+            solve: Solve = splu(matrix).solve
+        except RuntimeError:
+            raise Singular from None
+        return solve
+
+
 def half_bandwidth(W: Any) -> int:
     """Largest |i - j| of an entry of a CSR matrix."""
     rows = np.repeat(np.arange(W.shape[0]), np.diff(W.indptr))

@@ -83,6 +83,11 @@ class Moreau:
             if self.tolerance is not None:
                 raise refused("sparse-tolerance", scene)
             return sparse.SparseRun(self, scene, kept).finish(progress)
+        if is_sparse(scene) and self.tolerance is None and not self.projected:
+            from lcpstep.stepping import sparse_coupled
+
+            if sparse_coupled.takes(scene):
+                return sparse_coupled.CoupledRun(self, scene, kept).finish(progress)
         from lcpstep.stepping.moreau_run import MoreauRun
 
         return MoreauRun(self, scene, kept).finish(progress)

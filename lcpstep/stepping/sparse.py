@@ -48,13 +48,15 @@ class SparseRun(StepRun):
         if method.lcp not in SOLVERS:
             raise refused("sparse-solver", scene)
         n_q, n_c = scene.n_q, scene.n_c
-        recorder = Recorder(n_q, n_c, kept, max(1, BUFFER // (LEAD + 2 * n_q + n_c)))
+        frictional = scene.contacts is not None and scene.contacts.friction is not None
+        n = n_c * (2 if frictional else 1) + scene.n_j
+        recorder = Recorder(n_q, n, kept, max(1, BUFFER // (LEAD + 2 * n_q + n)))
         super().__init__(method, scene, kept, recorder, LOOKS)
         self.equations = Equations(scene)
         size = largest(scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
         self.q, self.v, self.t = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
-        self.p, self.impulse = np.zeros(n_c), np.zeros(n_c)
+        self.p, self.impulse = np.zeros(n_c), np.zeros(n)
         self.closed, self.active = np.zeros(n_c, dtype=np.int64), np.zeros(n_c, dtype=bool)
         self.taken = self.problems = self.forces = self.next_time = 0
 
@@ -123,12 +125,10 @@ class SparseRun(StepRun):
         _, s_t = e.obstacle(t_next, self.q, self.v)
         if not (np.all(np.isfinite(r)) and np.all(np.isfinite(s_t))):
             return Status.NOT_FINITE
-        point = self.contact(step, r, active, s_t)
-        if not point.solved:
+        v, status = self.velocity(step, r, active, s_t, t, t_next)
+        if status != Status.DONE:
             self.refused = np.flatnonzero(active)
-            return Status.LCP_FAILED
-        self.p, self.active = np.maximum(point.z, 0.0), active
-        v = step.at_rest(self.v + point.x, r, self.p)
+            return status
         q = self.q + step.h * (theta * v + (1.0 - theta) * self.v)
         happened = self.log(t_next, e.G @ v - s_t)
         self.keep_times(step.h, t, t_next, q, v)
@@ -141,6 +141,17 @@ class SparseRun(StepRun):
             self.keep(t_next, q, v)
         return Status.DONE
 
+    def velocity(
+        self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float
+    ) -> tuple[Array, Status]:
+        """Velocity at the end of the step, the impulses found and added up; and how that went."""
+        point = self.contact(step, r, active, s_t)
+        if not point.solved:
+            return self.v, Status.LCP_FAILED
+        self.p, self.active = np.maximum(point.z, 0.0), active
+        self.impulse += self.p
+        return step.at_rest(self.v + point.x, r, self.p), Status.DONE
+
     def contact(self, step: Step, r: Array, active: Any, s_t: Array) -> Point:
         """Change of the velocity and impulses: those of the step before are tried first."""
         e, saddle = self.equations, step.saddle
@@ -152,7 +163,6 @@ class SparseRun(StepRun):
 
     def log(self, t: float, u: Array) -> bool:
         """Note impacts, the beginning of lasting contact, and its end; whether there was any."""
-        self.impulse += self.p
         pressed = self.p > 0.0
         kinds = np.full(len(self.p), -1)
         kinds[pressed & (self.closed == 0)] = Kind.IMPACT

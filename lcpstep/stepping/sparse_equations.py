@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Harmonic, Joints, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.function import Function
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.model import c_functions
@@ -31,6 +31,7 @@ class Equations:
         self.M, self.C, self.K = (csr_array(x) for x in matrices)
         G: Any = np.zeros((0, n_q)) if contacts is None else contacts.G
         self.G = csr_array(G)
+        self.G.sum_duplicates()
         self.offset = np.zeros(0) if contacts is None else np.array(contacts.offset)
         self.restitution = np.zeros(0) if contacts is None else np.array(contacts.restitution)
         self.p = np.array(scene.p)
@@ -72,6 +73,54 @@ class Equations:
             return np.zeros(len(self.offset)), np.zeros(len(self.offset))
         s = self.value("motion", t, q, v, (len(self.offset), 3))
         return s[:, 0], s[:, 1]
+
+
+class JointRows:
+    """The joints of a scene: their sparse Jacobians, and what their obstacles move by.
+
+    n, turning    how many there are; whether their rows change
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        from scipy.sparse import csr_array
+
+        joints, n_q, p = scene.joints, scene.n_q, np.array(scene.p)
+        self.n, self.turning, self.shape = scene.n_j, isinstance(joints, Joints), (scene.n_j, n_q)
+        given: dict[str, Any] = {}
+        if isinstance(joints, Joints):
+            size = np.asarray(joints.pattern).shape[1]
+            template = joints.matrix(np.arange(float(size)), n_q)
+            self.entry = template.data.astype(np.intp)  # which of the callback's entries stands where
+            given = {"entries": joints.jacobian, "gap_t": joints.gap_t}
+        else:
+            G: Any = csr_array((0, n_q)) if joints is None else joints.G
+            template, size = csr_array(G), 0
+            given = {"motion": None if joints is None else joints.motion}
+        self.indices, self.indptr, self.data = template.indices, template.indptr, template.data
+        addresses, self.kept = c_functions(scene, joints={k: f for k, f in given.items() if f is not None})
+        self.shapes = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
+        self.callbacks = {
+            name: Function(address, p, n_q, n_q, self.shapes[name])
+            for name, address in addresses["joints"].items()
+        }
+
+    def at(self, t: float, q: Array, v: Array) -> tuple[Array, Array]:
+        """Entries of J in the order of its rows, and the rates J_t at v = 0."""
+        where = np.array([t]), np.ascontiguousarray(q), np.ascontiguousarray(v)
+        values = {}
+        for name, f in self.callbacks.items():
+            values[name] = np.full(self.shapes[name], np.nan)
+            f.sample(*where, values[name])
+        data = values["entries"][self.entry] if self.turning else self.data
+        if "motion" in values:
+            return data, -values["motion"][:, 1]
+        return data, values.get("gap_t", np.zeros(self.n))
+
+    def matrix(self, data: Array) -> Any:
+        """J with these entries."""
+        from scipy.sparse import csr_array
+
+        return csr_array((data, self.indices, self.indptr), shape=self.shape)
 
 
 class Step:

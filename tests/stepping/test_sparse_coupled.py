@@ -1,0 +1,175 @@
+"""Large sparse systems with joints and friction: the dense steps, closed forms, energy, and what has no answer."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from lagrangian import Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
+from lcpstep import Moreau, energy, simulate
+from lcpstep.stepping import sparse_coupled
+from lcpstep.trajectory import Status
+
+
+def made_dense(s):
+    """The same scene with arrays."""
+    c, joints = s.contacts, s.joints
+    f = c.friction
+    if isinstance(joints, Joints):
+        joints = Joints(s.n_j, joints.gap, joints.as_contacts().jacobian, bias=joints.bias)
+    elif joints is not None:
+        joints = LinearJoints(joints.G.toarray(), joints.offset, joints.motion)
+    friction = None if f is None else Coulomb(f.mu, f.tangent.toarray(), f.slip, f.restitution, law=f.law)
+    return Scene(
+        system=LinearSystem(s.system.M.toarray(), s.system.C.toarray(), s.system.K.toarray(), s.system.force),
+        contacts=LinearContacts(c.G.toarray(), c.offset, c.restitution, c.motion, friction),
+        joints=joints, q0=s.q0, v0=s.v0, t_span=s.t_span, p=s.p, name=s.name,
+    )  # fmt: skip
+
+
+def coupled_masses(seed, friction=True, joints=True):
+    """Points in a plane on springs and dampers, tied by constant joints, some of them twice, thrown at a floor."""
+    rng, n = np.random.default_rng(seed), 12
+    B = sparse.random_array((2 * n, 2 * n), density=0.06, rng=rng)
+    up, along = (
+        sparse.csr_array((np.ones(n), (np.arange(n), 2 * np.arange(n) + i)), shape=(n, 2 * n)) for i in (1, 0)
+    )
+    J = sparse.lil_array((3, 2 * n))
+    J[0, 0], J[0, 2], J[1, 6], J[1, 10], J[2, 0], J[2, 2] = 1.0, -1.0, 1.0, -1.0, 2.0, -2.0
+    M = sparse.diags_array(rng.uniform(0.5, 2.0, 2 * n)) + 0.05 * (B @ B.T)
+    return Scene(
+        system=LinearSystem(M, C=0.2 * (B @ B.T), K=30.0 * (B.T @ B), force=np.tile([1.0, -9.81], n)),
+        contacts=LinearContacts(up, 0.05, 0.3, friction=Coulomb(0.4, along) if friction else None),
+        joints=LinearJoints(J.tocsr()) if joints else None, q0=np.zeros(2 * n), v0=np.tile([0.4, 0.0], n),
+        t_span=(0.0, 0.6), name="coupled masses",
+    )  # fmt: skip
+
+
+SAME = {
+    "chain of 5": (scenes.hinged_chain(n=5, t_end=0.4), 0.5),
+    "chain of 5, thrown up": (scenes.hinged_chain(n=5, restitution=0.3, t_end=0.4), 1.0),
+    "chain of 40": (scenes.hinged_chain(n=40, t_end=0.2), 0.5),
+    "chain of 20, smooth": (scenes.hinged_chain(n=20, mu=0.0, t_end=0.4), 0.5),
+    "joints and friction": (coupled_masses(1), 0.5),
+    "friction": (coupled_masses(2, joints=False), 0.5),
+    "joints": (coupled_masses(3, friction=False), 1.0),
+}
+
+
+@pytest.mark.parametrize("name", SAME)
+def test_the_sparse_run_is_the_dense_run(name):
+    scene, theta = SAME[name]
+    a, b = (simulate(x, Moreau(1e-3, theta)) for x in (scene, made_dense(scene)))
+    assert a.status.name == b.status.name == "DONE"
+    assert a.impulse.max() > 0.0
+    size = np.max(np.abs(b.v))
+    np.testing.assert_allclose(a.q, b.q, rtol=0, atol=1e-10 * size)
+    np.testing.assert_allclose(a.v, b.v, rtol=0, atol=1e-9 * size)
+    assert a.friction_impulse.shape == b.friction_impulse.shape
+    assert a.joint_impulse.shape == b.joint_impulse.shape
+    np.testing.assert_allclose(a.joint_drift, b.joint_drift, rtol=0, atol=1e-10)
+
+
+def test_impulses_that_are_unique_are_those_of_the_dense_run():
+    scene = coupled_masses(2, joints=False)
+    a, b = (simulate(x, Moreau(1e-3)) for x in (scene, made_dense(scene)))
+    np.testing.assert_allclose(a.impulse, b.impulse, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(a.friction_impulse, b.friction_impulse, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
+def test_energy_is_lost_and_never_created(restitution):
+    chain = scenes.hinged_chain(n=30, restitution=restitution, t_end=0.25)
+    run = simulate(chain, Moreau(5e-4))
+    balance = energy(run)
+    assert run.status.name == "DONE"
+    steps = np.diff(balance.total)
+    assert steps.max() < 1e-5 * balance.total[0]  # what the joints' rows at the end of a step may give
+    assert balance.total[-1] < balance.total[0]
+    assert len(balance.created) == 0
+
+
+def test_friction_stays_within_its_cone_and_a_flat_chain_comes_to_exact_rest():
+    run = simulate(scenes.hinged_chain(n=10), Moreau(1e-3))
+    assert np.all(np.abs(run.friction_impulse) <= 0.3 * run.impulse + 1e-12)
+    assert np.all(run.impulse >= 0.0)
+    assert not run.v[-1].any()
+    np.testing.assert_array_equal(run.q[-1], run.q[-50])
+    assert run.impulse[-1].sum() == pytest.approx(10 * 9.81 * 1e-3, rel=1e-9)
+
+
+def test_a_free_chain_keeps_its_momentum_and_its_links_their_lengths_to_order_two():
+    drift = []
+    for h in (2e-3, 1e-3):
+        run = simulate(scenes.hinged_chain(n=200, height=5.0, t_end=0.2), Moreau(h))
+        P = run.scene.system.M @ run.v[-1]
+        assert P[::2].sum() == pytest.approx(200 * 0.5, rel=1e-12)
+        assert P[1::2].sum() == pytest.approx(-200 * 9.81 * 0.2, rel=1e-12)
+        drift.append(np.max(run.joint_drift))
+    assert max(drift) < 1e-12  # it falls without turning
+
+
+def test_a_pendulum_of_one_sparse_link_swings_with_the_energy_it_has():
+    def gap(t, q, v, p, out):
+        out[0] = 0.5 * (q[0] * q[0] + q[1] * q[1] - 1.0)
+
+    def entries(t, q, v, p, out):
+        out[0], out[1] = q[0], q[1]
+
+    joints = Joints(1, gap, entries, pattern=[[0, 0], [0, 1]])
+    system = LinearSystem(sparse.eye_array(2), force=[0.0, -9.81])
+    errors = []
+    for h in (4e-3, 2e-3):
+        run = simulate(Scene(system, [1.0, 0.0], [0.0, 0.0], (0.0, 0.6), joints=joints), Moreau(h))
+        errors.append(np.max(np.abs(0.5 * np.sum(run.v**2, axis=1) + 9.81 * run.q[:, 1])))
+    assert errors[1] < 1e-4 * 9.81
+    assert np.log2(errors[0] / errors[1]) > 1.8
+
+
+def test_joints_that_contradict_each_other_end_the_run_with_what_was_computed():
+    def pulled(t, q, v, p, out):
+        out[0, 0], out[0, 1], out[0, 2] = 0.0, 0.0, 0.0
+        out[1, 0], out[1, 1], out[1, 2] = t * t, 2.0 * t, 2.0
+
+    J = sparse.csr_array([[1.0, 0.0], [1.0, 0.0]])
+    scene = Scene(
+        LinearSystem(sparse.eye_array(2)), [0.0, 1.0], [0.0, 0.0], (0.0, 1.0), LinearContacts([[0.0, 1.0]]),
+        LinearJoints(J, motion=pulled),
+    )  # fmt: skip
+    run = simulate(scene, Moreau(1e-2))
+    assert run.status == Status.JOINTS_FAILED
+    assert "contradict" in run.message
+    assert np.isfinite(run.q).all()
+
+
+def test_what_these_steps_do_not_know_takes_the_dense_ones():
+    flat = scenes.hinged_chain(n=3, t_end=0.1)
+    c = flat.contacts
+    stronge = Coulomb(0.3, c.friction.tangent, law="stronge")
+    impulsive = LinearContacts(c.G, friction=stronge)
+    scene = Scene(flat.system, flat.q0, flat.v0, flat.t_span, impulsive, flat.joints, p=flat.p)
+    assert not sparse_coupled.takes(scene)
+    assert sparse_coupled.takes(flat)
+    assert simulate(scene, Moreau(1e-3)).status.name == "DONE"
+
+
+@pytest.mark.parametrize(
+    ("pattern", "named"),
+    [
+        ([[0, 0]], "pattern: expected whole numbers of shape"),
+        ([[0.0], [0.5]], "pattern: expected whole numbers"),
+        ([[1], [0]], r"pattern: expected rows in \[0, 1\)"),
+        ([[0, 0], [1, 1]], "pattern: expected each entry once"),
+    ],
+)
+def test_a_wrong_pattern_is_named(pattern, named):
+    with pytest.raises(ValueError, match=named):
+        Joints(1, None, None, pattern=pattern)
+
+
+def test_a_pattern_with_a_column_too_many_is_named():
+    def nothing(t, q, v, p, out):
+        out[:] = 0.0
+
+    joints = Joints(1, nothing, nothing, pattern=[[0], [2]])
+    with pytest.raises(ValueError, match=r"joints.pattern: expected columns below 2, got 2"):
+        Scene(LinearSystem(sparse.eye_array(2)), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0), joints=joints)
