@@ -148,6 +148,7 @@ def classify(f: PiecewiseLinearMap) -> BorderCollision:
     ------
     NotContinuous   the two sides do not meet on the border
     """
+    checks.instance("f", f, PiecewiseLinearMap)
     gap, _ = f.gap()
     if gap > CONTINUOUS:
         raise NotContinuous(gap)
@@ -240,6 +241,7 @@ def diagram(
     Orbits are continued from one m to the next, and start at the origin. One that leaves `bound` times |m| (1 + |B|)
     has no points.
     """
+    checks.instance("f", f, PiecewiseLinearMap)
     points, x = [], np.zeros(len(np.asarray(f.C)))
     size = 1.0 + float(np.max(np.abs(np.concatenate([np.asarray(f.B_minus), np.asarray(f.B_plus)]))))
     for value in checks.vector("m", m):

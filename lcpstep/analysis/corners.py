@@ -70,6 +70,7 @@ def corner_impact(
     NotDifferentiable   a corner of degree one (velocity jump), or an orbit with grazing or sticking
     LcpStepError   no such orbit near the guess
     """
+    checks.function("make", make, "the parameter that makes a scene")
     scene = make(checks.number("p", p))
     if np.size(scene.corners) == 0 or scene.n_c != 1 or not math.isfinite(scene.period):
         raise ValueError(
@@ -159,6 +160,7 @@ def local_map(
     step : of the differences that the flows to the corner and on are derived with, relative to state and parameter;
         4e-3 where not given, or 2e-4 where the orbit has other impacts. Another step tells what is rounding.
     """
+    checks.instance("orbit", orbit, CornerImpact)
     step = step or (NARROW if len(orbit.others) else WIDE)
     pieces = Pieces.of(orbit, method or EventDriven())
     Z = discontinuity_map(orbit, method)
