@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.errors import LcpStepError
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 CONTINUOUS = 1e-5  # gap across the border, relative to the matrices, below which a map counts as continuous
@@ -244,7 +245,7 @@ def diagram(
     checks.instance("f", f, PiecewiseLinearMap)
     points, x = [], np.zeros(len(np.asarray(f.C)))
     size = 1.0 + float(np.max(np.abs(np.concatenate([np.asarray(f.B_minus), np.asarray(f.B_plus)]))))
-    for value in checks.vector("m", m):
+    for value in counted(checks.vector("m", m).tolist()):
         orbit: list[Array] = []
         for k in range(drop + keep):
             x = f(x, float(value))

@@ -36,6 +36,7 @@ from lcpstep.analysis.variation import flow, impact_law
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.maps.local import Local
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 LIMIT = 1e-6  # of the period: steps of the extrapolation to a corner from either side
@@ -81,7 +82,7 @@ def corner_impact(
     pieces.aim(p, x, corner)
     size = np.append(np.maximum(1.0, np.abs(x)), 1.0)
     z, before, best = np.append(x, p), math.inf, np.append(x, p)
-    for _ in range(MAX_ITERATIONS):
+    for _ in counted(range(MAX_ITERATIONS)):
         F = pieces.closing(z)
         error = float(np.max(np.abs(F) / size))
         if error >= 0.5 * before and before <= STAGNATED:  # down to its rounding

@@ -26,7 +26,7 @@ from lcpstep.cli.common import (
 )
 from lcpstep.dataset import Progress
 from lcpstep.errors import SweepStopped
-from lcpstep.pace import telling
+from lcpstep.pace import Told, telling
 from lcpstep.simulation import Method
 
 CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
@@ -117,6 +117,13 @@ def work_bar(title: str) -> Iterator[Callable[[str], None]]:
 
     What it gives names the stage.
     """
+    with share_bar(title) as (bar, told), nullcontext() if bar.disable else telling(told):
+        yield bar.set_description_str
+
+
+@contextmanager
+def share_bar(title: str) -> Iterator[tuple[Any, Told]]:
+    """The same bar, and what to tell it: how far a loop is, and of how much."""
     from tqdm import tqdm
 
     form = "{desc}: {percentage:3.0f}% |{bar}| [{elapsed}<{remaining}]"
@@ -132,8 +139,7 @@ def work_bar(title: str) -> Iterator[Callable[[str], None]]:
                 bar.n, latest = share, (share, now)
                 bar.refresh()
 
-        with nullcontext() if bar.disable else telling(told):
-            yield bar.set_description_str
+        yield bar, told
 
 
 @contextmanager
