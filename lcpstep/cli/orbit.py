@@ -89,6 +89,8 @@ def add(commands: Any) -> None:
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     proofs.check(options)
+    if options.event is None and (options.contact or options.cyclic):
+        raise ValueError("--contact, --cyclic: they belong to --event")
     if options.periods is not None:
         checks.count("--periods", options.periods)
     scene, method = study_scene(options), method_of(options)

@@ -137,6 +137,16 @@ def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
         (["basin", "impact-oscillator"], "--position, --velocity"),
         (["bifurcation", "impact-oscillator"], "those of impact-oscillator are zeta, omega"),
         (["attractor", "impact-oscillator"], "--box"),
+        (
+            ["attractor", "cam-follower", "--theta", "1"],
+            "--theta: event-driven has none, it belongs to moreau",
+        ),
+        (["orbit", "cam-follower", "--lcp", "qp"], "--lcp: event-driven has none, it belongs to moreau"),
+        (
+            ["basin", "cam-follower", "--method", "moreau", "--tolerance", "1e-9"],
+            "it belongs to event-driven",
+        ),
+        (["orbit", "cam-follower", "--contact", "1"], "--contact, --cyclic: they belong to --event"),
         (["attractor", "bouncing-ball"], "has no period, and so no attractors; lcpstep.maps.EventMap"),
         (["attractor", "cam-follower", "--rpm", "-1"], "rpm"),
         (["attractor", "cam-follower", "--starts", "0"], "--starts: expected a positive integer"),
