@@ -143,6 +143,24 @@ def instance(name: str, value: Any, *kinds: type) -> None:
         raise TypeError(f"{name}: expected a {' or '.join(kind.__name__ for kind in kinds)}, got {value!r}")
 
 
+def function(name: str, value: Any, of: str) -> None:
+    """TypeError for what cannot be called."""
+    if not callable(value):
+        raise TypeError(f"{name}: expected a function of {of}, got {value!r}")
+
+
+def has(name: str, value: Any, attribute: str, what: str) -> None:
+    """TypeError for an object without what is asked of it; `what` it was expected to be, in words."""
+    if not hasattr(value, attribute):
+        raise TypeError(f"{name}: expected {what}, got {value!r}")
+
+
+def filled(name: str, value: Any, kind: type, what: str) -> None:
+    """TypeError for what is no collection of this kind with at least one entry."""
+    if not isinstance(value, kind) or not value:
+        raise TypeError(f"{name}: expected {what}, at least one, got {value!r}")
+
+
 def symmetric(name: str, value: Array) -> Array:
     """A symmetric matrix up to rounding, or an error that names the two entries that are furthest apart."""
     apart = np.abs(value - value.T)

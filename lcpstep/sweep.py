@@ -25,7 +25,7 @@ import numpy as np
 from lagrangian import checks
 from lcpstep.errors import LcpStepError, SweepInterrupted, SweepStopped
 from lcpstep.files import replacing
-from lcpstep.pace import until_given_up
+from lcpstep.pace import tell, until_given_up
 
 LOG = logging.getLogger(__name__)
 Arrays = dict[str, Any]  # named arrays
@@ -129,8 +129,10 @@ def _words(results: list[list[Any]], total: int, out: Path | str | None) -> str:
 
 def report(progress: Callable[[int, int], None] | None, results: list[list[Any]], total: int) -> None:
     """Tell how many parts are finished."""
+    done = sum(part is not None for chain in results for part in chain)
+    tell(done, total)
     if progress is not None:
-        progress(sum(part is not None for chain in results for part in chain), total)
+        progress(done, total)
 
 
 def _submit(

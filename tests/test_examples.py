@@ -212,10 +212,13 @@ def test_an_example_says_what_it_shows(name):
         "docs/symbolic.md",
         "docs/hybrid-systems.md",
         "docs/seeing-and-keeping.md",
+        pytest.param("docs/accuracy.md", marks=pytest.mark.slow),
+        pytest.param("docs/attractors.md", marks=pytest.mark.slow),
     ],
 )
 def test_documentation_runs(page, monkeypatch, tmp_path, capsys):
     pytest.importorskip("sympy")
+    pytest.importorskip("flint")
     monkeypatch.chdir(tmp_path)
     source = tmp_path / "page.py"
     text = "\n".join(blocks((ROOT / page).read_text()))

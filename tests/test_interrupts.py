@@ -1,6 +1,7 @@
 """Ctrl-C in every command: it ends soon, says what was kept and how to go on, with exit status 130."""
 
 import argparse
+import importlib
 import shlex
 import signal
 import subprocess
@@ -151,6 +152,26 @@ def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
 def test_no_command_is_left_out():
     (commands,) = (x for x in cli.parser()._actions if isinstance(x, argparse._SubParsersAction))
     assert set(commands.choices) == set(LONG) | ENDS_AT_ONCE
+
+
+def test_hard_cases_that_are_interrupted_go_on_with_the_scene_of_the_last_line(capsys, monkeypatch):
+    table = importlib.import_module("lcpstep.hard.table")
+    run_check, begun = table.run_check, []
+
+    def impatient(check, method, bars):
+        begun.append(check.scene)
+        if len(begun) == 3:
+            raise KeyboardInterrupt
+        return run_check(check, method, bars)
+
+    monkeypatch.setattr(table, "run_check", impatient)
+    words = ["hard", "--scene", "dyadic-ball", "bouncing-ball", "--method", "located"]
+    assert cli.main(words) == interrupt.INTERRUPTED
+    out, err = capsys.readouterr()
+    assert len(out.splitlines()) == 2
+    assert said(err, "kept") == "the 2 lines above"
+    assert begun[1] == "bouncing-ball"
+    assert said(err, "go on with") == "lcpstep hard --scene bouncing-ball dyadic-ball --method located"
 
 
 @pytest.mark.slow

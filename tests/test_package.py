@@ -1,5 +1,6 @@
 """What is handed out: one version everywhere, a source archive and a wheel that carry what they need."""
 
+import importlib
 import os
 import re
 import shutil
@@ -71,6 +72,25 @@ def test_the_recipe_asks_for_what_the_package_asks_for():
     wanted = {re.match(r"[\w-]+", bound)[0]: bound for bound in PROJECT["dependencies"]}
     wanted = {bound.replace(name, f"{CONDA_NAMES.get(name, name)} ", 1) for name, bound in wanted.items()}
     assert set(RECIPE["requirements"]["run"]) == {"python"} | wanted
+
+
+def test_the_recipe_has_what_conda_forge_asks_for():
+    """Sections and fields of recipes in its format 1, and placeholders that nobody takes for the real thing."""
+    assert RECIPE["schema_version"] == 1
+    wanted = {"context", "package", "source", "build", "requirements", "tests", "about", "extra"}
+    assert set(RECIPE) - {"schema_version"} == wanted
+    assert RECIPE["source"]["url"].endswith("/lcpstep-${{ version }}.tar.gz")
+    assert re.fullmatch(r"[0-9a-f]{64}", RECIPE["source"]["sha256"])
+    assert {"homepage", "summary", "license", "license_file"} <= set(RECIPE["about"])
+    assert (ROOT / RECIPE["about"]["license_file"]).is_file()
+    maintainers = RECIPE["extra"]["recipe-maintainers"]
+    assert maintainers
+    head = (ROOT / "conda/recipe/recipe.yaml").read_text().partition("schema_version")[0]
+    assert ("sha256 of zeros" in head) == (set(RECIPE["source"]["sha256"]) == {"0"})
+    assert ("YOUR-GITHUB-NAME" in head) == ("YOUR-GITHUB-NAME" in maintainers)
+    names = [test["python"]["imports"] for test in RECIPE["tests"] if "python" in test]
+    for name in names[0]:
+        importlib.import_module(name)
 
 
 def test_the_workflows_try_every_python_that_the_package_names():

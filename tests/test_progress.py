@@ -116,10 +116,14 @@ def on_terminal(*words, seconds):
         ["orbit", "cam-follower", "--rpm", "700", "--method", "moreau", "--h", "1e-6", "--out", "{out}"],
         ["study", "chaotic-oscillator", "--t-end", "100"],
         ["lyapunov", "cam-follower", "--periods", "3000000"],
+        ["corner", "cam-follower", "--out", "{out}"],
+        ["corner", "cam-follower", "--chattering", "114", "200"],
+        ["hard", "--full"],
+        ["thesis", "4.5", "4.12", "--out", "{out}"],
     ],
     ids=lambda words: words[0],
 )
 def test_a_bar_on_a_terminal_shows_the_time_left(words, tmp_path):
-    written = on_terminal(*(w.format(out=tmp_path) for w in words), seconds=8.0)
+    written = on_terminal(*(w.format(out=tmp_path) for w in words), seconds=12.0)
     left = [(t, re.findall(r"<(\d\d:\d\d)", text)) for t, text in written]
     assert len([t for t, found in left if found]) >= 10, written[-3:]

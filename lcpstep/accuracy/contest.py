@@ -140,6 +140,7 @@ def contest(scene: Scene, methods: Sequence[Method], progress: Progress | None =
     LcpStepError   no method treats the scene
     Everything that `lcpstep.simulate` raises about a run.
     """
+    checks.instance("scene", scene, Scene)
     tell = progress or (lambda t: None)
     t = np.linspace(*scene.t_span, LOOKS)
     reasons = {k: _refused(scene, method) for k, method in enumerate(methods)}

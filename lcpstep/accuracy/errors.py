@@ -75,6 +75,8 @@ class Difference:
     least: float = 0.0
 
     def __post_init__(self) -> None:
+        checks.has("motion", self.motion, "at", "a Trajectory")
+        checks.has("reference", self.reference, "at", "a Trajectory")
         sizes = [m.at(m.t[:1])[0].shape[1] for m in (self.motion, self.reference)]
         if sizes[0] != sizes[1]:
             raise ValueError(f"reference: expected a motion of {sizes[0]} coordinates, got {sizes[1]}")

@@ -55,6 +55,7 @@ def basins(
     ------
     StudyInterrupted   a KeyboardInterrupt; carries the `Basins` so far
     """
+    checks.instance("scene", scene, HybridScene)
     s, T = checks.vector("slip", slip), checks.vector("torque", torque)
     corner(scene)
     follow = Follower(scene, FAST, SETTLED, SWITCHES)

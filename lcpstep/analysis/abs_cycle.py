@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import checks
 from lagrangian.hybrid import HybridScene
 from lagrangian.scenes.hybrid_abs import SLIP_MAX, T_MAX, holding_torque, holding_torque_slope
 from lcpstep.analysis.hybrid_variation import monodromy
@@ -85,6 +86,7 @@ def limit_cycle(scene: HybridScene, method: EventDriven = EXACT) -> Cycle:
     ------
     NoCycle   the motion from (lambda_max, T_max) does not come back; says where it goes
     """
+    checks.instance("scene", scene, HybridScene)
     start = corner(scene)
     end = Follower(scene, method, LONGEST, 4)(start, "2")
     if not returns(end, start):

@@ -83,6 +83,7 @@ class Bifurcation:
 
 def bifurcation(scene: HybridScene, torque_max: ArrayLike) -> Bifurcation:
     """Period and amplitude of the cycle for each torque threshold."""
+    checks.instance("scene", scene, HybridScene)
     values = checks.vector("torque_max", torque_max)
     rows = []
     for T in values:

@@ -62,6 +62,8 @@ def agreement(data: Any, reference: Any, tolerance: ArrayLike = TOLERANCE) -> An
     ------
     ValueError   the diagrams are of different scenes, values or settings, or a tolerance is not positive
     """
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.bifurcation")
+    checks.has("reference", reference, "attrs", "a dataset of lcpstep.analysis.bifurcation")
     parameter = str(reference.attrs["parameter"])
     for key in SETTINGS:
         if data.attrs.get(key) != reference.attrs.get(key):

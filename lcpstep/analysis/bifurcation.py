@@ -96,6 +96,7 @@ def bifurcation(
     ValueError   values empty or not increasing, keep not positive, an unknown kind of start, a box missing
     SweepStopped   the executor died; finished parts are kept in `out`
     """
+    checks.function("make", make, f"{parameter}, by name, that makes a scene")
     values = checks.increasing(parameter, values)
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.errors import LcpStepError
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 CONTINUOUS = 1e-5  # gap across the border, relative to the matrices, below which a map counts as continuous
@@ -148,6 +149,7 @@ def classify(f: PiecewiseLinearMap) -> BorderCollision:
     ------
     NotContinuous   the two sides do not meet on the border
     """
+    checks.instance("f", f, PiecewiseLinearMap)
     gap, _ = f.gap()
     if gap > CONTINUOUS:
         raise NotContinuous(gap)
@@ -240,9 +242,10 @@ def diagram(
     Orbits are continued from one m to the next, and start at the origin. One that leaves `bound` times |m| (1 + |B|)
     has no points.
     """
+    checks.instance("f", f, PiecewiseLinearMap)
     points, x = [], np.zeros(len(np.asarray(f.C)))
     size = 1.0 + float(np.max(np.abs(np.concatenate([np.asarray(f.B_minus), np.asarray(f.B_plus)]))))
-    for value in checks.vector("m", m):
+    for value in counted(checks.vector("m", m).tolist()):
         orbit: list[Array] = []
         for k in range(drop + keep):
             x = f(x, float(value))

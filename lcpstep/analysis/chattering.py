@@ -87,6 +87,7 @@ def sequences(scene: Scene, method: EventDriven | None = None) -> list[Sequence]
     ValueError   the scene has not just one contact, or no period
     LcpStepError   the run ended early
     """
+    checks.instance("scene", scene, Scene)
     if scene.n_c != 1 or not math.isfinite(scene.period):
         raise ValueError(f"scene: expected one contact and a period, {scene.name!r} has not both")
     T, t0 = scene.period, scene.t_span[0]
@@ -142,6 +143,7 @@ def corner_crossings(
     ------
     ValueError   an empty or reversed range
     """
+    checks.function("make", make, "the parameter that makes a scene")
     low, high = (checks.number("p_range", end) for end in p_range)
     if not low < high:
         raise ValueError(f"p_range: expected low < high, got {p_range!r}")

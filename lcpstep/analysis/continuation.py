@@ -66,6 +66,7 @@ def continue_point(
     ValueError   the range is empty or reversed, or p lies outside of it
     NotConverged   no periodic point near x
     """
+    checks.function("family", family, "the parameter that makes a map")
     low, high = (checks.number("p_range", end) for end in p_range)
     if not low < high:
         raise ValueError(f"p_range: expected low < high, got {p_range!r}")

@@ -17,6 +17,7 @@ from lcpstep.analysis.border_collision import PiecewiseLinearMap, classify
 from lcpstep.analysis.corners import NARROW, WIDE, CornerImpact, local_map
 from lcpstep.analysis.orbits import periodic_orbit
 from lcpstep.errors import LcpStepError
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 ROUNDING = 64 * np.finfo(float).eps
@@ -63,7 +64,7 @@ def _of_the_system(orbit: CornerImpact, p: Array, slope: Array, stable: bool) ->
     """Orbits of the full system from those of the local map, each from the one before; up to where they are lost."""
     order = np.argsort(np.abs(p - orbit.p), kind="stable")
     kept, states = [orbit.p], [orbit.x]
-    for k in order[1:]:
+    for k in counted(order[1:].tolist()):
         step = float(p[k] - kept[-1])
         ahead = slope if len(kept) < 3 else (states[-1] - states[-2]) / (kept[-1] - kept[-2])
         try:

@@ -11,6 +11,7 @@ from lcpstep.analysis.border_collision import PiecewiseLinearMap
 from lcpstep.analysis.corner_pieces import CornerImpact
 from lcpstep.events import EventDriven
 from lcpstep.maps.stroboscopic import StroboscopicMap
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 
@@ -62,14 +63,14 @@ def estimate(
     least = float(np.min(weights[weights > 0.0]))
     scale = scale * np.minimum(1.0, least / np.maximum(weights, least))
     fits, rms, counts = [], [], []
-    for side in (-1.0, 1.0):
+    for side in counted((-1.0, 1.0)):
         deviations: list[Array] = []
         while len(deviations) < samples:
             z = scale * rng.uniform(-1.0, 1.0, d + 1)
             place = float(C @ z[:d] + D * z[d])
             deviations.append(z if place * side > 0.0 else -z)
         Z = np.array(deviations)
-        images = np.array([_image(orbit, z, method or EventDriven()) for z in Z])
+        images = np.array([_image(orbit, z, method or EventDriven()) for z in counted(list(Z))])
         terms = Z / scale
         squares = [terms[:, i] * terms[:, j] for i in range(d + 1) for j in range(i, d + 1)]
         cubes = [squares[k] * terms[:, i] for k in range(len(squares)) for i in range(d + 1)]

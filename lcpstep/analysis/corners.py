@@ -36,6 +36,7 @@ from lcpstep.analysis.variation import flow, impact_law
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.maps.local import Local
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 LIMIT = 1e-6  # of the period: steps of the extrapolation to a corner from either side
@@ -70,6 +71,7 @@ def corner_impact(
     NotDifferentiable   a corner of degree one (velocity jump), or an orbit with grazing or sticking
     LcpStepError   no such orbit near the guess
     """
+    checks.function("make", make, "the parameter that makes a scene")
     scene = make(checks.number("p", p))
     if np.size(scene.corners) == 0 or scene.n_c != 1 or not math.isfinite(scene.period):
         raise ValueError(
@@ -80,7 +82,7 @@ def corner_impact(
     pieces.aim(p, x, corner)
     size = np.append(np.maximum(1.0, np.abs(x)), 1.0)
     z, before, best = np.append(x, p), math.inf, np.append(x, p)
-    for _ in range(MAX_ITERATIONS):
+    for _ in counted(range(MAX_ITERATIONS)):
         F = pieces.closing(z)
         error = float(np.max(np.abs(F) / size))
         if error >= 0.5 * before and before <= STAGNATED:  # down to its rounding
@@ -159,6 +161,7 @@ def local_map(
     step : of the differences that the flows to the corner and on are derived with, relative to state and parameter;
         4e-3 where not given, or 2e-4 where the orbit has other impacts. Another step tells what is rounding.
     """
+    checks.instance("orbit", orbit, CornerImpact)
     step = step or (NARROW if len(orbit.others) else WIDE)
     pieces = Pieces.of(orbit, method or EventDriven())
     Z = discontinuity_map(orbit, method)

@@ -72,6 +72,7 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     ValueError   n is not positive, or x is no vector of finite numbers
     NotConverged   no periodic point near the guess
     """
+    checks.function("P", P, "a state, a map")
     n = checks.count("n", n)
     x = np.array(checks.vector("x", x))
     F, J = _residual(P, x, n)

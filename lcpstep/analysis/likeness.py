@@ -95,6 +95,8 @@ def sample(
 
 def likeness(a: Sample, b: Sample, seed: int = 0) -> dict[str, Likeness]:
     """How far apart two samples are: "phase", "velocity" and "impacts per period"."""
+    for name, given in (("a", a), ("b", b)):
+        checks.instance(name, given, Sample)
     speeds = np.concatenate(a.before + b.before)
     if len(speeds) == 0:
         raise ValueError("a, b: no impacts to compare")

@@ -114,6 +114,7 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress 
     ------
     ValueError   n is not positive or drop is negative
     """
+    checks.function("P", P, "a state, a map")
     state = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
     growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST, n)

@@ -133,6 +133,7 @@ def map_diagram(
     UnknownName   the family has no such parameter
     ValueError   values not increasing or outside of the parameter's range, an unknown kind of start
     """
+    checks.instance("family", family, Family)
     if parameter not in family.parameters:
         raise UnknownName(f"parameter of {family.name}", parameter, family.parameters)
     values = checks.increasing(parameter, values)

@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import HybridScene, Scene
+from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.continuation import Branch, Special, Steps, continue_point
 from lcpstep.analysis.orbit import PeriodicOrbit as PeriodicOrbit
 from lcpstep.analysis.orbit import described, quiet_phase
@@ -76,6 +76,8 @@ def continue_orbit(
     The section is put where the orbit is farthest from its impacts. A branch whose impacts wander that far that one
     reaches the section ends there.
     """
+    checks.function("make", make, "the parameter that makes a scene")
+    checks.instance("orbit", orbit, PeriodicOrbit)
     start = moved(orbit, quiet_phase(orbit))
     n, method, phase = start.periods, start.method, start.phase
 

@@ -36,6 +36,25 @@ def return_times(states: Array, longest: int, tolerance: Array) -> NDArray[np.in
     return np.array(times, dtype=np.int64)
 
 
+def to_shoot_from(states: Array, longest: int, n: int | None = None) -> tuple[Array, int]:
+    """A guess of a periodic point, and after how many periods it comes back, from a motion (window, d).
+
+    The last state of a motion that repeats. Of one that does not, the state that comes closest to itself again: a
+    chaotic motion passes near the unstable orbits that it is made of.
+
+    Parameters
+    ----------
+    longest : after how many periods a motion may repeat to be recognised; 2 longest <= window
+    n : periods to repeat after, below the window; where not given what the motion does, 1 where it does not repeat
+
+    Source: D. Auerbach et al., Physical Review Letters 58 (1987) 2387 (close returns).
+    """
+    size = max(float(np.max(np.abs(states))), 1e-300)
+    n = n or return_time(states, longest, TOLERANCE * size) or 1
+    away = np.max(np.abs(states[n:] - states[:-n]), axis=1)
+    return states[-1 if away[-1] <= TOLERANCE * size else int(np.argmin(away))], n
+
+
 def survive(
     scene: Scene | HybridScene,
     method: Method,

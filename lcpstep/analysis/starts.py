@@ -13,8 +13,8 @@ Array = NDArray[np.float64]
 
 def random_starts(box: ArrayLike, n: int, seed: int) -> Array:
     """N states drawn uniformly from a box (2, 2 n_q) of lowest and highest ones, (n, 2 n_q)."""
-    box = np.asarray(box, dtype=float)
-    if box.ndim != 2 or len(box) != 2 or not np.all(box[0] <= box[1]):
+    box = checks.matrix("box", box)
+    if len(box) != 2 or not np.all(box[0] <= box[1]):
         raise ValueError(f"box: expected the lowest and the highest states, got {box.tolist()}")
     return np.random.default_rng(seed).uniform(box[0], box[1], (checks.count("n", n), box.shape[1]))
 

@@ -25,6 +25,7 @@ from lcpstep.cli.studies import (
     work_bar,
 )
 from lcpstep.dataset import labelled, provenance
+from lcpstep.maps.batch import periodic
 from lcpstep.plot import attractors as pictures
 from lcpstep.plot.words import method_words, scene_words
 from lcpstep.simulation import Method
@@ -72,6 +73,7 @@ def add(commands: Any) -> None:
 def run_attractor(options: argparse.Namespace) -> int:
     """`lcpstep attractor`."""
     scene, method = study_scene(options), method_of(options)
+    periodic(scene, "attractors")
     names = files(options, "attractors")
     number = checks.count("--starts", options.starts)
     starts = outside(scene, random_starts(box(options, scene), number, options.seed), options.phase)

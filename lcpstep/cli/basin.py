@@ -19,6 +19,7 @@ from lcpstep.cli.studies import (
     study_arguments,
     study_scene,
 )
+from lcpstep.maps.batch import periodic
 from lcpstep.plot import basins as pictures
 from lcpstep.plot.words import title_of
 
@@ -51,6 +52,7 @@ def run_basin(options: argparse.Namespace) -> int:
     cam = options.scene == "cam-follower"
     given = any(setting.startswith("coordinates=") for setting in options.set)
     scene = study_scene(options, **({"coordinates": "absolute"} if cam and not given else {}))
+    periodic(scene, "basins")
     position, velocity = options.position, options.velocity
     if cam and not given:
         position, velocity = position or CAM_POSITION, velocity or CAM_VELOCITY

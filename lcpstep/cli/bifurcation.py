@@ -194,7 +194,10 @@ def _range(options: argparse.Namespace) -> tuple[float, float]:
     if options.range is None:
         if options.scene == "cam-follower" and options.parameter == "rpm":
             return WINDOWS["114-850"]
-        raise ValueError("--range: expected LOW HIGH, the range of the parameter")
+        names = ", ".join(parameters_of(options.scene))
+        raise ValueError(
+            f"--range: expected LOW HIGH, the range of the --parameter; those of {options.scene} are {names}"
+        )
     low, high = options.range
     if not low < high:
         raise ValueError(f"--range: expected LOW < HIGH, got {low:g} {high:g}")

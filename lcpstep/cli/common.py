@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -180,6 +181,14 @@ def save_text(text: str, file: Path) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         draft.write_text(text + "\n")
     interrupt.wrote(file)
+
+
+def say(line: str) -> None:
+    """Print a line at once, above a bar where there is one."""
+    from tqdm import tqdm
+
+    tqdm.write(line)
+    sys.stdout.flush()
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,10 @@ from lcpstep.analysis.corner_estimate import agreement, estimate
 from lcpstep.analysis.corners import CornerImpact, corner_impact, local_map
 from lcpstep.cli import proofs
 from lcpstep.cli.common import DONE, FAILED, save_figure, save_text, scene_arguments, scene_with_contacts
+from lcpstep.cli.studies import share_bar, work_bar
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
+from lcpstep.pace import counted
 
 Array = NDArray[np.float64]
 TRANSIENT = 300  # periods until the orbit to start from has settled
@@ -81,22 +84,28 @@ def run_corner(options: argparse.Namespace) -> int:
     def make(value: float) -> Scene:
         return scene_with_contacts(options, **{options.parameter: value})
 
-    start = make(options.start)
-    x = np.concatenate([np.asarray(start.q0), np.asarray(start.v0)])
-    x = _settled(start, x, options.phase)
-    orbit = corner_impact(
-        make, options.near, x, corner=options.corner, n=options.periods, phase=options.phase
-    )
-    chain = local_map(orbit)
-    fitted = estimate(orbit, chain)
-    found = classify(chain)
-    result = _result(options, orbit, chain, agreement(fitted.map, chain), found)
-    result["map_error"] = uncertainty(orbit, chain)
-    if options.prove:
-        result["proof"] = proofs.corner_data(orbit)
+    with work_bar("transient") as name_stage:
+        start = make(options.start)
+        x = np.concatenate([np.asarray(start.q0), np.asarray(start.v0)])
+        x = _settled(start, x, options.phase)
+        name_stage("corner impact")
+        orbit = corner_impact(
+            make, options.near, x, corner=options.corner, n=options.periods, phase=options.phase
+        )
+        name_stage("local map")
+        chain = local_map(orbit)
+        fitted = estimate(orbit, chain)
+        found = classify(chain)
+        result = _result(options, orbit, chain, agreement(fitted.map, chain), found)
+        result["map_error"] = uncertainty(orbit, chain)
+        if options.prove:
+            name_stage("proof")
+            result["proof"] = proofs.corner_data(orbit)
+        if options.out is not None:
+            values, local, full = _diagrams(options, orbit, chain, name_stage)
+            name_stage("branches")
+            branches = orbit_branches(orbit, chain, values)
     if options.out is not None:
-        values, local, full = _diagrams(options, orbit, chain)
-        branches = orbit_branches(orbit, chain, values)
         data = {
             "values": values.tolist(), "local": _lists(local), "full": _lists(full),
             "branches": [branch.as_dict() for branch in branches],
@@ -180,13 +189,18 @@ def _text(r: dict[str, Any]) -> str:
 
 
 def _diagrams(
-    options: argparse.Namespace, orbit: CornerImpact, chain: PiecewiseLinearMap
+    options: argparse.Namespace,
+    orbit: CornerImpact,
+    chain: PiecewiseLinearMap,
+    name_stage: Callable[[str], None],
 ) -> tuple[Array, list[Array], list[Array]]:
     """Points of the local map and of the full system around the corner impact, in absolute coordinates."""
     m = np.linspace(-1.0, 1.0, options.points) * options.width * abs(orbit.p)
+    name_stage("diagram of the local map")
     local = [orbit.x + y for y in diagram(chain, m, drop=SETTLED, keep=SHOWN)]
     full = []
-    for value in m:
+    name_stage("diagram of the system")
+    for value in counted(m.tolist()):
         P = StroboscopicMap(orbit.make(orbit.p + float(value)), EventDriven(), orbit.phase)
         try:
             full.append(P.follow(orbit.x, SETTLED + SHOWN, drop=SETTLED, most=0).states[0])
@@ -223,7 +237,10 @@ def _run_chattering(options: argparse.Namespace) -> int:
     def make(value: float) -> Scene:
         return scene_with_contacts(options, **{options.parameter: value, "q0": 0.0, "v0": 0.0})
 
-    found: list[Crossing] = corner_crossings(make, (low, high))
+    with share_bar("chattering sequences") as (_, told):
+        found: list[Crossing] = corner_crossings(
+            make, (low, high), progress=lambda p: told(p - low, high - low)
+        )
     rows = [c._asdict() for c in found]
     if options.out is not None:
         save_text(json.dumps(rows, indent=1), options.out / "chattering.json")

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from typing import Any
 
-from lcpstep.cli.common import DONE, FAILED
+from lagrangian.scenes import CATALOGUE
+from lcpstep.cli import interrupt
+from lcpstep.cli.common import DONE, FAILED, say
+from lcpstep.cli.studies import work_bar
 from lcpstep.hard import METHODS, Row, table
 from lcpstep.hard.report import line, markdown, summary
 
@@ -41,13 +43,21 @@ def run_hard(options: argparse.Namespace) -> int:
     """`lcpstep hard`."""
     plain = not (options.json or options.markdown)
 
-    def show(row: Row) -> None:
-        if plain:
-            print(line(row), flush=True)
-        elif sys.stderr.isatty():
-            print(f"{row.scene}: {row.what}, {row.method}", file=sys.stderr)
+    shown: list[str] = []
 
-    rows = table(options.scene, options.method, options.full, show, options.error)
+    def kept() -> str:
+        return f"the {len(shown)} lines above" if shown and plain else ""
+
+    interrupt.keeps(options, kept, lambda: _rest(options, shown[-1]))
+    with work_bar("checks") as name_stage:
+
+        def show(row: Row) -> None:
+            shown.append(row.scene)
+            name_stage(row.scene)
+            if plain:
+                say(line(row))
+
+        rows = table(options.scene, options.method, options.full, show, options.error)
     if options.json:
         print(json.dumps([row.as_json() for row in rows], indent=2))
     elif options.markdown:
@@ -55,3 +65,11 @@ def run_hard(options: argparse.Namespace) -> int:
     else:
         print(summary(rows))
     return FAILED if any(row.outcome == "failed" for row in rows) else DONE
+
+
+def _rest(options: argparse.Namespace, last: str) -> list[str]:
+    """The words of the command for the scenes from the last one on."""
+    names = list(CATALOGUE)
+    rest = [name for name in names[names.index(last) :] if not options.scene or name in options.scene]
+    more = ["--method", *options.method] if options.method else []
+    return ["hard", "--scene", *rest, *more, *(f"--{x}" for x in ("full", "error") if getattr(options, x))]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +15,11 @@ from lagrangian import HybridScene, checks
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps
-from lcpstep.analysis.fixed_points import periodic_point
+from lcpstep.analysis.fixed_points import NotConverged, periodic_point
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.predictor import Progress
-from lcpstep.analysis.returns import TOLERANCE, return_time
+from lcpstep.analysis.returns import TOLERANCE, return_time, to_shoot_from
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt, proofs
 from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, parameters_of, save_figure
@@ -39,6 +39,9 @@ from lcpstep.maps.event import KINDS
 from lcpstep.plot import orbits as pictures
 from lcpstep.plot.words import method_words, title_of
 
+Found = TypeVar("Found")
+LONGEST = 60  # periods after which a motion may repeat, where --periods does not say
+
 
 def add(commands: Any) -> None:
     """Arguments of the command."""
@@ -51,7 +54,10 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep orbit cam-follower --rpm 700 --range 660 760 --out out",
     )
     study_arguments(p)
-    p.add_argument("--periods", type=int, default=1, help="periods of the forcing after which it repeats (1)")
+    p.add_argument(
+        "--periods", type=int, metavar="N",
+        help="periods of the forcing after which it repeats; default: what the motion settles to, 1 with --guess",
+    )  # fmt: skip
     p.add_argument(
         "--mode",
         metavar="NAME",
@@ -83,7 +89,10 @@ def add(commands: Any) -> None:
 def run_orbit(options: argparse.Namespace) -> int:
     """`lcpstep orbit`."""
     proofs.check(options)
-    checks.count("--periods", options.periods)
+    if options.event is None and (options.contact or options.cyclic):
+        raise ValueError("--contact, --cyclic: they belong to --event")
+    if options.periods is not None:
+        checks.count("--periods", options.periods)
     scene, method = study_scene(options), method_of(options)
     known = parameters_of(options.scene)
     if options.range is not None and options.parameter not in known:
@@ -96,13 +105,15 @@ def run_orbit(options: argparse.Namespace) -> int:
     drawn = options.out / "orbit.png"
     if options.draw:
         dataset.check_new(drawn, options.overwrite)
-    guess = options.guess
-    with work_bar("transient") as name_stage:
-        if guess is None:
-            settled = PeriodMap(scene, method, options.phase)
-            guess = settled.follow(scene.x0, options.transient + 1, options.transient).final[0]
-        name_stage("orbit")
-        orbit = periodic_orbit(scene, guess, options.periods, method=method, phase=options.phase)
+
+    def motion(drop: int, window: int) -> NDArray[np.float64]:
+        P = PeriodMap(scene, method, options.phase)
+        return P.follow(scene.x0, drop + window, drop).states[0]
+
+    def shoot(x: Any, n: int) -> PeriodicOrbit:
+        return periodic_orbit(scene, x, n, method=method, phase=options.phase)
+
+    orbit = _found(options, motion, shoot, lambda orbit: orbit.x)
     _print(orbit)
     if options.draw:
         drawn.parent.mkdir(parents=True, exist_ok=True)
@@ -112,6 +123,50 @@ def run_orbit(options: argparse.Namespace) -> int:
         print(f"wrote {drawn}")
     status = proofs.show_orbit(orbit) if options.prove else DONE
     return status if names is None else max(status, _run_branch(options, orbit, names))
+
+
+def _found(
+    options: argparse.Namespace,
+    motion: Callable[[int, int], NDArray[np.float64]],
+    shoot: Callable[[Any, int], Found],
+    points: Callable[[Found], NDArray[np.float64]],
+) -> Found:
+    """What shooting finds from --guess, or from a motion(dropped, window) after the transient.
+
+    A motion that still alternates as it settles seems to have twice its period.
+    """
+    n = options.periods
+    with work_bar("transient") as name_stage:
+        if options.guess is not None:
+            x, n = options.guess, n or 1
+        else:
+            x, n = to_shoot_from(motion(options.transient, 2 * LONGEST + (n or 0)), LONGEST, n)
+        name_stage("orbit")
+        try:
+            found = shoot(x, n)
+            x, least = points(found), _least(points(found))
+            return shoot(x[0], least) if options.periods is None and least < n else found
+        except NotConverged as error:
+            error.args = (f"{error}; {_hint(options)}",)
+            raise
+
+
+def _least(points: NDArray[np.float64]) -> int:
+    """After how many of its points an orbit repeats already."""
+    size = max(float(np.max(np.abs(points))), 1e-300)
+    return return_time(np.concatenate([points, points]), len(points), TOLERANCE * size)
+
+
+def _hint(options: argparse.Namespace) -> str:
+    """What to do where shooting found nothing."""
+    if options.guess is not None:
+        return "try another --guess, or other --periods"
+    if options.periods is not None:
+        return "leave --periods out to take what the motion settles to, or give a --guess"
+    return (
+        f"the motion does not repeat within {LONGEST} periods: it is chaotic (lcpstep attractor tells) or wants a "
+        "longer --transient; --periods and --guess find unstable orbits"
+    )
 
 
 def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
@@ -126,11 +181,11 @@ def _run_returns(options: argparse.Namespace, scene: Any, method: Any) -> int:
     else:
         P = EventMap(scene, method, options.event, options.contact, tuple(options.cyclic))
         where = f"{options.event} of contact {options.contact}"
-    x = P.entry() if options.guess is None else options.guess
-    with work_bar("transient") as name_stage:
-        x = iterate(P, x, options.transient)[-1]
-        name_stage("orbit")
-        found = periodic_point(P, x, options.periods)
+
+    def motion(drop: int, window: int) -> NDArray[np.float64]:
+        return iterate(P, P.entry(), drop + window)[-window:]
+
+    found = _found(options, motion, lambda x, n: periodic_point(P, x, n), lambda point: point.points)
     period = sum(P.duration(y) for y in found.points)
     print(f"{'stable' if found.stable else 'unstable'}; period {period:.12g}, residual {found.residual:.2g}")
     if isinstance(P, EventMap) and options.cyclic:
@@ -205,8 +260,7 @@ def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progres
 
 def _print(orbit: PeriodicOrbit) -> None:
     print(f"{orbit.name}, {'stable' if orbit.stable else 'unstable'}; residual {orbit.residual:.2g}")
-    size = max(float(np.max(np.abs(orbit.x))), 1e-300)
-    least = return_time(np.concatenate([orbit.x, orbit.x]), len(orbit.x), TOLERANCE * size)
+    least = _least(orbit.x)
     if least < len(orbit.x):
         print(f"it repeats after {least} of these {len(orbit.x)} periods already (--periods {least})")
     print("states on the section: " + "; ".join(str(x.tolist()) for x in orbit.x))

@@ -26,10 +26,13 @@ from lcpstep.cli.common import (
 )
 from lcpstep.dataset import Progress
 from lcpstep.errors import SweepStopped
-from lcpstep.pace import telling
+from lcpstep.pace import Told, telling
 from lcpstep.simulation import Method
 
 CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
+TAKEN = {  # options of one method: their defaults, and whose they are
+    "h": (1e-4, "moreau"), "theta": (0.5, "moreau"), "lcp": ("lemke", "moreau"), "tolerance": (1e-12, "event-driven"),
+}  # fmt: skip
 PARTS = "parts"  # folder of an unfinished sweep
 
 
@@ -42,6 +45,7 @@ def study_arguments(p: argparse.ArgumentParser) -> None:
     )
     stepping_arguments(p)
     p.add_argument("--tolerance", type=float, default=1e-12, help="rtol and atol, event-driven only (1e-12)")
+    p.set_defaults(h=None, theta=None, lcp=None, tolerance=None)  # so that what is given is known
     p.add_argument("--phase", type=float, default=0.0, help="of the section, a share of the period (0)")
     p.add_argument("--seed", type=int, default=0, help="of all random numbers; stored with the result (0)")
     p.add_argument("--jobs", type=int, metavar="N", help="threads; default: all cores")
@@ -54,8 +58,22 @@ def method_of(options: argparse.Namespace) -> Method:
     return moreau(options) if options.method == "moreau" else event_driven(options)
 
 
+def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:
+    """ValueError for an option of the method that is not used; what is not given is set to its default."""
+    for name, (default, method) in TAKEN.items():
+        if getattr(options, name, None) is None:
+            setattr(options, name, default)
+        elif options.method != method and not getattr(options, "compare", None):
+            raise ValueError(f"--{name}: {options.method} has none, it belongs to {method}")
+
+
 def study_scene(options: argparse.Namespace, **more: Any) -> Any:
-    """The scene that the options name, at the speed --rpm if it is given."""
+    """The scene that the options name, at the speed --rpm if it is given.
+
+    ValueError for options of another method.
+    """
+    if hasattr(options, "method"):
+        _refuse_what_does_not_apply(options)
     if options.rpm is not None:
         if options.scene != "cam-follower":
             raise ValueError("--rpm: only the cam-follower turns")
@@ -117,6 +135,13 @@ def work_bar(title: str) -> Iterator[Callable[[str], None]]:
 
     What it gives names the stage.
     """
+    with share_bar(title) as (bar, told), nullcontext() if bar.disable else telling(told):
+        yield bar.set_description_str
+
+
+@contextmanager
+def share_bar(title: str) -> Iterator[tuple[Any, Told]]:
+    """The same bar, and what to tell it: how far a loop is, and of how much."""
     from tqdm import tqdm
 
     form = "{desc}: {percentage:3.0f}% |{bar}| [{elapsed}<{remaining}]"
@@ -132,8 +157,7 @@ def work_bar(title: str) -> Iterator[Callable[[str], None]]:
                 bar.n, latest = share, (share, now)
                 bar.refresh()
 
-        with nullcontext() if bar.disable else telling(told):
-            yield bar.set_description_str
+        yield bar, told
 
 
 @contextmanager

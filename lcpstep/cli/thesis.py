@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from lcpstep.cli import interrupt
-from lcpstep.cli.common import DONE
+from lcpstep.cli.common import DONE, say
+from lcpstep.cli.studies import work_bar
 from lcpstep.errors import UnknownName
+from lcpstep.pace import counted
 from lcpstep.thesis import FIGURES, make
 from lcpstep.thesis.page import write_page
 
@@ -47,7 +49,13 @@ def run_thesis(options: argparse.Namespace) -> int:
         if options.page.exists() and not options.overwrite:
             raise FileExistsError(f"--page: {options.page} exists already; --overwrite replaces it")
         options.page.parent.mkdir(parents=True, exist_ok=True)
-        write_page(options.page, lambda name: print(name, flush=True))
+        with work_bar("numbers") as name_stage:
+
+            def told(name: str) -> None:
+                name_stage(f"figure {name}")
+                say(name)
+
+            write_page(options.page, told)
         print(f"wrote {options.page}")
         return DONE
     wanted = options.figures or list(FIGURES)
@@ -58,11 +66,13 @@ def run_thesis(options: argparse.Namespace) -> int:
     rest = list(wanted)
     goes_on = ["--out", str(options.out), *(["--overwrite"] if options.overwrite else [])]
     interrupt.keeps(options, lambda: ", ".join(map(str, finished)), lambda: ["thesis", *rest, *goes_on])
-    for name in wanted:
-        start = time.perf_counter()
-        files = make(name, options.out, options.overwrite)
-        finished += files
-        rest.remove(name)
-        shown = ", ".join(file.name for file in files)
-        print(f"{name:12} {time.perf_counter() - start:6.1f} s   {shown}", flush=True)
+    with work_bar("figures") as name_stage:
+        for name in counted(wanted):
+            name_stage(f"figure {name}")
+            start = time.perf_counter()
+            files = make(name, options.out, options.overwrite)
+            finished += files
+            rest.remove(name)
+            shown = ", ".join(file.name for file in files)
+            say(f"{name:12} {time.perf_counter() - start:6.1f} s   {shown}")
     return DONE

@@ -20,7 +20,9 @@ from lcpstep.hard import (
 )
 from lcpstep.hard.check import CHECKS, Row, run_check
 from lcpstep.hard.methods import METHODS
+from lcpstep.pace import counted
 
+HEAVY = 20.0  # how many times as long a heavy check is expected to take, for progress
 FAMILIES = (balls, tables, oscillators, pendulums, beads, piles, cams, friction, stick_slip, chaos)
 
 
@@ -51,13 +53,18 @@ def table(
     for name in by:
         if name not in METHODS:
             raise UnknownName("method", name, METHODS)
+    checks = [
+        (c, method)
+        for c in sorted(CHECKS, key=lambda c: list(CATALOGUE).index(c.scene))
+        for method in METHODS
+        if (full or not c.heavy)
+        and (not wanted or c.scene in wanted)
+        and method in c.bounds
+        and (not by or method in by)
+    ]
     rows = []
-    for c in sorted(CHECKS, key=lambda c: list(CATALOGUE).index(c.scene)):
-        if (c.heavy and not full) or (wanted and c.scene not in wanted):
-            continue
-        for method in METHODS:
-            if method in c.bounds and (not by or method in by):
-                rows.append(run_check(c, method, bars))
-                if progress is not None:
-                    progress(rows[-1])
+    for c, method in counted(checks, [HEAVY if c.heavy else 1.0 for c, _ in checks]):
+        rows.append(run_check(c, method, bars))
+        if progress is not None:
+            progress(rows[-1])
     return rows

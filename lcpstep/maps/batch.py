@@ -88,6 +88,8 @@ def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None
     hint = "; it is driven where its parameter amplitude is not zero" if drive == 0.0 else ""
     if isinstance(scene, HybridScene):
         hint += "; lcpstep.maps.SwitchMap (lcpstep orbit --mode) takes returns to a mode"
+    elif scene.n_c:
+        hint += "; lcpstep.maps.EventMap (lcpstep orbit --event) takes returns to an event of a contact"
     raise ValueError(f"scene: {scene.name!r} has no period, and so no {what}{hint}")
 
 

@@ -40,6 +40,7 @@ def iterate(P: Map, x: ArrayLike, n: int) -> Array:
     ------
     ValueError   n is not positive, x is no vector of finite numbers, or P changes its shape
     """
+    checks.function("P", P, "a state, a map")
     points = [checks.vector("x", x)]
     for _ in counted(range(checks.count("n", n))):
         image = np.atleast_1d(np.asarray(P(points[-1]), dtype=float))

@@ -5,7 +5,6 @@ Source: G. Osorio, Complex Behavior in Impacting Systems, sections 3.2.3 and 3.3
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.maps.batch import periodic
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Kind
 
@@ -50,8 +50,7 @@ def sections(
     ------
     ValueError   the scene has no period, or there is nothing left after `drop`
     """
-    if not math.isfinite(scene.period):
-        raise ValueError(f"scene: {scene.name!r} has no period, and so no stroboscopic map")
+    periodic(scene)
     if not 0 <= drop < periods:
         raise ValueError(f"drop: expected 0 <= drop < periods = {periods}, got {drop}")
     times = np.arange(drop, periods) * scene.period

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import checks
 from lcpstep.plot.bifurcation import LETTERS
 
 Array = NDArray[np.float64]
@@ -32,6 +33,7 @@ def attractors(
     corners : phases of the corners of the forcing, as shares of the period
     labels : of the states, with their units
     """
+    checks.filled("rows", rows, Mapping, "lists of attractors by name")
     from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(13.0, 0.8 + 4.6 * len(rows)), layout="constrained")

@@ -6,11 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
+
 COLOURS = "tab20"
 
 
 def basins(data: Any, title: str = "") -> Any:
     """Figure of a basin dataset: one colour an attractor, white for none, grey for the obstacle."""
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.basins")
     from matplotlib import colormaps
 
     from lcpstep.plot.figures import Figure

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.plot.words import parameter_label
 
 PANELS = {
@@ -46,6 +47,7 @@ def bifurcation(data: Any, title: str = "", show: Sequence[str] | None = None) -
     show : names of `PANELS`; where not given, phases and positions, and where sequences of impacts end within the
         window their accumulation points and the number of impacts
     """
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.bifurcation")
     shown = list(show or panels_of(data))
     figure, axes = _figure(len(shown), title or f"{data.attrs['scene']}: {data.attrs['start']} start")
     for ax, name in zip(axes, shown, strict=True):
@@ -90,6 +92,8 @@ def overlaid(
 
 def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
     """Points of one panel."""
+    checks.has("ax", ax, "plot", "axes of matplotlib")
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.bifurcation")
     x, y = thinned(*points(data, name))
     size = larger * float(np.clip(2400.0 / len(data[str(data.attrs["parameter"])]), 2.5, 4.0))
     ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.accuracy.contest import Contest
 from lcpstep.plot.work_precision import whole_decades
 
@@ -25,6 +26,9 @@ WIDTH, HEIGHT = 12.5, 3.6  # of the picture, and of each scene [inch]
 
 def contests(found: Sequence[Contest], titles: Sequence[str]) -> Any:
     """A row for each scene: motion above the distances from the reference, and a work-precision diagram beside."""
+    checks.filled("found", found, Sequence, "a list of Contest")
+    for one in found:
+        checks.instance("found", one, Contest)
     from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(WIDTH, HEIGHT * len(found) + 0.4), layout="constrained")

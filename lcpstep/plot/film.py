@@ -123,6 +123,7 @@ class Film:
 
 def film(run: Any, *, drawing: Drawing | None = None, seconds: float | None = None, fps: int = 25) -> Film:
     """The film of a run; see `Trajectory.animate`."""
+    checks.has("run", run, "scene", "a Trajectory")
     drawing = run.scene.drawing if drawing is None else drawing
     if drawing is None:
         raise LcpStepError(

@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.plot.bifurcation import thinned
 
 
 def map_diagram(data: Any, title: str = "", coordinate: int = 0) -> Any:
     """Figure of a dataset of `lcpstep.analysis.map_diagram`; coordinate: which one is drawn."""
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.map_diagram")
     from lcpstep.plot.figures import Figure
 
     parameter = str(data.attrs["parameter"])

@@ -64,6 +64,8 @@ def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
 
 def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
     """One coordinate's path in the plane (q, v); velocity jumps in grey."""
+    checks.has("ax", ax, "plot", "axes of matplotlib")
+    checks.instance("run", run, Trajectory)
     jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
     before = np.nextafter(jumps.time, run.t[0])
     t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps.time, before]))
@@ -82,6 +84,7 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
 
     The error bar of a run that has one is a band around positions and velocities: the largest error until then.
     """
+    checks.instance("run", run, Trajectory, HybridTrajectory)
     from lcpstep.plot.figures import Figure
 
     if isinstance(run, HybridTrajectory):

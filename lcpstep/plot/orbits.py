@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import HybridScene
+from lagrangian import HybridScene, checks
 from lcpstep.analysis.orbits import PeriodicOrbit
 from lcpstep.plot.lift import absolute
 from lcpstep.plot.words import names_of, parameter_label
@@ -33,6 +33,7 @@ MARKS = {
 
 def branch(data: Any, title: str = "") -> Any:
     """Figure of a branch dataset: position on the section, moduli of the multipliers, and their path in the plane."""
+    checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.branch_data")
     from lcpstep.plot.figures import Figure
 
     parameter = str(data.attrs["parameter"])
@@ -117,6 +118,7 @@ def multiplier_plane(figure: Any, ax: Any, data: Any) -> None:
 
 def orbit(found: PeriodicOrbit, title: str = "") -> Any:
     """The motion over its period with what it strikes, and in the state plane (of its first coordinate)."""
+    checks.instance("found", found, PeriodicOrbit)
     from lcpstep.plot.figures import Figure
 
     T, n = found.scene.period, found.periods

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from lagrangian import checks
 from lcpstep.maps import Sections
 
 
@@ -21,6 +22,7 @@ def maps(
     lowest : where the circle of phases is cut: they are shown within [lowest, lowest + 1), in periods
     corners : phases of the corners of the forcing
     """
+    checks.filled("points", points, Mapping, "Sections by name")
     from lcpstep.plot.figures import Figure
 
     figure = Figure(figsize=(11, 4.0 * len(points)), layout="constrained")

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.accuracy.work_precision import UNFIT, Level, Study
 
 MARKERS = "osD^vPX*<>"
@@ -23,6 +24,7 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
     because the reference is not good enough there or the motion has lost it. The grey line is what the
     reference itself may be off.
     """
+    checks.instance("study", study, Study)
     from lcpstep.plot.figures import Figure
 
     wanted = measures or [

@@ -85,6 +85,29 @@ def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
         assert "flip" in data["special_kind"].values
 
 
+def test_orbit_takes_the_period_that_the_motion_settles_to(capsys):
+    status, out, _ = run(capsys, "orbit", "cam-follower")
+    assert status == DONE
+    assert "O(3, 8), stable" in out
+    status, out, _ = run(capsys, "orbit", "woodpecker", "--event", "impact", "--cyclic", 0, "--transient", 5)
+    assert status == DONE
+    assert "stable; period 0.1459760651" in out
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (("--rpm", 660), "it is chaotic (lcpstep attractor tells) or wants a longer --transient"),
+        (("--periods", 1), "leave --periods out to take what the motion settles to"),
+        (("--guess", 0.02, 9.5), "try another --guess, or other --periods"),
+    ],
+)
+def test_orbit_says_what_to_do_where_it_finds_none(capsys, more, said):
+    status, _, err = run(capsys, "orbit", "cam-follower", *more)
+    assert status == USAGE
+    assert said in err
+
+
 def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "manifest.json").write_text("{}")
@@ -111,8 +134,20 @@ def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
         ),
         (["basin", "cam-follower", "--position", "1", "0"], "--position: expected LOW < HIGH"),
         (["basin", "cam-follower", "--grid", "0", "5"], "--grid: expected a positive integer"),
-        (["basin", "bouncing-ball"], "--position, --velocity"),
+        (["basin", "impact-oscillator"], "--position, --velocity"),
+        (["bifurcation", "impact-oscillator"], "those of impact-oscillator are zeta, omega"),
         (["attractor", "impact-oscillator"], "--box"),
+        (
+            ["attractor", "cam-follower", "--theta", "1"],
+            "--theta: event-driven has none, it belongs to moreau",
+        ),
+        (["orbit", "cam-follower", "--lcp", "qp"], "--lcp: event-driven has none, it belongs to moreau"),
+        (
+            ["basin", "cam-follower", "--method", "moreau", "--tolerance", "1e-9"],
+            "it belongs to event-driven",
+        ),
+        (["orbit", "cam-follower", "--contact", "1"], "--contact, --cyclic: they belong to --event"),
+        (["attractor", "bouncing-ball"], "has no period, and so no attractors; lcpstep.maps.EventMap"),
         (["attractor", "cam-follower", "--rpm", "-1"], "rpm"),
         (["attractor", "cam-follower", "--starts", "0"], "--starts: expected a positive integer"),
         (["attractor", "cam-follower", "--points", "0"], "points: expected a positive integer"),

@@ -39,6 +39,7 @@ def prove(orbit: PeriodicOrbit, *, bits: int = 128) -> Proof:
         that cannot be enclosed), an orbit that sticks, chatters, grazes, strikes a corner or touches something, or
         one that is none
     """
+    checks.instance("orbit", orbit, PeriodicOrbit)
     checks.number("bits", bits, least=64)
     with ctx.workprec(int(bits)):
         f = formulas(orbit.scene)

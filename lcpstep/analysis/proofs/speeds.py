@@ -65,6 +65,7 @@ def prove_speed(orbit: PeriodicOrbit | CornerImpact, kind: str = "corner", *, bi
     UnknownName   there is no such kind
     NotProved   the reason in words, as in `prove`
     """
+    checks.instance("orbit", orbit, PeriodicOrbit, CornerImpact)
     checks.number("bits", bits, least=64)
     if kind not in KINDS:
         raise UnknownName("kind", kind, KINDS)
