@@ -2,9 +2,10 @@ cimport cython
 from libc.math cimport pow, sqrt
 from lcpstep.events.general.earliest cimport NEVER, NONE, observe
 from lcpstep.events.general.impact cimport speed_noise
-from lcpstep.events.general.parabolas cimport first_root, hop
+from lcpstep.events.general.parabolas cimport hop
 from lcpstep.events.general.state cimport Mechanism, NOISE
 from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.vectors cimport largest
 from lcpstep.pointers cimport abs, inf, max, min, nan
 

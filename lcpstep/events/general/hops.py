@@ -16,9 +16,10 @@ if not cython.compiled:
 
     from lcpstep.events.general.earliest import NEVER, NONE, observe
     from lcpstep.events.general.impact import speed_noise
-    from lcpstep.events.general.parabolas import first_root, hop
+    from lcpstep.events.general.parabolas import hop
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.vectors import largest
     from lcpstep.pointers import abs, inf, max, min, nan
 
@@ -70,7 +71,7 @@ def hop_time(s: Mechanism, c: int, g: float, u: float, alpha: float) -> float:
         return inf
     if g == 0.0:
         return hop(u, alpha) if u > 0.0 else inf
-    return first_root(g, u, alpha) if s.contact.carried[c] == 1 else inf
+    return first_zero(g, u, 0.5 * alpha) if s.contact.carried[c] == 1 else inf
 
 
 def is_low(s: Mechanism, c: int, h: float) -> bool:

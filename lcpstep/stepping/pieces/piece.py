@@ -11,6 +11,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rounding, gaps, moves, obstacle
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, after, max, min
@@ -28,7 +29,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.contact_forces import hold, land
     from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
-    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
         accelerate,
