@@ -28,7 +28,7 @@ HEADERS = {
     "lcpstep.arrays",
     "lcpstep.kernels.vectors",
     "lcpstep.stepping.pieces.codes",
-    "lcpstep.stepping.pieces.quadratic",
+    "lcpstep.kernels.quadratic",
     "lcpstep.stepping.pieces.times",
 }  # merged into the modules that use them
 DIRECTIVES = {

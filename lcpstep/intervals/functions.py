@@ -201,6 +201,23 @@ UFUNCS: dict[Any, Callable[..., Any]] = {
 }  # fmt: skip
 
 
+def apply(ufunc: Any, inputs: tuple[Any, ...]) -> Any:
+    """One of numpy's functions of intervals, and of arrays element by element, as with any object."""
+    if ufunc not in UFUNCS:
+        raise NotEnclosed(f"numpy.{ufunc.__name__} is not known for intervals")
+    x = [i if isinstance(i, Interval) or np.ndim(i) else float(i) for i in inputs]
+    if any(np.ndim(i) for i in x if not isinstance(i, Interval)):
+        return ufunc(*[(i if isinstance(i, np.ndarray) else boxed(i)).astype(object) for i in x])
+    return UFUNCS[ufunc](*x)
+
+
+def boxed(x: Any) -> Any:
+    """An array without dimensions that holds x."""
+    box = np.empty((), dtype=object)
+    box[()] = x
+    return box
+
+
 class Module(SimpleNamespace):
     """A module whose functions take intervals; the others are as they were."""
 

@@ -29,9 +29,7 @@ class Interval:
 
     def __init__(self, lo: Any, hi: Any, minus: Any = None) -> None:
         self.lo, self.hi = lo, hi
-        self.minus = (
-            minus  # the number that this is minus of, where that is known: -x * x is no product of two
-        )
+        self.minus = minus  # the number that this is minus of, if known: -x * x is no product of two
 
     def __repr__(self) -> str:
         return f"Interval({self.lo}, {self.hi})"
@@ -257,22 +255,11 @@ class Interval:
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         """What numpy's scalars and functions do with an interval."""
-        from lcpstep.intervals.functions import UFUNCS
+        from lcpstep.intervals.functions import apply
 
-        if method != "__call__" or ufunc not in UFUNCS or options:
+        if method != "__call__" or options:
             raise NotEnclosed(f"numpy.{ufunc.__name__} is not known for intervals")
-        x = [i if isinstance(i, Interval) or np.ndim(i) else float(i) for i in inputs]
-        if any(np.ndim(i) for i in x if not isinstance(i, Interval)):  # elementwise, as with any object
-            objects = [i if isinstance(i, np.ndarray) else boxed(i) for i in x]
-            return ufunc(*[i.astype(object) for i in objects])
-        return UFUNCS[ufunc](*x)
-
-
-def boxed(x: Any) -> Any:
-    """An array without dimensions that holds x."""
-    box = np.empty((), dtype=object)
-    box[()] = x
-    return box
+        return apply(ufunc, inputs)
 
 
 def bounds(x: Any) -> tuple[Any, Any]:

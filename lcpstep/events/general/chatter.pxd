@@ -4,8 +4,9 @@ from lcpstep.events.general.held cimport hold_contacts, right_hand_side, solve_h
 from lcpstep.events.general.impact cimport apply, speed_noise
 from lcpstep.events.general.keep cimport log
 from lcpstep.events.general.motion cimport gap_tolerance, speed_tolerance
-from lcpstep.events.general.parabolas cimport accumulation, first_root, hop
+from lcpstep.events.general.parabolas cimport accumulation, hop
 from lcpstep.events.general.state cimport Mechanism, NOISE
+from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport product

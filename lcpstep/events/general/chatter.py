@@ -21,8 +21,9 @@ if not cython.compiled:
     from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.keep import log
     from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
-    from lcpstep.events.general.parabolas import accumulation, first_root, hop
+    from lcpstep.events.general.parabolas import accumulation, hop
     from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import product
@@ -143,7 +144,7 @@ def interrupted(s: Mechanism, c: int, T: float) -> bool:
     for d in range(s.n_c):
         if d != c and s.contact.closed[d] == 0 and (passed_on or s.D[(n_j + c) * s.n_r + n_j + d] != 0.0):
             g, u, alpha = s.contact.gap[d], s.contact.speed[d], s.contact.curve[d]
-            if (g > 0.0 or u > 0.0) and first_root(g, u, alpha) < T:
+            if (g > 0.0 or u > 0.0) and first_zero(g, u, 0.5 * alpha) < T:
                 return True
     return False
 

@@ -1,17 +1,16 @@
-from libc.math cimport sqrt
 from lcpstep.events.general.held cimport solve_held
 from lcpstep.events.general.keep cimport keep, keep_wanted, store_dense
 from lcpstep.events.general.motion cimport press, rebase, state_at
 from lcpstep.events.general.state cimport JUMP, Mechanism
+from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport largest, product
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.pointers cimport abs, max, min
 
 cdef double LARGE
 
 cdef void fly(Mechanism s, Record record, Tally tally) noexcept nogil
-cdef double first_root(double g, double u, double alpha) noexcept nogil
 cdef double hop(double u, double alpha) noexcept nogil
 cdef double accumulation(double u, double alpha, double r) noexcept nogil
 cdef void synchronise(Mechanism s) noexcept nogil

@@ -1,6 +1,6 @@
 """Motion under constant acceleration with gaps that are linear in q, as kernels: exact, from contact to contact.
 
-A gap is g + u tau + alpha tau^2 / 2, and its first root is known. Gaps and speeds are carried along from event to
+A gap is g + u tau + alpha tau^2 / 2, and its first zero is known. Gaps and speeds are carried along from event to
 event, not computed from the state, so that small ones keep their digits.
 """
 
@@ -9,16 +9,15 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from math import sqrt
-
     from lcpstep.events.general.held import solve_held
     from lcpstep.events.general.keep import keep, keep_wanted, store_dense
     from lcpstep.events.general.motion import press, rebase, state_at
     from lcpstep.events.general.state import JUMP, Mechanism
+    from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import largest, product
-    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.pointers import abs, max, min
 
 LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has digits enough
 
@@ -29,7 +28,7 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
     tau, meets = border, -1
     for c in range(n_c):
         if s.contact.closed[c] == 0:
-            root = first_root(s.contact.gap[c], s.contact.speed[c], s.contact.curve[c])
+            root = first_zero(s.contact.gap[c], s.contact.speed[c], 0.5 * s.contact.curve[c])
             if root < tau:
                 tau, meets = root, c
     t = s.t_end if meets < 0 else min(s.after(tau), s.t_end)
@@ -56,18 +55,6 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
         return
     s.contact.gap[meets] = 0.0
     s.next = JUMP
-
-
-def first_root(g: float, u: float, alpha: float) -> float:
-    """First tau >= 0 at which g + u tau + alpha tau^2 / 2 falls through zero, or infinity; g >= 0."""
-    if g <= 0.0 and u < 0.0:
-        return 0.0
-    square = u * u - 2.0 * alpha * g
-    if square < 0.0 or (u >= 0.0 and alpha >= 0.0):
-        return inf
-    if u < 0.0:
-        return 2.0 * g / (sqrt(square) - u)
-    return (u + sqrt(square)) / -alpha
 
 
 def hop(u: float, alpha: float) -> float:

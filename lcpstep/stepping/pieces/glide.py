@@ -10,11 +10,11 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.codes import SAME_TIME
     from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
 

@@ -1,6 +1,7 @@
 cimport cython
 from lcpstep.kernels.dynamics cimport gap_rounding, gaps, moves, obstacle
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.quadratic cimport first_zero, may_reach_zero
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max, min
@@ -10,7 +11,6 @@ from lcpstep.stepping.pieces.codes cimport (
 from lcpstep.stepping.pieces.contact_forces cimport hold, land
 from lcpstep.stepping.pieces.jointed cimport load_joints, put_on_joints, share_out
 from lcpstep.stepping.pieces.keep cimport keep_between, keep_times, remember
-from lcpstep.stepping.pieces.quadratic cimport first_zero, may_reach_zero
 from lcpstep.stepping.pieces.smooth cimport (
     ON_THE_SURFACE, accelerate, advance, gap_bias, measure, put_on_surface, refactor, respond,
 )

@@ -11,6 +11,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rounding, gaps, moves, obstacle
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, after, max, min
@@ -28,7 +29,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.contact_forces import hold, land
     from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
-    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
         accelerate,
@@ -198,16 +198,11 @@ def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
 
 def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: float) -> float:
     """Where a gap that is open at `low` and negative at `high` closes between them: by bisection."""
-    while high - low > EPS * high:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        look(m, plan, w, t, middle)
-        if w.gap_try[c] > 0.0:
-            low = middle
-        else:
-            high = middle
-    return high
+    w.bracket.begin(low, high, True, 0.5 * (low + high))
+    while w.bracket.seek(EPS * w.bracket.b):
+        look(m, plan, w, t, w.bracket.x)
+        w.bracket.take(1.0 if w.gap_try[c] > 0.0 else -1.0, 0.0)  # the first zero, where rounding makes many
+    return w.bracket.b
 
 
 def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:

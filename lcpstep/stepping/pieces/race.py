@@ -14,10 +14,10 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import LEAD, Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
-    from lcpstep.stepping.pieces.quadratic import first_zero, may_reach_zero
     from lcpstep.stepping.pieces.state import Plan, Work
 
 CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
