@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
+FEW = 200  # coordinates up to which dense steps are fast enough, and know more
 CONTRADICTION = 1e-9  # of the terms of a joint's rate: `constraints.joint_rows`
 CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next three: `row_impulses`
 CANCELLED = 0.1
@@ -141,11 +142,11 @@ class CoupledRun(SparseRun):
 
 
 def takes(scene: Scene) -> bool:
-    """Whether the joints and the friction of a sparse scene are of the kind that these steps know."""
+    """Whether a sparse scene is large, and its joints and its friction are of the kind that these steps know."""
     joints, contacts = scene.joints, scene.contacts
     friction = None if contacts is None else contacts.friction
     known = friction is None or not (
         callable(friction.mu) or callable(friction.tangent) or friction.mu_s is not None
         or friction.law == "stronge" or isinstance(friction.slip, Harmonic)
     )  # fmt: skip
-    return known and (not isinstance(joints, Joints) or joints.pattern is not None)
+    return known and scene.n_q > FEW and (not isinstance(joints, Joints) or joints.pattern is not None)
