@@ -187,6 +187,14 @@ def test_long_graphs_are_as_far_apart_as_one_of_them_was_moved():
         assert hausdorff(Graph(t2, v2), Graph(t2, v2 + shift)) == pytest.approx(shift, rel=2e-4)
 
 
+def test_a_detour_between_two_neighbouring_numbers_is_found():
+    """Nothing lies between them, so that the piece of the straight graph there cannot be halved."""
+    x = 5.0
+    after = np.nextafter(x, 6.0)
+    straight, detour = Graph([0, 6], [0, 0]), Graph([0, x, x, after, after, 6], [0, 0, 1, 1, 0, 0])
+    assert hausdorff(straight, detour) == hausdorff(detour, straight) == pytest.approx(1.0)
+
+
 # --- impacts against every pairing
 
 times = st.lists(st.integers(0, 40), max_size=5).map(lambda x: np.sort(np.array(x)) / 4.0)
