@@ -22,7 +22,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, Indices, max, min
 
 RESOLUTION = 1e-6  # of the distance
-ROUNDING = 4e-16  # of the size of the graphs: numbers next to each other cannot be halved, and lie 3.2e-16 apart at most
+ROUNDING = 4e-16  # of the size of the graphs: neighbouring numbers, which cannot be halved, lie 3.2e-16 apart
 LEAF = 8  # segments in a leaf of the tree
 DEPTH = 256  # of the stacks
 FIRST = 512  # points looked at first, for a bound that spares most of the others
