@@ -5,9 +5,10 @@
 
 Velocities jump at different times in the two motions, so that their pointwise sup does not become small. Each
 motion is evaluated through its own `at`, between all times of both grids and both impact logs: no interval of
-integration straddles a jump that a log names. Sources: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
-Dynamical Systems (Springer 2008), section 9; for the distance of graphs J. J. Moreau, Approximation en graphe
-d'une evolution discontinue, RAIRO Analyse numerique 12, 1978.
+integration straddles a jump that a log names. Of grids of more than `MOST` times one in several is looked at, which
+changes the measures by less than a hundredth (tests/accuracy/test_errors.py). Sources: V. Acary, B. Brogliato,
+Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), section 9; for the distance of graphs J. J. Moreau,
+Approximation en graphe d'une evolution discontinue, RAIRO Analyse numerique 12, 1978.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ from lcpstep.model import model
 
 Array = NDArray[np.float64]
 LOOKS = 2000  # instants looked at in any case, however coarse the grids
+MOST = 100_000  # instants looked at, about, however fine the grids, and those about jumps
+BESIDE = 2  # instants on either side of every jump or bend that are looked at in any case
+BENDS = 5000  # of the velocity, the sharpest
 ROUNDING = 8 * np.finfo(float).eps  # of a time
 NODES = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])  # of Gauss' rule with two points, exact for cubics
 
@@ -177,7 +181,7 @@ class Difference:
         return max(0.0, -min(least))
 
     @cached_property
-    def _breaks(self) -> Array:
+    def _all_breaks(self) -> Array:
         """All times of both grids and logs within the span, and some more."""
         start, end = self.span
         times = [np.linspace(start, end, LOOKS + 1)]
@@ -187,10 +191,36 @@ class Difference:
         return t[(t >= start) & (t <= end)]
 
     @cached_property
+    def _kept(self) -> NDArray[np.intp]:
+        """Which breaks are looked at."""
+        t = self._all_breaks
+        return np.arange(len(t)) if len(t) <= MOST else self._looked_at(t)
+
+    @cached_property
+    def _breaks(self) -> Array:
+        """The breaks that are looked at."""
+        return self._all_breaks[self._kept]
+
+    def _looked_at(self, t: Array) -> NDArray[np.intp]:
+        """Which of too many times to look at: one in several, so that they stay dense where the grids are, and all
+        jumps and the sharpest bends of the velocity with their neighbours, where errors are largest and shortest.
+        """
+        both = (self.motion, self.reference)
+        jumps = np.unique(np.concatenate([np.asarray(m.impacts["time"], dtype=float) for m in both]))
+        acceleration = np.diff(self.motion.at(t)[1], axis=0) / np.diff(t)[:, None]
+        bend = np.max(np.abs(np.diff(acceleration, axis=0)), axis=1)
+        sharpest = np.argpartition(bend, -BENDS)[-BENDS:] + 1
+        place = np.append(np.searchsorted(t, jumps[(jumps >= t[0]) & (jumps <= t[-1])]), sharpest)
+        near = np.unique(np.clip(place[:, None] + np.arange(-BESIDE, BESIDE + 1), 0, len(t) - 1))
+        every = np.append(np.arange(0, len(t), -(-len(t) // MOST)), len(t) - 1)
+        return np.union1d(every, near)
+
+    @cached_property
     def _times(self) -> tuple[Array, Array]:
         """The breaks, and the nodes of the quadrature between them."""
-        t = self._breaks
-        return t, (t[:-1, None] + np.diff(t)[:, None] * NODES).ravel()
+        t, kept = self._all_breaks, self._kept
+        inner = (kept[:-1] + kept[1:] - 1) // 2  # the interval in the middle stands for those around it
+        return t[kept], (t[inner, None] + (t[inner + 1] - t[inner])[:, None] * NODES).ravel()
 
     @cached_property
     def _at_breaks(self) -> tuple[tuple[Array, Array], tuple[Array, Array]]:

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lagrangian import Harmonic, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.accuracy import errors
 from lcpstep.accuracy.errors import MEASURES, Difference
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import match_impacts
@@ -147,6 +148,28 @@ def test_states_of_time_stepping_come_close_in_every_measure():
         if name != "unmatched":
             assert getattr(Difference(fine, exact), name) < 0.1 * getattr(Difference(coarse, exact), name)
     assert Difference(fine, exact).unmatched == 0
+
+
+@pytest.mark.parametrize(
+    ("scene", "h"),
+    [
+        (scenes.impact_oscillator(t_end=20.0), 1.25e-4),
+        (scenes.bouncing_ball(t_end=2.5), 1.5e-5),
+        (scenes.cam_follower(rpm=358.0, t_end=0.5), 3e-6),
+    ],
+    ids=lambda x: getattr(x, "name", None),
+)
+@pytest.mark.parametrize("method", [Moreau, Located])
+def test_a_part_of_a_fine_grid_tells_what_all_of_it_does(scene, h, method, monkeypatch):
+    monkeypatch.setattr(errors, "MOST", 10**9)
+    run, exact = simulate(scene, method(h)), simulate(scene, EventDriven(1e-13, 1e-13))
+    whole = Difference(run, exact, least=1e-4)
+    expected = {name: getattr(whole, name) for name in MEASURES}
+    monkeypatch.setattr(errors, "MOST", 20_000)
+    part = Difference(run, exact, least=1e-4)
+    assert len(part._breaks) < 0.3 * len(whole._breaks)
+    for name in MEASURES:
+        assert getattr(part, name) == pytest.approx(expected[name], rel=1e-2, abs=1e-13), name
 
 
 # --- graphs against brute force
