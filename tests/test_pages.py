@@ -105,3 +105,17 @@ def test_the_site_builds_without_warnings(tmp_path):
     front = (tmp_path / "site" / "index.html").read_text()
     assert "cam.gif" in front
     assert "gallery/index.html" in front
+
+
+PROSE = [
+    page for page in PAGES if page.name not in {"CHANGELOG.md", "hard-cases.md", "reproducing-the-thesis.md"}
+]
+WIDEST = 118
+
+
+@pytest.mark.parametrize("page", PROSE, ids=lambda page: str(page.relative_to(ROOT)))
+def test_lines_of_prose_are_wrapped(page):
+    """Not those of code, tables, headings and pictures; pages that are made by a command are as it makes them."""
+    for line in FENCED.sub("", page.read_text()).splitlines():
+        if len(line) > WIDEST and not re.match(r"\s*(\||#|!\[)|    |<", line):
+            pytest.fail(f"{page.name}: {line[:80]}...")
