@@ -73,9 +73,9 @@ def _smooth(run: Trajectory, h: float, looks: int) -> Any:
     last, t, events, near = len(run.t) - 1, run.t, run.impacts.time, NEAR * h
     k = np.arange(last) if last <= looks else (np.arange(looks) * (last / looks)).astype(int)
     way = t[k + 1] - t[k]
-    fits = (way > near) & (way < h + near)
-    if len(events):
-        fits &= np.searchsorted(events, t[k] - near) == np.searchsorted(events, t[k + 1] + near)
+    fits = np.abs(way - h) < near
+    if len(events):  # states asked for within steps lie between those before and after a step
+        fits &= np.searchsorted(events, t[k] - h - near) == np.searchsorted(events, t[k + 1] + h + near)
     contacts = run.scene.contacts
     if contacts is not None and (contacts.friction is not None or _driven(contacts)):
         fits &= ~run.impulse[k + 1].any(axis=1)

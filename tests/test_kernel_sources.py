@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from lcpstep.kernels import vectors
-from lcpstep.stepping.pieces import codes, quadratic, times
+from lcpstep.kernels import quadratic, vectors
+from lcpstep.stepping.pieces import codes, times
 from tests.uncompiled import BUILT, HEADERS
 
 

@@ -17,10 +17,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.record import COLUMNS, Record
-    from lcpstep.pointers import Doubles, abs, after, max, min, nan, whole
-    from lcpstep.stepping.pieces.codes import CLOSED, RELEASE
-    from lcpstep.stepping.pieces.state import Work
+    from lcpstep.pointers import abs, max, min
 
 UNSURE = 0.25  # of an impulse: by so much two runs may differ about it
 
@@ -57,25 +54,3 @@ def late(one: float, first: float, second: float, length: float, opened: float, 
 def hidden(p: float, q: float) -> float:
     """What two runs differ by about the impulse of a contact that stays closed, if that is a part of it."""
     return abs(p - q) if abs(p - q) > UNSURE * min(p, q) else 0.0
-
-
-def loads(w: Work, record: Record, first: int, W: Doubles, force: Doubles, impulse: Doubles) -> None:
-    """Forces that would keep the contacts closed, means over the last piece; impulses since the step began.
-
-    The force is unknown where a contact has opened at the end of the piece, with a velocity, and not at its
-    beginning. `first`: event of the record with which the step began; W = G M^-1 G^T, or that of the means.
-    """
-    n = w.n_c
-    for c in range(n):
-        force[c] = w.force_now[c]
-        if w.status[c] != CLOSED:
-            pull = w.alpha[c]
-            for d in range(n):
-                if w.status[d] == CLOSED:
-                    pull += W[c * n + d] * w.force_now[d]
-            force[c] = -pull / W[c * n + c] if W[c * n + c] > 0.0 else nan
-        impulse[c] = w.pushed[c]
-    for k in range(first, record.event):
-        event = after(record.events, k * COLUMNS)
-        if event[5] == RELEASE and event[3] > 0.0:
-            force[whole(event[1])] = nan

@@ -1,13 +1,13 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.record cimport COLUMNS, Record
 from lcpstep.kernels.vectors cimport clear, copy, distance, largest
-from lcpstep.pointers cimport after, inf, max, min
-from lcpstep.stepping.hidden_forces cimport hidden, late, loads
-from lcpstep.stepping.pieces.codes cimport BUFFER_FULL, CLOSED, FINISHED, STOPPED, WHOLE
+from lcpstep.pointers cimport abs, after, inf, max, min, nan, whole
+from lcpstep.stepping.hidden_forces cimport hidden, late
+from lcpstep.stepping.pieces.codes cimport BUFFER_FULL, CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners cimport find_corners
-from lcpstep.stepping.pieces.led cimport Led, copy_state, depth
+from lcpstep.stepping.pieces.led cimport Led, copy_state
 from lcpstep.stepping.pieces.loop cimport Steps
 from lcpstep.stepping.pieces.smooth cimport invert
 from lcpstep.stepping.pieces.state cimport Plan, Work
@@ -15,7 +15,7 @@ from lcpstep.stepping.pieces.switches cimport COLLAPSE
 from lcpstep.stepping.step_control cimport Control, follow_on, stamp
 
 cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, OWN, ROWS, TRIALS
-cdef double EARLY
+cdef double EARLY, NEAR
 
 
 cdef class Attempts(Control):
@@ -49,4 +49,6 @@ cdef class Attempts(Control):
     cdef void carry_on(self, double start, bint anew, double close) noexcept nogil
     cdef void in_time(self) noexcept nogil
     cdef void led(self, Led to, Py_ssize_t code) noexcept nogil
+    cdef double depth(self) noexcept nogil
+    cdef void loads(self, double* force, double* impulse) noexcept nogil
     cdef double wrong(self, double length) noexcept nogil

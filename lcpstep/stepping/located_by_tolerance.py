@@ -19,12 +19,13 @@ from lcpstep.stepping.step_control import Control
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.record import COLUMNS
     from lcpstep.kernels.vectors import clear, copy, distance, largest
-    from lcpstep.pointers import after, inf, max, min
-    from lcpstep.stepping.hidden_forces import hidden, late, loads
-    from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, STOPPED, WHOLE
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan, whole
+    from lcpstep.stepping.hidden_forces import hidden, late
+    from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
     from lcpstep.stepping.pieces.corners import find_corners
-    from lcpstep.stepping.pieces.led import Led, copy_state, depth
+    from lcpstep.stepping.pieces.led import Led, copy_state
     from lcpstep.stepping.pieces.loop import Steps
     from lcpstep.stepping.pieces.smooth import invert
     from lcpstep.stepping.pieces.state import Plan
@@ -32,6 +33,7 @@ if not cython.compiled:
     from lcpstep.stepping.step_control import follow_on, stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
+NEAR = 3.0  # errors of a gap: from where on it may have closed
 TRIALS = 4  # of a step whose event comes at another time
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 OWN = LEVELS + 2  # place of those of a part as long as none
@@ -124,8 +126,9 @@ class Attempts(Control):
         self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
         if not self.full:
             self.weigh(end - start)
-        # Where they have not agreed about the time of the event, the motion is back at its start
-        self.failed = self.failed or not agreed
+        self.failed = (
+            self.failed or not agreed
+        )  # about the time of the event: the motion is back at its start
         self.cut = inf if entire and self.two.code == FINISHED else self.w.sigma
         return REACHED if self.two.good() else self.two.code
 
@@ -137,8 +140,7 @@ class Attempts(Control):
         if not event_first:
             self.failed = self.failed or not self.one.good()
             if not self.failed:
-                wrong_q = depth(self.saved, self.one, self.half) if self.rough else 0.0
-                wrong_v = self.wrong(length)
+                wrong_q, wrong_v = self.depth(), self.wrong(length)
             wrong_q = max(wrong_q, distance(self.one.q, self.two.q, self.w.n_q))
             wrong_v = max(wrong_v, distance(self.one.v, self.two.v, self.w.n_q))
         self.apart_q, self.apart_v = wrong_q, wrong_v
@@ -201,8 +203,9 @@ class Attempts(Control):
 
     def carry_on(self, start: float, anew: bool, close: float) -> None:
         """Begin a part at an offset: a step `anew`; else what has just fired has done so now."""
-        # After an event at its very beginning a step goes on: it is not forgotten
-        self.w.under_way = not anew or self.w.sigma == 0.0
+        self.w.under_way = (
+            not anew or self.w.sigma == 0.0
+        )  # after an event at its very beginning a step goes on: it is not forgotten
         if not self.w.under_way:
             return
         if self.w.sigma != start:
@@ -225,10 +228,48 @@ class Attempts(Control):
         for c in range(self.w.n_c):
             to.gap[c], to.half[c], to.status[c] = self.w.gap[c], self.w.half[c], self.w.status[c]
         if self.saved.closed_now > 0 and to.good():
-            W = self.w.W
-            if self.means and self.plan.constant:
-                W = after(self.plan.WA, self.w.made_with * self.w.n_c * self.w.n_c)
-            loads(self.w, self.record, self.saved_event, W, to.force, to.impulse)
+            self.loads(to.force, to.impulse)
+
+    def depth(self) -> float:
+        """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""
+        deepest, t = 0.0, self.half.time
+        if not self.rough:
+            return deepest
+        for c in range(self.w.n_c):
+            if self.one.status[c] == CLOSED:
+                continue
+            g, u, a = self.saved.gap[c], self.saved.rate[c], self.one.half[c]
+            error = abs(g + t * (u + t * a) - self.half.gap[c])
+            lowest = min(min(g, self.one.gap[c]), self.half.gap[c])
+            if a > 0.0 > u:
+                lowest = min(lowest, g - 0.25 * u * u / a)
+            if lowest < NEAR * error:
+                deepest = max(deepest, error)
+        return deepest
+
+    def loads(self, force: Doubles, impulse: Doubles) -> None:
+        """Forces that would keep the contacts closed, means over the last piece; impulses since the step began.
+
+        The force is unknown where a contact has opened at the end of the piece, with a velocity, and not at its
+        beginning.
+        """
+        W = self.w.W
+        if self.means and self.plan.constant:
+            W = after(self.plan.WA, self.w.made_with * self.w.n_c * self.w.n_c)
+        n = self.w.n_c
+        for c in range(n):
+            force[c] = self.w.force_now[c]
+            if self.w.status[c] != CLOSED:
+                pull = self.w.alpha[c]
+                for d in range(n):
+                    if self.w.status[d] == CLOSED:
+                        pull += W[c * n + d] * self.w.force_now[d]
+                force[c] = -pull / W[c * n + c] if W[c * n + c] > 0.0 else nan
+            impulse[c] = self.w.pushed[c]
+        for k in range(self.saved_event, self.record.event):
+            event = after(self.record.events, k * COLUMNS)
+            if event[5] == RELEASE and event[3] > 0.0:
+                force[whole(event[1])] = nan
 
     def wrong(self, length: float) -> float:
         """Error of the velocity by contacts that were closed, see `hidden_forces`."""

@@ -5,7 +5,7 @@ import pytest
 
 from lagrangian import scenes
 from lcpstep import Moreau, model, room, simulate
-from lcpstep.kernels import record, states
+from lcpstep.kernels import looks, record, states, surplus
 from lcpstep.stepping import moreau_run
 from tests.uncompiled import kernels
 
@@ -23,6 +23,10 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
         monkeypatch.setattr(room, "gaps_at", plain.states.gaps_at)
         monkeypatch.setattr(states, "power", plain.states.power)
+        for name in ("highest", "lies_inside", "turning"):
+            monkeypatch.setattr(looks, name, getattr(plain.looks, name))
+        monkeypatch.setattr(room, "lies_inside", plain.looks.lies_inside)
+        monkeypatch.setattr(surplus, "surplus", plain.surplus.surplus)
         monkeypatch.setattr(record, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)

@@ -61,6 +61,10 @@ class ArcRun(EventRun):
         """Forces are not evaluated: their motion is known."""
         return 0
 
+    def begin(self) -> int:
+        """The contact sticks or slides from the start; a code."""
+        return self.advance(0)
+
     def advance(self, goal: int) -> int:
         """Call the kernel, up to step number `goal`; why it returned."""
         return int(advance(self.arc, goal))

@@ -1,12 +1,7 @@
-cimport cython
 from lcpstep.kernels.linear cimport grow_factor, solve_factored
-from lcpstep.pointers cimport abs, max
+from lcpstep.pointers cimport max
 from lcpstep.stepping.pieces.state cimport Work
-
-cdef double PULLS
 
 cdef void bear_on_independent(Work w, double* W, Py_ssize_t n) noexcept nogil
 cdef (Py_ssize_t, Py_ssize_t) first_dependent(Work w, double* W, Py_ssize_t n) noexcept nogil
 cdef void shift(Work w, double* W, Py_ssize_t n, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil
-@cython.locals(i=Py_ssize_t)
-cdef void squeeze(Work w, double* W, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil

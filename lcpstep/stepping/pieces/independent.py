@@ -1,4 +1,4 @@
-"""Impulses of several contacts that depend on each other, put on independent ones, or made to press on all.
+"""Impulses of several contacts that depend on each other, put on independent ones.
 
 Where W y = 0, as on a table with four feet, impulses z and z + s y do the same, and z is not unique. Some of those
 that are positive can be taken to zero, until the contacts that bear the rest are independent: a load within a cone is
@@ -11,10 +11,8 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.linear import grow_factor, solve_factored
-    from lcpstep.pointers import Doubles, abs, max
+    from lcpstep.pointers import Doubles, max
     from lcpstep.stepping.pieces.state import Work
-
-PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
 def bear_on_independent(w: Work, W: Doubles, n: int) -> None:
@@ -52,29 +50,3 @@ def shift(w: Work, W: Doubles, n: int, k: int, n_k: int) -> None:
         w.z[j] = max(0.0, w.z[j] + w.change[i] * most)
     w.z[k] -= most
     w.z[emptied] = 0.0
-
-
-def squeeze(w: Work, W: Doubles, n: int, n_k: int) -> None:
-    """Add impulses that move nothing to an answer that pulls, until it presses everywhere, if by next to nothing.
-
-    Bodies without clearance between two walls can be squeezed by any force: y with W y = 0. Each row left out of the
-    factor, for it depends on those in it, gives one.
-    """
-    largest, i = 0.0, 0
-    for k in range(n):
-        largest = max(largest, abs(w.z[k]))
-    for k in range(n):
-        if i < n_k and w.place[i] == k:
-            i += 1
-            continue
-        for j in range(n_k):
-            w.change[j] = -W[w.held[j] * w.n_c + w.chosen[k]]
-        solve_factored(w.problem, n, n_k, w.change)
-        more = max(0.0, -w.z[k])
-        for j in range(n_k):
-            if w.change[j] > PULLS:
-                more = max(more, -w.z[w.place[j]] / w.change[j])
-        more += PULLS * largest
-        for j in range(n_k):
-            w.z[w.place[j]] += more * w.change[j]
-        w.z[k] += more

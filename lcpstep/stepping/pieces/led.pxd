@@ -1,11 +1,9 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.vectors cimport copy, copy_indices
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, STOPPED
+from lcpstep.pointers cimport after
+from lcpstep.stepping.pieces.codes cimport FINISHED, STOPPED
 from lcpstep.stepping.pieces.state cimport Work
-
-cdef double NEAR
 
 
 @cython.final
@@ -26,4 +24,3 @@ cdef class Led:
 cdef void copy_state(
     Work to, Work w, Py_ssize_t n_numbers, Py_ssize_t n_marks, Py_ssize_t n_matrices
 ) noexcept nogil
-cdef double depth(Work start, Led one, Led half) noexcept nogil

@@ -1,4 +1,4 @@
-"""Where the runs that steps by a tolerance compare have led, the state that they start from, gaps between them."""
+"""Where the runs that steps by a tolerance compare have led, and the state that they start from."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.vectors import copy, copy_indices
-    from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, STOPPED
+    from lcpstep.pointers import after
+    from lcpstep.stepping.pieces.codes import FINISHED, STOPPED
     from lcpstep.stepping.pieces.state import Work
-
-NEAR = 3.0  # errors of a gap: from where on it may have closed
 
 
 class Led:
@@ -49,19 +47,3 @@ def copy_state(to: Work, w: Work, n_numbers: int, n_marks: int, n_matrices: int)
     to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
     to.steps, to.lcp_calls, to.force_evaluations = w.steps, w.lcp_calls, w.force_evaluations
     to.events_left, to.cut, to.members, to.idle = w.events_left, w.cut, w.members, w.idle
-
-
-def depth(start: Work, one: Led, half: Led) -> float:
-    """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""
-    deepest, t = 0.0, half.time
-    for c in range(start.n_c):
-        if one.status[c] == CLOSED:
-            continue
-        g, u, a = start.gap[c], start.rate[c], one.half[c]
-        error = abs(g + t * (u + t * a) - half.gap[c])
-        lowest = min(min(g, one.gap[c]), half.gap[c])
-        if a > 0.0 > u:
-            lowest = min(lowest, g - 0.25 * u * u / a)
-        if lowest < NEAR * error:
-            deepest = max(deepest, error)
-    return deepest

@@ -5,11 +5,11 @@ from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.pieces.codes cimport EPS, INERTIA, ROUNDING
-from lcpstep.stepping.pieces.independent cimport PULLS, bear_on_independent, squeeze
+from lcpstep.stepping.pieces.independent cimport bear_on_independent
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef double SETTLED, EXACT
+cdef double SETTLED, EXACT, PULLS
 cdef Py_ssize_t SOLVED, REFINEMENTS, NONE, FORCES, IMPULSES
 
 cdef bint solve_chosen(
@@ -33,6 +33,8 @@ cdef Py_ssize_t factor_pressed(Work w, double* W, Py_ssize_t n, bint everybody) 
 cdef bint refine(
     Work w, double* W, double* inverse, bint factored, Py_ssize_t n, Py_ssize_t n_k, bint solved
 ) noexcept nogil
+@cython.locals(i=Py_ssize_t)
+cdef void squeeze(Work w, double* W, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 cdef (double, double) correct(Work w, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 @cython.locals(pressed=bint)
 cdef bint keep_closed(Work w, double* W, double* MG, Py_ssize_t n) noexcept nogil

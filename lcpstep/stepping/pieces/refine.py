@@ -27,7 +27,7 @@ if not cython.compiled:
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import EPS, INERTIA, ROUNDING
-    from lcpstep.stepping.pieces.independent import PULLS, bear_on_independent, squeeze
+    from lcpstep.stepping.pieces.independent import bear_on_independent
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.state import Plan, Work
 
@@ -35,6 +35,7 @@ NONE, FORCES, IMPULSES = range(3)  # what a guess is of
 REFINEMENTS = 6
 SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
 EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
+PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
 def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
@@ -228,6 +229,32 @@ def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: i
     for k in range(n):
         w.z[k] = max(w.z[k], 0.0)
     return answered
+
+
+def squeeze(w: Work, W: Doubles, n: int, n_k: int) -> None:
+    """Add impulses that move nothing to an answer that pulls, until it presses everywhere, if by next to nothing.
+
+    Bodies without clearance between two walls can be squeezed by any force: y with W y = 0. Each row left out of the
+    factor, for it depends on those in it, gives one.
+    """
+    largest, i = 0.0, 0
+    for k in range(n):
+        largest = max(largest, abs(w.z[k]))
+    for k in range(n):
+        if i < n_k and w.place[i] == k:
+            i += 1
+            continue
+        for j in range(n_k):
+            w.change[j] = -W[w.held[j] * w.n_c + w.chosen[k]]
+        solve_factored(w.problem, n, n_k, w.change)
+        more = max(0.0, -w.z[k])
+        for j in range(n_k):
+            if w.change[j] > PULLS:
+                more = max(more, -w.z[w.place[j]] / w.change[j])
+        more += PULLS * largest
+        for j in range(n_k):
+            w.z[w.place[j]] += more * w.change[j]
+        w.z[k] += more
 
 
 def correct(w: Work, n: int, n_k: int) -> tuple[float, float]:
