@@ -12,6 +12,7 @@ Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006),
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from lagrangian import LinearSystem
 from lcpstep.balance import unbalanced
 from lcpstep.faults import cause, forget
 from lcpstep.trajectory import Status, Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.kernels.model import Model
 
 LOOKS = 8  # states that are looked at
 NEAR = 1.0 / 64.0  # of a step: of the differences
@@ -30,30 +34,35 @@ def unresolved(run: Trajectory) -> str:
     h, bound = _explicit(run)
     if h == 0.0 or run.status != Status.DONE or len(run.t) == 0:
         return ""
-    from lcpstep.kernels.looks import (
-        highest,
-    )  # not before it is asked for: that loads what compiles callbacks
-    from lcpstep.kernels.states import power
+    # Not before it is asked for: that loads what compiles callbacks
+    from lcpstep.kernels.looks import highest
     from lcpstep.model import looked_at
 
-    last, m = len(run.t) - 1, looked_at(run.scene)
+    m = looked_at(run.scene)
     square = highest(m, run.t, run.q, run.v, LOOKS, NEAR * h)
-    energy = unbalanced(run, m, h)
     cause()  # a callback that fails beside the motion, where the run has not asked it
     forget()
-    if not h * math.sqrt(square) > bound:
-        return energy
+    words = _too_fast(run, m, h, bound) if h * math.sqrt(square) > bound else ""
+    words = words or unbalanced(run, m, h)
+    cause()
+    forget()
+    return words
+
+
+def _too_fast(run: Trajectory, m: Model, h: float, bound: float) -> str:
+    """At which of the states that were looked at the forces change too fast, in words."""
+    from lcpstep.kernels.states import power
+
+    last = len(run.t) - 1
     k = np.unique(((np.arange(LOOKS) + 1) * (last / LOOKS)).astype(int))
     t, q, v, near = run.t[k], run.q[k], run.v[k], NEAR * h
     with np.errstate(all="ignore"):
         kinetic, after = power(m, t, q + near * v, v)
         _, before = power(m, t, q - near * v, v)
         angle = h * np.sqrt(np.abs(after - before) / (4.0 * near * kinetic))
-    cause()
-    forget()
     told = np.flatnonzero(angle > bound)
     if not len(told):
-        return energy
+        return ""
     i = told[0]
     return (
         f"the forces along the motion change too fast for its steps at t = {t[i]:.9g} s, "

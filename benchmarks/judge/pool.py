@@ -30,7 +30,7 @@ class Answer(NamedTuple):
     scene: Description
     endings: dict[str, str]
     findings: list[Finding]
-    orders: dict[str, float] = {}  # noqa: RUF012  (nobody writes to it)
+    orders: dict[str, float]
 
 
 def _work(pipe: Any, limit: float, share: float) -> None:

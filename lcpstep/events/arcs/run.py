@@ -87,8 +87,9 @@ class Arcs(Between):
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
         line: Any = line_of(self.scene)
+        contacts: Any = self.scene.contacts
         arc = Arc(line, self.scene.t_span, math.inf, 0.0, 0.0)
-        tangent = np.asarray(self.scene.contacts.friction.tangent)[0]  # type: ignore[union-attr]
+        tangent = np.asarray(contacts.friction.tangent)[0]
         q, v = np.zeros((2, len(times), 2))
         evaluate(arc, self.s, np.stack([self.s.q @ tangent, self.s.v @ tangent], axis=1), times, row, q, v)
         return q, v
