@@ -5,6 +5,7 @@ python setup.py build_ext --inplace     after a change: compiles what it concern
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import itertools
 import os
@@ -14,12 +15,15 @@ import sys
 import sysconfig
 from pathlib import Path
 
+import Cython
 import numpy as np
 from Cython.Build import cythonize
+from Cython.Build.Dependencies import create_dependency_tree
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 HERE = Path(__file__).resolve().parent
+DIGESTS = HERE / "build" / "digests"  # of what lies built beside its source, a file for each module
 sys.path.insert(0, str(HERE))
 import ready  # noqa: E402
 
@@ -62,23 +66,49 @@ class Build(build_ext):
                 sys.exit(NO_COMPILER)
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
         super().run()
+        if self.inplace:
+            for ext in self.extensions:
+                note = DIGESTS / self.get_ext_filename(ext.name)
+                note.parent.mkdir(parents=True, exist_ok=True)
+                note.write_text(ext.digest)
 
     def build_extension(self, ext: Extension) -> None:
-        """Compile one module, or copy it where it was built since its sources changed, by this interpreter."""
-        there = HERE / self.get_ext_filename(ext.name)
-        sources = [Path(file) for file in (*ext.sources, *ext.depends)]
-        if not self.force and there.exists() and there.stat().st_mtime > max(map(modified, sources)):
+        """Compile one module, or copy it where it lies built."""
+        if not self.force and is_built(ext):
             target = Path(self.get_ext_fullpath(ext.name))
             target.parent.mkdir(parents=True, exist_ok=True)
-            self.copy_file(str(there), str(target))
+            self.copy_file(str(HERE / self.get_ext_filename(ext.name)), str(target))
             return
         print(f"[{next(self.begun)}/{len(self.extensions)}] Compiling {ext.name}", flush=True)
         super().build_extension(ext)
 
 
-def modified(file: Path) -> float:
-    """When it was written."""
-    return file.stat().st_mtime
+class Module(Extension):
+    """A module, and a checksum of all that it is made from."""
+
+    digest: str
+
+
+def is_built(ext: Module) -> bool:
+    """Whether it lies beside its source, made from what stands there now, for this interpreter.
+
+    Asked of contents and not of times: the headers of Cython in the environment that pip makes for each build are
+    newer than everything.
+    """
+    file = f"{ext.name.replace('.', '/')}{sysconfig.get_config_var('EXT_SUFFIX')}"
+    note = DIGESTS / file
+    return (HERE / file).exists() and note.exists() and note.read_text() == ext.digest
+
+
+def digested(ext: Module) -> Module:
+    """The module with its checksum: of Cython's version, of the options, of its source and of what that includes."""
+    found = [*create_dependency_tree().all_dependencies(ext.sources[0]), *ext.depends]
+    places = HERE / "lcpstep", HERE / "build"
+    mine = sorted({HERE / file for file in found if any(map((HERE / file).is_relative_to, places))})
+    texts = [file.relative_to(HERE).as_posix().encode() + file.read_bytes() for file in mine]
+    whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS)).encode(), *texts]
+    ext.digest = hashlib.sha256(b"\0".join(whole)).hexdigest()
+    return ext
 
 
 def has_compiler() -> bool:
@@ -94,11 +124,11 @@ def has_compiler() -> bool:
     return True
 
 
-def extension(header: Path) -> Extension:
+def extension(header: Path) -> Module:
     """The module of one `.pxd` file."""
     clones = header.with_suffix(".h")
     cloned = clones.exists() and platform.libc_ver()[0] == "glibc"
-    return Extension(
+    return Module(
         ".".join(header.relative_to(HERE).with_suffix("").parts),
         [str(header.relative_to(HERE).with_suffix(".py"))],
         include_dirs=[np.get_include()],
@@ -108,29 +138,40 @@ def extension(header: Path) -> Extension:
     )
 
 
-def extensions() -> list[Extension]:
+def extensions() -> list[Module]:
     """All compiled modules."""
     found = [extension(header) for header in sorted(HERE.glob("lcpstep/**/*.pxd"))]
     return [e for e in found if e.name not in HEADERS] + [functions_of_ready_scenes()]
 
 
-def functions_of_ready_scenes() -> Extension:
+def functions_of_ready_scenes() -> Module:
     """The module of C functions that `ready` writes."""
     file, text = HERE / "build" / "ready" / "ready.pyx", ready.source(HERE)
     if not file.exists() or file.read_text() != text:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
-    return Extension("lcpstep.kernels.ready", [str(file.relative_to(HERE))], extra_compile_args=OPTIONS)
+    return Module("lcpstep.kernels.ready", [str(file.relative_to(HERE))], extra_compile_args=OPTIONS)
+
+
+def translated(modules: list[Module]) -> list[Module]:
+    """These modules, as C what does not lie built."""
+    stale = [m for m in modules if not is_built(m)]
+    in_c = cythonize(
+        stale,
+        nthreads=os.cpu_count() or 1,
+        force=True,
+        compiler_directives=DIRECTIVES,
+        build_dir="build/cython",
+    )
+    digests = {m.name: m.digest for m in stale}
+    for module in in_c:
+        module.digest = digests[module.name]
+    return [m for m in modules if is_built(m)] + in_c
 
 
 if __name__ == "__main__":
     setup(
-        ext_modules=cythonize(
-            extensions(),
-            nthreads=os.cpu_count() or 1,
-            compiler_directives=DIRECTIVES,
-            build_dir="build/cython",
-        ),
+        ext_modules=translated([digested(m) for m in extensions()]),
         cmdclass={"build_ext": Build},
         setup_requires=[] if has_compiler() else ["ziglang"],  # into the build environment that pip makes
     )

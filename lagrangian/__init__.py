@@ -12,8 +12,9 @@ if TYPE_CHECKING:
     from lagrangian import scenes
     from lagrangian.contacts import Contacts, LinearContacts
     from lagrangian.friction import Coulomb
-    from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
+    from lagrangian.hybrid import HybridScene, HybridSystem
     from lagrangian.joints import Joints, LinearJoints
+    from lagrangian.modes import Guard, Mode, Surface
     from lagrangian.profiles import Arc, CamProfile
     from lagrangian.scene import Scene
     from lagrangian.system import Harmonic, LinearSystem, System
@@ -23,8 +24,9 @@ else:
         {
             "lagrangian.contacts": "Contacts LinearContacts",
             "lagrangian.friction": "Coulomb",
-            "lagrangian.hybrid": "Guard HybridScene HybridSystem Mode Surface",
+            "lagrangian.hybrid": "HybridScene HybridSystem",
             "lagrangian.joints": "Joints LinearJoints",
+            "lagrangian.modes": "Guard Mode Surface",
             "lagrangian.profiles": "Arc CamProfile",
             "lagrangian.scene": "Scene",
             "lagrangian.system": "Harmonic LinearSystem System",

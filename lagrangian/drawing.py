@@ -9,7 +9,7 @@ the right and y up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -83,9 +83,12 @@ def drawn(drawing: Drawing, t: float, q: Array) -> list[Shape]:
     """
     where = f"at t = {t:.9g}, q = {checks.shown(q)}"
     try:
-        shapes = list(drawing(t, checks.read_only(q)))
+        given = drawing(t, checks.read_only(q))
+        shapes = list(given) if isinstance(given, Iterable) else None
     except Exception as error:  # the user's code may raise anything; the message says whose it is
         raise ValueError(f"drawing: f(t, q) failed {where}: {checks.said(error)}") from error
+    if shapes is None:
+        raise ValueError(f"drawing: f(t, q) is to return shapes in a list, not {given!r}, {where}")
     for shape in shapes:
         if not isinstance(shape, Shape):
             raise ValueError(f"drawing: expected Point, Line, Circle or Polygon, got {shape!r} {where}")

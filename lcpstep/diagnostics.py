@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import LinearContacts, LinearSystem, Scene, checks
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.kernels import states
 from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse_equations import Equations
@@ -285,7 +285,9 @@ def _own_rates(
     friction = None if contacts is None else contacts.friction
     if tangents and friction is not None and not callable(friction.tangent):
         T: Any = friction.tangent
-        return out + np.asarray(friction.slip) + ((T @ v.T).T if moved else 0.0)
+        slip = friction.slip
+        belts = [slip.at(x, scene.n_c) for x in t.tolist()] if isinstance(slip, Harmonic) else slip
+        return out + np.asarray(belts) + ((T @ v.T).T if moved else 0.0)
     m = (tangent_model if tangents else model)(scene)
     return states.own_rates(
         m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved

@@ -94,7 +94,8 @@ class NotWritten(LcpStepError, OSError):
     def __init__(self, file: object, reason: OSError) -> None:
         self.reason, self.file = reason.strerror or str(reason), str(file)
         self.code = reason.errno  # None where a library does not say
-        super().__init__(f"{file} could not be written: {self.reason}")
+        more = "; choose another place" if isinstance(reason, PermissionError) else ""
+        super().__init__(f"{file} could not be written: {self.reason}{more}")
 
 
 class DamagedFile(LcpStepError, ValueError):

@@ -192,7 +192,7 @@ class ParameterStudy:
         for name in self.outputs["measures"]:
             values = np.array([row[name] for row in rows])
             inner = ("coordinate",) if values.ndim > 1 else ()
-            variables[name] = ((*names, *inner), values.reshape(*shape, *values.shape[1:]))
+            variables[name] = ((*names, *inner), values.reshape((*shape, *values.shape[1:])))
             units[name] = own.get(name, (MEASURES | ERRORS)[name][0])
         coordinates = {key: np.asarray(values) for key, values in self.sweep.items()}
         attributes = dataset.provenance(scene, self.method) | {"study": self.text}

@@ -125,10 +125,12 @@ def load(path: str | Path, scene: Any = None) -> Any:
 
     Raises
     ------
-    FileNotFoundError   there is no such file
+    FileNotFoundError, IsADirectoryError   there is no such file
     DamagedFile   the file is damaged, no run, or written by a version whose files this one does not know
     ValueError   scene is another than the one that was run; the message names the first difference
     """
+    if file_path(path).is_dir():
+        raise IsADirectoryError(f"{path}: expected a file written by Trajectory.save, and this is a folder")
     record, arrays = _read(file_path(path))
     if record.get("format") != FORMAT:
         raise DamagedFile(

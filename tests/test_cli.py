@@ -1,6 +1,8 @@
 """The command line as a user meets it: outputs, files, exit statuses, errors that name the argument."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -193,7 +195,11 @@ def test_motions_are_saved_as_what_their_names_say(capsys, tmp_path, monkeypatch
 def test_an_overview_names_its_curves_and_their_units():
     figure = simulate(scenes.double_pendulum(t_end=1.0), Located(1e-2)).plot()
     position, _, impulse = figure.axes
-    assert [ax.get_ylabel() for ax in figure.axes] == ["position [rad]", "velocity [rad/s]", "impulse [N s]"]
+    assert [ax.get_ylabel() for ax in figure.axes] == [
+        "angle [rad]",
+        "angular velocity [rad/s]",
+        "impulse [N s]",
+    ]
     assert [x.get_text() for x in position.get_legend().get_texts()] == ["angle 1", "angle 2"]
     assert impulse.get_legend() is None
     mixed, *_ = simulate(scenes.slipping_wheel(), Moreau(1e-2)).plot().axes
@@ -208,3 +214,20 @@ def test_an_overview_of_some_kept_states_draws_these():
             motion = simulate(scenes.bouncing_ball(t_end=1.0), method, keep=keep)
             position, *_ = motion.plot().axes
             assert len(position.get_lines()[0].get_xdata()) >= len(motion.t)
+
+
+def test_where_nothing_may_be_written_one_line_says_so(folder, capsys, monkeypatch):
+    """A folder that cannot be made, and a file that cannot be written, by name and with what to do."""
+
+    def forbidden(*_, **__):
+        raise PermissionError(13, "Permission denied", "closed")
+
+    for words in ("thesis 2 --out closed", "study bouncing-ball --h 1e-2 --out closed"):
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "mkdir", forbidden)
+            status, _, err = run(capsys, *words.split())
+        assert status == USAGE
+        assert err.count("\n") == 1
+        assert re.search(
+            r"^lcpstep: closed\S*( could not be written)?: Permission denied; choose another place", err
+        )

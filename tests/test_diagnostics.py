@@ -174,3 +174,20 @@ def test_the_command_line_shows_both(capsys):
     text = capsys.readouterr().out
     assert "largest penetration" in text
     assert "energy: 9.81 J -> " in text
+
+
+def test_the_work_of_a_shaken_belt_is_in_the_balance():
+    """A belt that runs to and fro with cos(2 t) under a block that slides on it: friction times the belt's way."""
+    rough = Coulomb(mu=0.1, tangent=[[1.0, 0.0]], slip=Harmonic(cosine=[-1.0], omega=2.0))
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, -10.0]), [0.0, 0.0], [-1.5, 0.0], (0.0, 0.2),
+        LinearContacts([[0.0, 1.0]], friction=rough),
+    )  # fmt: skip
+    run = simulate(scene, Moreau(1e-4))
+    t = float(run.t[-1])
+    assert run.v[-1, 0] == pytest.approx(
+        -1.5 + t
+    )  # it slides backwards all the time: the belt pulls with 1 N
+    lost = float(energy(run).friction[-1])
+    way = 1.5 * t - 0.5 * t * t + 0.5 * math.sin(2.0 * t)  # of the belt over the block
+    assert lost == pytest.approx(way, rel=1e-6)

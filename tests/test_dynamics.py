@@ -72,3 +72,31 @@ def test_models_of_one_scene_share_no_arrays():
     for name, x in first.arrays.items():
         np.testing.assert_array_equal(x, again.arrays[name])
         assert not np.shares_memory(x, again.arrays[name])
+
+
+def jerky(t, q, v, p, out):
+    """A gap that falls, but for a jerk of its speed within 1e-4 of t = 1."""
+    s = (t - 1.0) / 1e-4
+    out[0] = -t - ((1.0 - s * s) ** 3 if abs(s) < 1.0 else 0.0)
+
+
+def jerky_gap(t, q, v, p, out):
+    s = min(max((t - 1.0) / 1e-4, -1.0), 1.0)
+    out[0] = q[0] + 5.0 - 0.5 * t * t - 1e-4 * (s - s**3 + 0.6 * s**5 - s**7 / 7.0)
+
+
+def along(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("place", [-0.999, -0.5, 0.3, 0.999])
+def test_differences_keep_to_the_smooth_interval_that_is_known(place):
+    """They are 1e-3 apart where nothing is known, and see nothing of what is narrower."""
+    contacts, t = Contacts(1, jerky_gap, along, jerky), 1.0 + 1e-4 * place
+    point = Point(model(Scene(LinearSystem(M=1.0), 0.0, 0.0, (0.0, 2.0), contacts)))
+    corners = 1.0 + 1e-4 * np.array([-1.0, -0.8, 0.0, 0.8, 1.0])
+    k = int(np.searchsorted(corners, t))
+    q, v = np.zeros(1), np.zeros(1)
+    found = point.gap_bias(t, q, v, corners[k - 1], corners[k])
+    s = (t - 1.0) / 1e-4
+    assert found == pytest.approx(-1.0 + 6.0 * s * (1.0 - s * s) ** 2 / 1e-4, rel=1e-6)

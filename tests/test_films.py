@@ -126,11 +126,13 @@ def test_what_cannot_be_drawn_or_written_is_said_in_a_line(run, tmp_path, monkey
     with pytest.raises(LcpStepError, match="'bare' has no drawing; give animate"):
         simulate(bare, Moreau(0.1)).animate()
     for bad, said in ((lambda t, q: 1 / 0, r"failed at t = 0, q = \[1.0\]: ZeroDivisionError"),
+                      (lambda t, q: 3, r"is to return shapes in a list, not 3, at t = 0"),
+                      (lambda t, q: None, r"is to return shapes in a list, not None"),
+                      (lambda t, q: (1 / 0 for _ in "x"), r"failed at t = 0, q = \[1.0\]: ZeroDivisionError"),
                       (lambda t, q: ["ball"], "expected Point, Line, Circle or Polygon, got 'ball'"),
                       (lambda t, q: [Circle((0, np.nan), 1.0)], r"expected places \(x, y\) of finite numbers"),
                       (lambda t, q: [Circle((0, 0), -1.0)], "expected places"),
-                      (lambda t, q: [Point(3.0)], "expected places"),
-                      (lambda t, q: None, "TypeError")):  # fmt: skip
+                      (lambda t, q: [Point(3.0)], "expected places")):  # fmt: skip
         with pytest.raises(LcpStepError, match=f"drawing: .*{said}"):
             run.animate(tmp_path / "ball.gif", drawing=bad, **SHORT)
     assert list(tmp_path.iterdir()) == []

@@ -73,6 +73,10 @@ def test_a_study_without_a_sweep_is_one_run():
     assert ParameterStudy.read('scene = "x"\n[sweep]\na = {from=1, to=100, points=3, scale="log"}').sweep == {
         "a": [1.0, 10.0, 100.0]
     }
+    text = 'scene = "bouncing-ball"\nt_end = 0.5\n[outputs]\nmeasures = ["impacts", "q_end"]'
+    found = ParameterStudy.read(text).run(lambda _: scenes.bouncing_ball(t_end=0.5))
+    assert found.impacts.shape == ()
+    assert found.q_end.shape == (1,)
 
 
 @pytest.mark.parametrize(
@@ -135,3 +139,10 @@ def test_error_bars_of_every_run_are_measures_too(folder, capsys):
                 assert 0.5 < error / told.position_error < 2.0
                 assert told.known_until == 0.6
                 assert 0.0 < told.impact_time_error < 0.01
+
+
+def test_a_picture_without_a_sweep_is_refused_before_the_run(folder, capsys):
+    (folder / "one.toml").write_text('scene = "bouncing-ball"\n[outputs]\npicture = "one.png"\n')
+    status, out, err = run(capsys, "run", "one.toml")
+    assert (status, out) == (USAGE, "")
+    assert "one.toml: [outputs]: picture: expected a parameter in [sweep] to draw over" in err

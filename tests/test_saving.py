@@ -205,6 +205,8 @@ def test_what_is_no_run_is_said_to_be_none(tmp_path):
         load(file)
     with pytest.raises(FileNotFoundError, match="nowhere"):
         load(tmp_path / "nowhere.nc")
+    with pytest.raises(IsADirectoryError, match=r"expected a file .*, and this is a folder"):
+        load(tmp_path)
 
 
 def test_names_folders_and_files_that_are_there(tmp_path):

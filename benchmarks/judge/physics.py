@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.optimize import linprog
 
 from benchmarks.judge import callbacks as f
 from benchmarks.judge.describe import Description
@@ -79,3 +80,17 @@ def energy(d: Description, q: Any, v: Any) -> tuple[Any, Any]:
 def fed(d: Description) -> bool:
     """Whether something may put energy into the scene."""
     return any(d.cosine) or any(d.sine) or d.moving
+
+
+def room(d: Description, t: float) -> float:
+    """How much room flat contacts leave at a time: the least y g >= 0 over y >= 0 with y G = 0 and sum y = 1.
+
+    Such a sum of gaps is that of the obstacles alone; infinite where there is no such y, and for bent contacts.
+    """
+    if d.curved or not d.contacts:
+        return np.inf
+    G = np.array(d.G)
+    open_by = d.row("offset", d.contacts) - obstacles(d, t, 0)
+    rows, right = np.vstack([G.T, np.ones(len(G))]), np.append(np.zeros(d.n), 1.0)
+    found = linprog(open_by, A_eq=rows, b_eq=right)
+    return float(found.fun) if found.success else np.inf

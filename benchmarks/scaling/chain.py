@@ -1,10 +1,12 @@
 """Time of a step of a chain of n hinged links that falls on a rough floor: `python -m benchmarks.scaling.chain`.
 
-Prints the processor time of a step by `Moreau`, averaged over a run, and the power of n by which it grows.
+Prints the processor time of a step by `Moreau`, averaged over a run, and the power of n by which it grows, for
+chains that lie where they fall and for chains that bounce. Restitutions may follow: `... chain 0.5 0.9`.
 """
 
 from __future__ import annotations
 
+import sys
 import time
 
 import numpy as np
@@ -13,12 +15,13 @@ from lagrangian import scenes
 from lcpstep import Moreau, simulate
 
 SIZES = (60, 120, 250, 500, 1000)
-H, T_END = 1e-3, 0.2
+RESTITUTIONS = (0.0, 0.5, 0.9)
+H, T_END = 1e-3, 0.3
 
 
-def seconds(n: int) -> float:
+def seconds(n: int, restitution: float) -> float:
     """Processor time of a step."""
-    scene = scenes.hinged_chain(n=n, t_end=T_END)
+    scene = scenes.hinged_chain(n=n, restitution=restitution, t_end=T_END)
     begin = time.process_time()
     run = simulate(scene, Moreau(H), keep=20)
     taken = time.process_time() - begin
@@ -28,9 +31,11 @@ def seconds(n: int) -> float:
 
 def main() -> None:
     simulate(scenes.hinged_chain(n=2, t_end=0.02), Moreau(H))  # what is loaded once
-    times = [seconds(n) for n in SIZES]
-    power, _ = np.polyfit(np.log(SIZES), np.log(times), 1)
-    print(f"grows with n to the power {power:.2f}")
+    for restitution in map(float, sys.argv[1:] or RESTITUTIONS):
+        print(f"restitution {restitution}")
+        times = [seconds(n, restitution) for n in SIZES]
+        power, _ = np.polyfit(np.log(SIZES), np.log(times), 1)
+        print(f"grows with n to the power {power:.2f}")
 
 
 if __name__ == "__main__":

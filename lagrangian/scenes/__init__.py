@@ -257,10 +257,17 @@ WITH_MODES: dict[str, Entry] = {  # systems with modes: no contacts, so not for 
         answer="a dead-beat cycle through (slip_max, torque_max): multiplier zero",
     ),
 }
-SCENES: dict[str, Entry] = CATALOGUE | WITH_MODES  # all, by name
+LARGE: dict[str, Entry] = {  # of as many bodies as asked for, described by sparse matrices: for time-stepping
+    "hinged-chain": Entry(
+        hinged_chain,
+        hazard="dense matrices; lying flat, rods and sticking hinges say the same thing twice",
+        answer="momentum while it falls; flat and at exact rest in the end; each step as by dense matrices",
+    ),
+}
+SCENES: dict[str, Entry] = CATALOGUE | WITH_MODES | LARGE  # all, by name
 
 __all__ = [
-    "CATALOGUE", "SCENES", "WITH_MODES", "Entry", "ball_on_table", "bilinear_oscillator", "block_on_feet",
+    "CATALOGUE", "LARGE", "SCENES", "WITH_MODES", "Entry", "ball_on_table", "bilinear_oscillator", "block_on_feet",
     "bouncing_ball", "bowl", "cam_follower", "chaotic_oscillator", "chattering_table", "column",
     "coulomb_oscillator", "double_pendulum", "driven_bilinear_oscillator", "dry_friction_oscillator", "dyadic_ball",
     "elastic_ball", "elastic_chain", "elastic_gas", "falling_gas", "falling_rod", "galperin", "grazing",

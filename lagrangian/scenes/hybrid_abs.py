@@ -24,7 +24,8 @@ import math
 from typing import Any
 
 from lagrangian import checks
-from lagrangian.hybrid import Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.hybrid import HybridScene, HybridSystem
+from lagrangian.modes import Guard, Mode, Surface
 from lagrangian.scenes.catalogue import checked
 
 ROADS = {"dry": (1.11, 23.99, 0.52), "wet": (0.687, 33.822, 0.347)}  # th1, th2, th3 [Osorio 7.5-7.6]

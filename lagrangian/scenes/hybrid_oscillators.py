@@ -16,7 +16,8 @@ import numpy as np
 
 from lagrangian import checks
 from lagrangian.checks import Array
-from lagrangian.hybrid import FALLING, Guard, HybridScene, HybridSystem, Mode, Surface
+from lagrangian.hybrid import HybridScene, HybridSystem
+from lagrangian.modes import FALLING, Guard, Mode, Surface
 from lagrangian.scenes.belts import stick_slip
 from lagrangian.scenes.catalogue import checked
 from lagrangian.scenes.dry_friction import coulomb_oscillator

@@ -131,7 +131,12 @@ class Difference:
         t = self.rate * (t - t[0])
         if not (np.all(np.isfinite(v)) and np.all(np.isfinite(v_ref))):
             return math.inf
-        return max(hausdorff(Graph(t, a), Graph(t, b)) for a, b in zip(v.T, v_ref.T, strict=True))
+        distance = 0.0
+        for k in np.argsort(np.abs(v - v_ref).mean(axis=0))[
+            ::-1
+        ]:  # probably the farthest first: it spares the rest
+            distance = hausdorff(Graph(t, v[:, k]), Graph(t, v_ref[:, k]), distance)
+        return distance
 
     @cached_property
     def impacts(self) -> Matching:

@@ -72,9 +72,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NotWritten as error:
         print(f"lcpstep: {error}", file=sys.stderr)
         return FAILED if error.code in NO_SPACE else USAGE
-    except (LcpStepError, ValueError, OSError) as error:  # OSError: a file or folder that cannot be written
-        print(f"lcpstep: {error}", file=sys.stderr)
+    except (LcpStepError, ValueError, OSError) as error:
+        print(f"lcpstep: {_said(error)}", file=sys.stderr)
         return USAGE
+
+
+def _said(error: Exception) -> str:
+    """An error in words; of the system's own, such as a folder that cannot be made, without its number."""
+    if isinstance(error, PermissionError) and error.filename is not None:
+        return (
+            f"{error.filename}: {error.strerror}; choose another place, or ask for the right to write there"
+        )
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 def command() -> None:

@@ -95,6 +95,7 @@ def run_abs(options: argparse.Namespace) -> int:
             title = f"hybrid anti-lock controller, {options.road} road, model {options.model!r}"
             save_figure(overview(scene, cycle, over, found, title), options.out / FILES[2])
     print(json.dumps(result, indent=1) if options.json else _text(result))
+    _tell_files(options)
     return status
 
 
@@ -117,6 +118,7 @@ def _run_stop(scene: HybridScene, options: argparse.Namespace) -> int:
         for line in stop["switches"]:
             print(f"  {line['time']:.9f} s: enters {line['state']}, slip {line['slip']:.9f}, "
                   f"torque {line['torque']:.6f} N m, speed {line['speed']:.6f} m/s")  # fmt: skip
+    _tell_files(options)
     return DONE if run.status == Status.DONE else FAILED
 
 
@@ -192,6 +194,15 @@ def _basins(scene: HybridScene, options: argparse.Namespace) -> tuple[Basins, in
 def _save(options: argparse.Namespace, result: dict[str, Any]) -> None:
     if options.out is not None:
         save_text(json.dumps(result, indent=1), options.out / FILES[0])
+
+
+def _tell_files(options: argparse.Namespace) -> None:
+    """What has been written to --out, for who reads the text."""
+    with_basins = options.grid > 0 and options.model != "full"
+    if options.out is not None and not options.json:
+        for name, made in zip(FILES, (True, with_basins, not options.no_picture), strict=True):
+            if made:
+                print(f"wrote {options.out / name}")
 
 
 def _text(result: dict[str, Any]) -> str:

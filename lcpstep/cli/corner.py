@@ -114,6 +114,7 @@ def run_corner(options: argparse.Namespace) -> int:
         if not options.no_picture:
             _draw(options, orbit, values, local, full, branches, found.words)
     print(json.dumps(result, indent=2) if options.json else _text(result))
+    _tell_files(options, "corner.json", *([] if options.no_picture else ["corner.png"]))
     return DONE if not options.prove or result["proof"]["proved"] else FAILED
 
 
@@ -209,6 +210,13 @@ def _diagrams(
     return orbit.p + m, local, full
 
 
+def _tell_files(options: argparse.Namespace, *names: str) -> None:
+    """What has been written to --out, for who reads the text."""
+    if options.out is not None and not options.json:
+        for name in names:
+            print(f"wrote {options.out / name}")
+
+
 def _lists(points: list[Array]) -> list[list[list[float]]]:
     return [y.tolist() for y in points]
 
@@ -228,7 +236,6 @@ def _draw(
     names = (options.parameter, "position on the section [m]")
     figure = diagrams(values, local, full, orbit.p, names, title, branches)
     save_figure(figure, options.out / "corner.png")
-    print(f"wrote {options.out / 'corner.png'}")
 
 
 def _run_chattering(options: argparse.Namespace) -> int:
@@ -251,4 +258,5 @@ def _run_chattering(options: argparse.Namespace) -> int:
     for c in found:
         event = f"impact {c.number}" if c.event == "impact" else c.event
         print(f"{c.p:14.9f}  {c.sequence + 1:8d}  {event:12}  {c.corner:6d}")
+    _tell_files(options, "chattering.json")
     return DONE

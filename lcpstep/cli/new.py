@@ -48,17 +48,17 @@ def jacobian(t, q, v, p, out):
 
 def drawing(t, q):
     """What it looks like: points, lines, circles, polygons; `contacts` says which impacts a shape shows."""
-    length, floor = 0.5, 0.45
+    length, floor, radius = 0.5, 0.45, 0.03  # the gap is that of the bead's centre: the floor is drawn below it
     bead = (length * math.sin(q[0]), -length * math.cos(q[0]))
     return [
-        Line([(-0.6, -floor), (0.6, -floor)], fixed=True),
+        Line([(-0.6, -floor - radius), (0.6, -floor - radius)], fixed=True),
         Line([(0.0, 0.0), bead]),
-        Circle(bead, 0.03, contacts=(0,)),
+        Circle(bead, radius, contacts=(0,)),
     ]
 
 
 def scene(angle=2.0, damping=0.01, restitution=0.8):
-    """The question: --set NAME=VALUE changes these parameters."""
+    """The question: `--set angle=1.0` changes a parameter."""
     parameters = {"m": 0.3, "length": 0.5, "g": 9.81, "damping": damping, "floor": 0.45}
     return Scene(
         system=System(n_q=1, mass=mass, force=force),

@@ -51,6 +51,10 @@ def run_file(options: argparse.Namespace) -> int:
         if key in names and names[key].exists() and not options.overwrite:
             where = f"{options.file.name}: [outputs]: {key}"
             raise FileExistsError(f"{where}: {names[key]} exists already; --overwrite replaces it")
+    if "picture" in names and not study.sweep:
+        raise ValueError(
+            f"{options.file.name}: [outputs]: picture: expected a parameter in [sweep] to draw over"
+        )
     kept = None if "runs" not in names else _keeper(names["runs"], options.overwrite)
 
     def make(values: Mapping[str, Any]) -> Scene:

@@ -44,7 +44,7 @@ def add(commands: Any) -> None:
         "study",
         help="what accuracy costs on a scene: error against CPU time",
         description="Runs a scene by every method over a range of steps or tolerances, each level averaged "
-        "over a few nearby steps, and prints errors, CPU times and fitted orders with their 95 %% intervals. "
+        "over a few nearby steps, and prints errors, CPU times and fitted orders with their 95 % intervals. "
         "--out DIR receives study.json, study.csv and study.png; the same command carries an interrupted study on.",
         epilog="Example: lcpstep study impact-oscillator --h 1e-2 1e-3 1e-4 --out out",
     )

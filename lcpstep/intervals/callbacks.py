@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import os
 import traceback
+from collections.abc import Sequence
 from types import CellType, CodeType, FunctionType
 from typing import Any
 
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.intervals.functions import BUILTINS, STANDS_FOR
+from lcpstep.intervals.moving import part, rate_of
 from lcpstep.intervals.numbers import Interval
 from lcpstep.intervals.paths import NotEnclosed, Paths
 
@@ -34,19 +36,27 @@ class Enclosed:
 
 
 def enclose(
-    f: Any, t: Interval, q: list[Interval], v: list[Interval], p: Array, shape: tuple[int, ...]
+    f: Any,
+    t: Interval,
+    q: Sequence[Interval],
+    v: Sequence[Interval],
+    p: Array,
+    shape: tuple[int, ...],
+    rates: bool = False,
 ) -> Enclosed:
     """Bounds of the callback f(t, q, v, p, out), `out` of that shape, over windows of time and state.
 
     Parameters
     ----------
     f : callback;  t : Interval of (n,);  q, v : an Interval of (n,) for each coordinate;  p : (n_p,) numbers
+    rates : also those of the rates of `out`, as those of t, q and v (`Moving`) make them: bounds (n, *shape, 2)
 
     Raises
     ------
     NotEnclosed   f cannot be evaluated on intervals; the message says where and why
     """
-    n, count = len(t.lo), int(np.prod(shape))
+    n, kinds = len(t.lo), (2,) if rates else ()
+    count = int(np.prod(shape + kinds))
     lo, hi = np.full((n, count), np.inf), np.full((n, count), -np.inf)
     copy, numbers = replaced(f), np.array([float(x) for x in p], dtype=object)
 
@@ -59,7 +69,10 @@ def enclose(
 
     def unite(out: Any, at: Any, active: Any) -> None:
         rows = at[active]
-        for k, x in enumerate(out.ravel()):
+        found = out.ravel()
+        if rates:
+            found = [y for x in found for y in (x, rate_of(x))]
+        for k, x in enumerate(found):
             for bound, given, better in ((lo, "lo", np.minimum), (hi, "hi", np.maximum)):
                 value = getattr(x, given) if isinstance(x, Interval) else float(x)
                 value = np.broadcast_to(value, at.shape)[active]
@@ -73,15 +86,10 @@ def enclose(
             raise NotEnclosed("it has no value there")
     except Exception as error:  # whatever a user's function raises for a number that is none
         raise NotEnclosed(f"{place(f, error)}: {said(error)}") from error
-    return Enclosed(lo.reshape(n, *shape), hi.reshape(n, *shape), paths.branched)
+    return Enclosed(lo.reshape(n, *shape, *kinds), hi.reshape(n, *shape, *kinds), paths.branched)
 
 
-def part(x: Interval, at: Any) -> Interval:
-    """An interval for some of the windows."""
-    return Interval(x.lo[at], x.hi[at])
-
-
-def column(x: list[Interval]) -> Any:
+def column(x: Sequence[Interval]) -> Any:
     """An array that holds intervals."""
     out = np.empty(len(x), dtype=object)
     for i, y in enumerate(x):

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.intervals.conditions import Condition, sides
+from lcpstep.intervals.moving import Moving, either, rate_of
 from lcpstep.intervals.numbers import Interval, bounds
 from lcpstep.intervals.paths import NotEnclosed, current
 
@@ -36,18 +37,27 @@ def smaller(x: Any, y: Any) -> Any:
     """The smaller of two."""
     if not (isinstance(x, Interval) or isinstance(y, Interval)):
         return min(x, y)
-    x, y = interval(x), interval(y)
-    meets(x, y)
-    return Interval(np.minimum(x.lo, y.lo), np.minimum(x.hi, y.hi))
+    own, other = interval(x), interval(y)
+    meets(own, other)
+    lo, hi = np.minimum(own.lo, other.lo), np.minimum(own.hi, other.hi)
+    return one_of(x, y, own.hi <= other.lo, other.hi <= own.lo, lo, hi)
 
 
 def larger(x: Any, y: Any) -> Any:
     """The larger of two."""
     if not (isinstance(x, Interval) or isinstance(y, Interval)):
         return max(x, y)
-    x, y = interval(x), interval(y)
-    meets(x, y)
-    return Interval(np.maximum(x.lo, y.lo), np.maximum(x.hi, y.hi))
+    own, other = interval(x), interval(y)
+    meets(own, other)
+    lo, hi = np.maximum(own.lo, other.lo), np.maximum(own.hi, other.hi)
+    return one_of(x, y, own.lo >= other.hi, other.lo >= own.hi, lo, hi)
+
+
+def one_of(x: Any, y: Any, first: Any, second: Any, lo: Any, hi: Any) -> Interval:
+    """Bounds of what is x in windows of the first kind and y in those of the second; with its rate, if known."""
+    if not (isinstance(x, Moving) or isinstance(y, Moving)):
+        return Interval(lo, hi)
+    return Moving(lo, hi, either(rate_of(x), rate_of(y), first, second))
 
 
 def meets(x: Interval, y: Interval) -> None:
@@ -139,11 +149,10 @@ def where(condition: Any, x: Any, y: Any) -> Any:
     if not any(isinstance(z, (Condition, Interval)) for z in (condition, x, y)):
         return np.where(condition, x, y)
     yes, no = sides(condition)
-    x, y = interval(x), interval(y)
     if np.any(~(yes | no)):
         current().mark(~(yes | no))
-    lo = np.where(yes, x.lo, np.where(no, y.lo, np.minimum(x.lo, y.lo)))
-    return Interval(lo, np.where(yes, x.hi, np.where(no, y.hi, np.maximum(x.hi, y.hi))))
+    value = either(x, y, yes, no)
+    return one_of(x, y, yes, no, value.lo, value.hi)
 
 
 def interpolated(x: Any, places: Any, values: Any) -> Any:

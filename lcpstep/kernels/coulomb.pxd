@@ -1,3 +1,4 @@
+cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.vectors cimport clear
 from lcpstep.lcp.kernel cimport solve_small
@@ -31,4 +32,7 @@ cdef bint solve_normals(ContactProblem c, Py_ssize_t n_a) noexcept nogil
 cdef bint solve_frictional(double* R, double* b, double mu, double* p) noexcept nogil
 cdef bint solve_three_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef bint solve_four_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(slides=bint)
+cdef bint solve_sliding(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef double slip(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t f) noexcept nogil
 cdef void begin(ContactProblem c, Py_ssize_t m, Py_ssize_t n) noexcept nogil

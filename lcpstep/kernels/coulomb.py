@@ -84,7 +84,7 @@ def solve_contacts(c: ContactProblem, n_a: int, n_f: int) -> bool:
         return solve_normals(c, n_a)
     if n_a == 1 and solve_frictional(c.mobility, c.rate, c.mu[c.ids[0]], c.impulse):
         return True
-    return solve_three_rows(c, n_a, n_f) or solve_four_rows(c, n_a, n_f)
+    return solve_three_rows(c, n_a, n_f) or solve_four_rows(c, n_a, n_f) or solve_sliding(c, n_a, n_f)
 
 
 def solve_normals(c: ContactProblem, n_a: int) -> bool:
@@ -166,6 +166,45 @@ def solve_four_rows(c: ContactProblem, n_a: int, n_f: int) -> bool:
         limit = c.mu[c.ids[c.carrier[f]]] * c.z[c.carrier[f]]
         c.impulse[n_a + f] = max(-limit, min(limit, c.z[n_a + f] - c.z[m + f]))
     return True
+
+
+def solve_sliding(c: ContactProblem, n_a: int, n_f: int) -> bool:
+    """Unknowns p_N alone, if all that are pressed slide on as they would without impulses.
+
+    Approaches may be so slow beside the sliding, as at the end of a chattering, that both keep no digits in one
+    problem.
+    """
+    m = n_a + n_f
+    clear(c.z, n_a)
+    for i in range(n_a):
+        c.b[i] = c.rate[i]
+        for k in range(n_a):
+            c.W[i * n_a + k] = c.mobility[i * m + k]
+    for f in range(n_f):
+        k, T = c.carrier[f], n_a + f
+        friction = c.mu[c.ids[k]] if c.rate[T] > 0.0 else -c.mu[c.ids[k]]
+        for i in range(n_a):
+            c.W[i * n_a + k] -= c.mobility[i * m + T] * friction
+    if solve_small(c.W, c.b, c.z, n_a, c.work) != SOLVED:
+        return False
+    for i in range(n_a):
+        c.impulse[i] = c.z[i]
+    for f in range(n_f):
+        k, T = c.carrier[f], n_a + f
+        c.impulse[T] = -c.mu[c.ids[k]] * c.z[k] if c.rate[T] > 0.0 else c.mu[c.ids[k]] * c.z[k]
+    slides = True
+    for f in range(n_f):
+        slides = slides and (c.z[c.carrier[f]] == 0.0 or slip(c, n_a, n_f, f) * c.rate[n_a + f] > 0.0)
+    return slides
+
+
+def slip(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
+    """The sliding velocity of tangent f under the impulses found."""
+    m = n_a + n_f
+    u = c.rate[n_a + f]
+    for b in range(m):
+        u += c.mobility[(n_a + f) * m + b] * c.impulse[b]
+    return u
 
 
 def begin(c: ContactProblem, m: int, n: int) -> None:

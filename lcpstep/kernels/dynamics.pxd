@@ -4,7 +4,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, inf, max, min
 
-cdef double DIFFERENCE, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
+cdef double DIFFERENCE, REACH, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
 cdef Py_ssize_t SHORTENINGS, TURNS
 
 cdef void external_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
@@ -14,14 +14,24 @@ cdef void mass(Model m, double t, double* q, double* v, double* out) noexcept no
 cdef void gaps(Model m, double t, double* q, double* v, double* g) noexcept nogil
 cdef void gap_rates(Model m, double t, double* q, double* v, double* G, double* g_t) noexcept nogil
 cdef void bias(
-    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate, double* out
+    Model m, double t, double low, double high, double* q, double* v, double* shifted, double* G, double* rate,
+    double* out
 ) noexcept nogil
 @cython.locals(helped=bint)
 cdef double difference_step(
-    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate
+    Model m, double t, double low, double high, double* q, double* v, double* shifted, double* G, double* rate
 ) noexcept nogil
+cdef double middle(double t, double low, double high, double d) noexcept nogil
 cdef double differences(
-    Model m, double t, double* q, double* v, double* shifted, double* G, double* rate, double d
+    Model m, double t, double beside, double* q, double* v, double* shifted, double* G, double* rate, double d
+) noexcept nogil
+cdef void slope_beside(
+    Model m, double t, double beside, double* q, double* v, double* shifted, double* G, double* rate, double d,
+    double* out
+) noexcept nogil
+cdef double slope_share(Py_ssize_t k, double x) noexcept nogil
+cdef void rates_ahead(
+    Model m, double t, double shift, double* q, double* v, double* shifted, double* G, double* rate
 ) noexcept nogil
 cdef void obstacle(Model m, double t, double* q, double* v) noexcept nogil
 cdef bint moves(Model m) noexcept nogil

@@ -14,12 +14,15 @@ if not cython.compiled:
 
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, inf, max
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
 # to the terms of the rate, that they may show, and what a shorter step aims at; how often it is shortened, and beyond
 # what a gap has turned so much that nothing is seen of it
 DIFFERENCE = 1e-3
+REACH = (
+    2.125  # of these steps: what differences keep from the ends of a smooth interval, where rates may jump
+)
 BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
 TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
 SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
@@ -107,11 +110,13 @@ def gap_rates(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, g_t: Doubl
 
 
 def bias(
-    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles, out: Doubles
-) -> None:
+    m: Model, t: float, low: float, high: float, q: Doubles, v: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles, out: Doubles,
+) -> None:  # fmt: skip
     """(dG/dt) v + d(g_t)/dt along the motion; by differences of order four where the scene does not give it.
 
-    Work space: shifted (n_q,), G (n_c, n_q), rate (n_c,).
+    low, high : the smooth interval that t lies in, which differences keep to; any where high <= low
+    shifted, G, rate : (n_q,), (n_c, n_q), (n_c,)   work space
     """
     for c in range(m.n_c):
         out[c] = 0.0
@@ -124,62 +129,103 @@ def bias(
     if m.bias.given:
         m.bias.fill(t, q, v, out)
         return
-    d = difference_step(m, t, q, v, shifted, G, rate)
+    if high <= low:
+        low, high = -inf, inf
+    d = difference_step(m, t, low, high, q, v, shifted, G, rate)
+    beside = middle(t, low, high, d)
+    if beside != 0.0:
+        slope_beside(m, t, beside, q, v, shifted, G, rate, d, out)
+        return
     for c in range(m.n_c):
-        near, far = m.motion_now[3 * c], m.motion_now[3 * c + 1]
-        out[c] = (8.0 * near - far) / (12.0 * d)
+        out[c] = (8.0 * m.motion_now[3 * c] - m.motion_now[3 * c + 1]) / (12.0 * d)
 
 
 def difference_step(
-    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles
-) -> float:
+    m: Model, t: float, low: float, high: float, q: Doubles, v: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles,
+) -> float:  # fmt: skip
     """A step short enough for the differences of the gaps' rates along the motion; it leaves these in `motion_now`.
 
     Gaps may bend at any scale. A third difference that is too large asks for a shorter step, in proportion to its
-    third root, unless the last one has shown that this does not help: the curvature jumps nearby.
+    third root, unless the last one has shown that this does not help: the curvature jumps nearby. They see nothing
+    of what is narrower than they are apart, but where its ends are those of the interval.
     """
     speed = 1.0
     for i in range(m.n_q):
         speed = max(speed, abs(v[i]))
-    d, before, shorter = DIFFERENCE / speed, inf, 1.0
+    d, before, shorter = min(DIFFERENCE / speed, (high - low) / (2.0 * REACH)), inf, 1.0
     for _ in range(SHORTENINGS):
-        bent = differences(m, t, q, v, shifted, G, rate, d)
+        bent = differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, d)
         helped = bent > LOST or bent <= before * shorter
         if not bent > BENT or not helped:
             return d
         change = max(pow(SMOOTH / bent, 1.0 / 3.0), DIFFERENCE)
         before, shorter = bent, change * sqrt(change)
         d *= change
-    differences(m, t, q, v, shifted, G, rate, d)
+    differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, d)
     return d
 
 
+def middle(t: float, low: float, high: float, d: float) -> float:
+    """How far after t differences of step d are taken so that they keep to the interval, in steps."""
+    return min(max(0.0, REACH - (t - low) / d), (high - t) / d - REACH)
+
+
 def differences(
-    m: Model, t: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles, d: float
-) -> float:
+    m: Model, t: float, beside: float, q: Doubles, v: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles, d: float,
+) -> float:  # fmt: skip
     """Differences of G v + g_t between -d and d, and -2 d and 2 d, into `motion_now`; the third one, relative.
 
+    beside : by how many steps d after t zero lies
     Contacts whose gap is a function have no obstacle that moves, and its place is free.
     """
     now = m.motion_now
     for c in range(m.n_c):
         now[3 * c] = now[3 * c + 1] = now[3 * c + 2] = 0.0
     for k in range(4):
-        shift = d * (1.0 + k // 2) * (1.0 if k % 2 == 0 else -1.0)
-        for i in range(m.n_q):
-            shifted[i] = q[i] + shift * v[i]
-        gap_rates(m, t + shift, shifted, v, G, rate)
+        sign = 1.0 if k % 2 == 0 else -1.0
+        rates_ahead(m, t, d * (beside + sign * (1.0 + k // 2)), q, v, shifted, G, rate)
         for c in range(m.n_c):
             terms = abs(rate[c])
             for j in range(m.n_q):
                 terms += abs(G[c * m.n_q + j] * v[j])
             now[3 * c + 2] = max(now[3 * c + 2], terms)
-            now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * (1.0 if k % 2 == 0 else -1.0)
+            now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * sign
     bent = 0.0
     for c in range(m.n_c):
         if now[3 * c + 2] > 0.0:
             bent = max(bent, abs(now[3 * c + 1] - 2.0 * now[3 * c]) / now[3 * c + 2])
     return bent
+
+
+def slope_beside(
+    m: Model, t: float, beside: float, q: Doubles, v: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles, d: float, out: Doubles,
+) -> None:  # fmt: skip
+    """The slope at t of the quartic through five values of G v + g_t, d apart, the middle one `beside` d after t."""
+    for k in range(-2, 3):
+        rates_ahead(m, t, d * (beside + k), q, v, shifted, G, rate)
+        for c in range(m.n_c):
+            out[c] += slope_share(k, -beside) / d * (product(G, v, c, m.n_q) + rate[c])
+
+
+def slope_share(k: int, x: float) -> float:
+    """Slope at x of the quartic that is one at k and zero at the others of -2 .. 2: how much its value counts."""
+    if k == 0:
+        return x * x * x - 2.5 * x
+    if k * k == 1:
+        return (-4.0 * x * x * x - 3.0 * k * x * x + 8.0 * x + 4.0 * k) / 6.0
+    return (4.0 * x * x * x + 3.0 * k * x * x - 2.0 * x - k) / 24.0
+
+
+def rates_ahead(
+    m: Model, t: float, shift: float, q: Doubles, v: Doubles, shifted: Doubles, G: Doubles, rate: Doubles
+) -> None:
+    """G and g_t so much later, on the straight line that v leads along."""
+    for i in range(m.n_q):
+        shifted[i] = q[i] + shift * v[i]
+    gap_rates(m, t + shift, shifted, v, G, rate)
 
 
 def obstacle(m: Model, t: float, q: Doubles, v: Doubles) -> None:

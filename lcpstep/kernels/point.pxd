@@ -4,7 +4,7 @@ from lcpstep.kernels.acceleration cimport divide_by_mass, free_acceleration
 from lcpstep.kernels.dynamics cimport bias, gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport after
+from lcpstep.pointers cimport after, inf
 
 
 @cython.final

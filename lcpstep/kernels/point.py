@@ -12,7 +12,7 @@ if not cython.compiled:
     from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
     from lcpstep.kernels.dynamics import bias, gap_rates
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import after
+    from lcpstep.pointers import after, inf
 
 
 class Point:
@@ -49,7 +49,7 @@ class Point:
         divide_by_mass(self.m, t, x, x_t, self.M, self.work, doubles(MG))
         return MG, product(self.G, doubles(MG), 0, self.n)
 
-    def gap_bias(self, t: float, q: Any, v: Any) -> float:
-        """The gap acceleration at v' = 0."""
-        bias(self.m, t, doubles(q), doubles(v), self.shifted, self.G, self.rate, self.out)
+    def gap_bias(self, t: float, q: Any, v: Any, low: float = -inf, high: float = inf) -> float:
+        """The gap acceleration at v' = 0; low, high: the smooth interval of time that t lies in."""
+        bias(self.m, t, low, high, doubles(q), doubles(v), self.shifted, self.G, self.rate, self.out)
         return self.out[0]

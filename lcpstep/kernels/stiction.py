@@ -11,7 +11,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.coefficients import Coefficients
-    from lcpstep.kernels.coulomb import ContactProblem, solve_contacts
+    from lcpstep.kernels.coulomb import ContactProblem, slip, solve_contacts
     from lcpstep.pointers import Doubles, Indices, abs
 
 AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding
@@ -41,15 +41,6 @@ def solve_steps(
                 k.tried[i], c.mu[i], again = STICKS, k.sticking[i], True
         if not again:
             return True
-
-
-def slip(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
-    """The sliding velocity of tangent f under the impulses found."""
-    m = n_a + n_f
-    u = c.rate[n_a + f]
-    for b in range(m):
-        u += c.mobility[(n_a + f) * m + b] * c.impulse[b]
-    return u
 
 
 def terms(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:

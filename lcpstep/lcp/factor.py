@@ -73,7 +73,7 @@ class Patterned:
         self.flat = column * (3 * k + 1) + 2 * k + row - column  # in LAPACK's storage of the band, transposed
 
     def factor(self, values: Any) -> Solve:
-        """Solver for the matrix with these entries; raises Singular."""
+        """Solver for the matrix with these entries, of one right-hand side or columns of them; raises Singular."""
         return self._banded(values) if self.k <= NARROW else self._sparse(values)
 
     def _banded(self, values: Any) -> Solve:
@@ -87,7 +87,7 @@ class Patterned:
             raise Singular
 
         def solve(rhs: Any) -> Any:
-            x = np.empty(n)
+            x = np.empty(rhs.shape)
             x[self.order] = lapack.dgbtrs(lu, k, k, rhs[self.order], pivots)[0]
             return x
 

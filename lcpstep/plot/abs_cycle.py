@@ -18,7 +18,7 @@ from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.simulation import simulate
 
-COLOURS = ("#4c9a6a", "#c44e52", "#4c72b0", "#999999")  # of the outcomes
+COLOURS = ("#bfe6c6", "#e3827c", "#4468ad", "#202020")  # of the outcomes; light to dark, for a copy in grey
 
 
 def overview(
@@ -68,7 +68,7 @@ def _series(ax: Any, scene: HybridScene, cycle: Cycle | None) -> None:
         t = np.linspace(0.0, end, 2000)
         x = simulate(scene.started(corner(scene), "2", (0.0, end)), EventDriven()).at(t)
         ax.plot(t, x[:, 0], "C0-", label="λ [-]")
-        ax.plot(t, x[:, 1] / 1e4, "C3-", label="T [10 kN m]")
+        ax.plot(t, x[:, 1] / 1e4, "C3--", label="T [10 kN m]")
     ax.set(xlabel="time [s]", xlim=(0.0, None))
     _above(ax, "two periods")
     ax.grid(alpha=0.3)
@@ -82,7 +82,7 @@ def _over(left: Any, right: Any, scene: HybridScene, over: Bifurcation | None) -
     if over is not None:
         left.plot(over.torque_max, over.period, "C0.-", ms=3)
         right.plot(over.torque_max, over.slip_low, "C0-", label="smallest λ")
-        right.plot(over.torque_max, over.slip_high, "C3-", label="largest λ")
+        right.plot(over.torque_max, over.slip_high, "C3-.", label="largest λ")
     left.set(ylabel="period [s]", ylim=(0.0, None))
     right.set(ylabel="slip λ [-]")
     _above(left, "")
@@ -104,7 +104,7 @@ def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | Non
     if found is not None:
         ax.pcolormesh(
             found.slip, found.torque, np.where(found.labels[q] < 0, np.nan, found.labels[q]).T,
-            cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest", alpha=0.6,
+            cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5, shading="nearest",
         )  # fmt: skip
     _isocline(ax, scene)
     if cycle is not None:
@@ -113,7 +113,7 @@ def _basin(ax: Any, scene: HybridScene, cycle: Cycle | None, found: Basins | Non
     ax.set_title(f"basin of state {q}", loc="left", fontsize=9)
     if q == 0 and found is not None:
         seen = [k for k in range(len(OUTCOMES)) if np.any(found.labels == k)]
-        handles = [Patch(color=COLOURS[k], alpha=0.6, label=OUTCOMES[k]) for k in seen]
+        handles = [Patch(color=COLOURS[k], label=OUTCOMES[k]) for k in seen]
         ax.figure.legend(handles=handles, fontsize=8, loc="outside lower center", ncols=len(seen))
 
 
@@ -128,8 +128,8 @@ def stopping(run: HybridTrajectory, title: str) -> Any:
     slip.plot(t, x[:, 0], lw=1.0)
     torque.plot(t, x[:, 1], "C3-", lw=1.0)
     speed.plot(t, x[:, 2], "k-", lw=1.2, label="car")
-    speed.plot(t, x[:, 2] * (1.0 - x[:, 0]), "C0-", lw=0.8, label="rim of the wheel")
-    speed.legend()
+    speed.plot(t, x[:, 2] * (1.0 - x[:, 0]), "C0--", lw=1.0, label="rim of the wheel")
+    speed.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8, frameon=False)
     for ax, label in zip((slip, torque, speed), ("slip [-]", "torque [N m]", "speed [m/s]"), strict=True):
         ax.set_ylabel(label)
         ax.grid(alpha=0.3)

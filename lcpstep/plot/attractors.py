@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import checks
+from lcpstep.plot import looks
 from lcpstep.plot.bifurcation import LETTERS
 
 Array = NDArray[np.float64]
@@ -50,19 +51,18 @@ def attractors(
 
 def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -> None:
     """Phase and velocity after each impact, coloured by its number in the period; rate before each switch."""
-    from matplotlib import colormaps
-
-    shades = colormaps["viridis"](np.linspace(0.0, 0.92, ORDINALS))
     phase, after, number = (
         np.concatenate([getattr(a, f"impact_{name}") for a in found] or [np.zeros(0)])
         for name in ("phase", "before" if any(a.modes for a in found) else "after", "number")
     )
     size = FEW if all(a.periods for a in found) else MANY
-    for k in range(1, ORDINALS + 1):
+    seen = int(min(np.max(number, initial=1), ORDINALS))
+    shades = looks.shades(seen)
+    for k in range(1, seen + 1):
         which = number == k if k < ORDINALS else number >= k
         if np.any(which):
             label = f"{k}" if k < ORDINALS else f"{k} and later"
-            dots(ax, phase[which], after[which], shades[k - 1], size, label)
+            dots(ax, phase[which], after[which], shades[k - 1], size, label, looks.mark(k - 1))
     for k, corner in enumerate(corners):
         ax.axvline(corner, color="C0", lw=0.5, alpha=0.6, zorder=0.5)
         ax.annotate(LETTERS[k % len(LETTERS)], (corner, 1.0), (1.5, -4.0 - 7.0 * (k % 2)), va="top", fontsize=7,
@@ -78,7 +78,7 @@ def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -
 
 
 def section_panel(ax: Any, found: Sequence[Any], labels: Sequence[str] = LABELS) -> None:
-    """Position and velocity once per period, or the first two states, one colour an attractor."""
+    """Position and velocity once per period, or the first two states, one colour and one mark an attractor."""
     across = len(labels) // 2
     for k, a in enumerate(found):
         dots(
@@ -88,6 +88,7 @@ def section_panel(ax: Any, found: Sequence[Any], labels: Sequence[str] = LABELS)
             f"C{k}",
             FEW if a.periods else MANY,
             f"{a.name}: {a.share:.1%}",
+            looks.mark(k),
         )
     ax.set(xlabel=labels[0], ylabel=labels[across])
     ax.tick_params(labelbottom=True)
@@ -95,7 +96,7 @@ def section_panel(ax: Any, found: Sequence[Any], labels: Sequence[str] = LABELS)
     ax.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
-def dots(ax: Any, x: Array, y: Array, colour: Any, size: float, label: str) -> None:
+def dots(ax: Any, x: Array, y: Array, colour: Any, size: float, label: str, mark: str = "o") -> None:
     """Points, and a mark of their colour in the legend that can be seen at any size."""
-    ax.plot(x, y, "o", color=colour, ms=size, mew=0.0, rasterized=len(x) > 200)
-    ax.plot([], [], "o", color=colour, ms=5, label=label)
+    ax.plot(x, y, mark, color=colour, ms=size, mew=0.0, rasterized=len(x) > 200)
+    ax.plot([], [], mark, color=colour, ms=5, label=label)

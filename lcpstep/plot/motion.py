@@ -13,6 +13,7 @@ import numpy as np
 from lagrangian import checks
 from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.plot import looks
 from lcpstep.plot.words import method_words
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -21,6 +22,7 @@ DECADES = 1e-5  # how far below its maximum the distance of two motions is drawn
 JUMPS = "0.75"  # colour of the velocity jumps
 BAND = 0.3  # how much the band of an error bar covers
 NAMED = 8  # curves that a legend names
+QUANTITIES = {"rad": ("angle", "angular velocity")}  # what positions and velocities are called, by unit
 
 
 def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
@@ -93,18 +95,19 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
     t, states = _curves(run)
     n, labels = run.scene.n_q, run.scene.labels
-    for ax, x, own, what in zip(
-        (position, velocity), states, (labels[:n], labels[n:]), ("position", "velocity"), strict=True
+    for which, (ax, x, own) in enumerate(
+        zip((position, velocity), states, (labels[:n], labels[n:]), strict=True)
     ):
-        ax.plot(t, x, lw=1.0)
+        for k, values in enumerate(x.T):
+            ax.plot(t, values, **looks.line(k))
         unit = checks.common_unit(own)
+        what = QUANTITIES.get(checks.common_unit(labels[:n]), ("position", "velocity"))[which]
         ax.set_ylabel(own[0] if n == 1 else f"{what} [{unit}]" if unit else what)
+        if n > 1 and not (which and unit):  # velocities look as their positions, and have units of their own
+            _legend(ax, ax.get_lines(), [x.partition(" [")[0] for x in own] if unit else own)
     if run.error is not None:
         for ax, which, bar in ((position, 0, run.error.position), (velocity, 1, run.error.velocity)):
             band(ax, run, which, bar)
-    if n > 1:
-        same = bool(checks.common_unit(labels[:n]))
-        _legend(position, position.get_lines(), [x.partition(" [")[0] if same else x for x in labels[:n]])
     _impulses(impulse, run)
     for ax in (position, velocity, impulse):
         ax.grid(alpha=0.3)
@@ -140,9 +143,16 @@ def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
     stems = []
     for contact in np.unique(jumps.contact):
         own = jumps[jumps.contact == contact]
-        colour = f"C{contact % 10}"
-        stem = ax.stem(own.time, own.impulse, linefmt=f"{colour}-", markerfmt=f"{colour}.", basefmt="k-")
+        colour, mark = f"C{contact % 10}", looks.mark(contact)
+        stem = ax.stem(own.time, own.impulse, linefmt=f"{colour}-", markerfmt=colour + mark, basefmt="none")
+        stem.markerline.set_markersize(4.0)
+        stem.stemlines.set_linewidth(1.0)
         stems.append(stem.markerline)
+    if stems:
+        ax.axhline(0.0, color="0.3", lw=0.6)
+    else:
+        ax.text(0.5, 0.5, "no impacts", ha="center", va="center", transform=ax.transAxes)
+        ax.set_yticks([])
     if run.scene.n_c > 1:
         _legend(ax, stems, [f"contact {c}" for c in np.unique(jumps.contact)])
     ax.set_ylabel("impulse [N s]")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lagrangian import HybridScene, checks
 from lcpstep.analysis.orbits import PeriodicOrbit
+from lcpstep.plot import looks
 from lcpstep.plot.lift import absolute
 from lcpstep.plot.words import names_of, parameter_label
 from lcpstep.trajectory import Kind
@@ -48,9 +49,9 @@ def branch(data: Any, title: str = "") -> Any:
     # Above the axes: beside them it would take its width from the colour bar's column too
     above.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=6, frameon=False)
     p, stable = data[parameter].values, data["stable"].values.astype(bool)
-    for which, style in ((stable, STABLE), (~stable, UNSTABLE)):
+    for which, style, filled in ((stable, STABLE, True), (~stable, UNSTABLE, False)):
         for modulus in data["multiplier_modulus"].values[which].T:
-            below.plot(p[which], modulus, ".", ms=4, color=style["color"])
+            below.plot(p[which], modulus, "o", ms=2.5, color=style["color"], mfc=None if filled else "none")
     below.axhline(1.0, color="0.5", lw=0.8)
     below.set(
         ylabel="modulus of the multipliers", xlabel=parameter_label(parameter), xlim=data.attrs["range"]
@@ -151,27 +152,36 @@ def motion_panel(ax: Any, scene: Any, t: Array, q: Array, v: Array) -> None:
     """Position over time in periods, with the obstacle where there is one coordinate and one contact."""
     position, surface = absolute(scene, t, q, v)
     body, obstacle = names_of(scene)
-    ax.plot(t / scene.period, position, "C0-", lw=1.3, label=body if position.shape[1] == 1 else None)
+    labels = scene.labels[: scene.n_q]
+    for k, x in enumerate(position.T):
+        ax.plot(t / scene.period, x, **looks.line(k), label=body if scene.n_q == 1 else labels[k])
     if surface is not None:
-        ax.plot(t / scene.period, surface, "k-", lw=1.0, label=obstacle)
-        ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False)
-    ax.set(xlabel="time [periods]", ylabel="position [m]", xlim=(t[0] / scene.period, t[-1] / scene.period))
+        ax.plot(t / scene.period, surface, "k--", lw=1.0, label=obstacle)
+    if surface is not None or scene.n_q > 1:
+        _legend_above(ax)
+    ax.set(xlabel="time [periods]", ylabel=labels[0] if scene.n_q == 1 else "position",
+           xlim=(t[0] / scene.period, t[-1] / scene.period))  # fmt: skip
     ax.grid(alpha=0.3)
 
 
 def modes_panel(ax: Any, scene: HybridScene, t: Array, x: Array, mode: Any) -> None:
-    """The first state over time in periods, one colour a mode."""
+    """The first state over time in periods, one colour and dashes of its own a mode."""
     ends = np.flatnonzero(mode[1:] != mode[:-1]) + 1
     names = list(dict.fromkeys(str(name) for name in mode))
     shown: set[str] = set()
     for piece in np.split(np.arange(len(t)), ends):
         name, to = str(mode[piece[0]]), slice(piece[0], piece[-1] + 2)
-        ax.plot(t[to] / scene.period, x[to, 0], f"C{names.index(name)}-", lw=1.5,
-                label=None if name in shown else name)  # fmt: skip
+        label = None if name in shown else name
+        ax.plot(t[to] / scene.period, x[to, 0], **looks.line(names.index(name)), label=label)
         shown.add(name)
-    ax.legend(title="mode", fontsize=8, title_fontsize=8)
+    _legend_above(ax)
     ax.set(xlabel="time [periods]", ylabel=scene.labels[0], xlim=(t[0] / scene.period, t[-1] / scene.period))
     ax.grid(alpha=0.3)
+
+
+def _legend_above(ax: Any) -> None:
+    """Names above the axes, where they cover no curve."""
+    ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False)
 
 
 def state_panel(ax: Any, t: Array, q: Array, v: Array, jumps: Array) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from lcpstep.plot import looks
+
 MOST = 10  # lines with a name of their own
-STYLES = ("o-", "s--", "^-.", "D:")
 
 
 def measures(data: Any, sweep: Sequence[str], names: Sequence[str]) -> Any:
@@ -32,7 +33,7 @@ def measures(data: Any, sweep: Sequence[str], names: Sequence[str]) -> Any:
                 ax.plot(
                     data[across].values,
                     values[:, j],
-                    STYLES[j % 4],
+                    looks.mark(k) + looks.STYLES[j % 4],
                     color=f"C{k % 10}",
                     ms=3,
                     lw=1,

@@ -28,14 +28,16 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
     from lcpstep.plot.figures import Figure
 
     wanted = measures or [
-        m for m in study.measures if m not in UNFIT and any(x.errors.get(m) for x in study.levels)
+        m
+        for m in study.measures
+        if m not in UNFIT and any(drawable(x.errors.get(m, 0.0)) for x in study.levels)
     ]
     figure = Figure(figsize=(13.5, 3.6 * max(len(wanted), 1)), layout="constrained")
     figure.suptitle(f"{study.question['scene']}, compared up to {study.compared_until:.4g} s")
     grid = figure.subplots(max(len(wanted), 1), 2, sharey="row", squeeze=False)
     for row, measure in zip(grid, wanted, strict=False):
         for k, method in enumerate(study.methods):
-            levels = [x for x in study.curve(method, measure, trusted=False) if x.errors[measure] > 0.0]
+            levels = [x for x in study.curve(method, measure, trusted=False) if drawable(x.errors[measure])]
             if not levels:
                 continue
             order = study.order(method, measure)
@@ -44,7 +46,7 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
                 _curve(ax, levels, measure, x, f"C{k % 10}", MARKERS[k % len(MARKERS)], name)
         for ax, label in zip(row, ("CPU time [s]", "step h [s], or tolerance"), strict=True):
             ax.set(xscale="log", yscale="log", xlabel=label)
-            if study.uncertainty.get(measure, 0.0) > 0.0:
+            if drawable(study.uncertainty.get(measure, 0.0)):
                 ax.axhline(study.uncertainty[measure], color="0.6", lw=0.8, label=FLOOR)
             whole_decades(ax)
             ax.grid(alpha=0.3, which="both")
@@ -52,6 +54,11 @@ def work_precision(study: Study, measures: Sequence[str] | None = None) -> Any:
                 ax.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
         row[0].set_ylabel(study.titled(measure).replace("_", " "))
     return figure
+
+
+def drawable(error: float) -> bool:
+    """Whether an error has a place on a logarithmic scale; infinite is one of impacts that have no partner."""
+    return 0.0 < error < np.inf
 
 
 def whole_decades(ax: Any) -> None:

@@ -4,7 +4,7 @@ moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `the
                          `sparse_equations` for large ones
 constraints              what contacts, tangents and joints have in common as rows of a step
 located, pieces          impacts at their own times: method, and a run with its steps
-step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance`; `hidden_forces`,
-                         `hidden_switches`: what forces hide; `adaptive`: their sizes
+step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance` (`located_parts`);
+                         `hidden_forces`, `hidden_switches`: what forces hide; `adaptive`: their sizes
 step_run                 what runs by steps share; what all runs do: `lcpstep.running`
 """

@@ -25,20 +25,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lcpstep.lcp import solve_lcp
 from lcpstep.lcp.factor import Patterned, Singular, Solve
 from lcpstep.lcp.newton import PATIENCE, STRICT
 from lcpstep.lcp.saddle import NOTHING, REFINED, ROUNDING
 from lcpstep.lcp.status import TOLERANCE
+from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, OPEN, SIGN, STICK, Path
 
-OPEN, STICK, FORWARDS, BACKWARDS = range(4)  # modes; the last two slide
-SIGN = np.array([0.0, 0.0, 1.0, -1.0])  # of the sliding velocity
 PROXIMAL = 1e-10  # d, relative to the mobility of a row
 SMALLEST = 1e-300
 REFINEMENTS = 20
-EXCHANGES = 60
-AT_LIMIT = 1e-9  # of the friction that a contact can give: at its limit
-FEW = 60  # contacts whose dense problem may be handed to Lemke's method
+CENTRES = 20  # proximal points
+CONTRADICTION = 1e-9  # of the terms of a rate: `constraints.joint_rows`
 
 
 class Problem(NamedTuple):
@@ -68,10 +65,14 @@ class Point(NamedTuple):
     joints: float  # residual of the joints alone
     fitting: Any
 
+    def worst(self) -> float:
+        """The larger residual."""
+        return max(self.residual, self.joints)
+
     @property
     def solved(self) -> bool:
         """Whether no residual is larger than what `solve_lcp` calls solved."""
-        return max(self.residual, self.joints) <= TOLERANCE
+        return self.worst() <= TOLERANCE
 
 
 class Coupled:
@@ -119,56 +120,66 @@ class Coupled:
         weighted = np.abs(self.R.data * forces) / self.diagonal[self.R.indices]
         self.mobility = np.bincount(self.row, weights=weighted, minlength=self.n_r)
         self.mobility[self.mobility == 0.0] = 1.0
+        self.proximal = PROXIMAL * self.mobility
         self.kept = None
 
     def solve(self, problem: Problem, modes: Any, p: Any) -> Point:
         """The answer; modes (n_c,) and impulses p (n_r,): guesses of it."""
         modes = np.where(problem.active, modes, OPEN)
         modes = np.where(problem.rough, modes, np.minimum(modes, STICK))
-        best: Point | None = None
+        best = Point(modes, np.zeros(self.n_q), p, np.zeros(self.n_q), np.inf, 0.0, modes)
         with np.errstate(all="ignore"):
             for point in self.attempts(problem, modes, p):
-                best = point if best is None or point.residual < best.residual else best
+                best = min(best, point, key=Point.worst)
                 if best.solved:
                     break
-        return best or Point(modes, np.zeros(self.n_q), p, np.zeros(self.n_q), np.inf, 0.0, modes)
+            if (
+                best.solved and best.worst() > STRICT
+            ):  # by the distance from the centre, which is less from here
+                best = min(best, self.settle(problem, best.modes, best.p, best.p), key=Point.worst)
+        return best
 
     def attempts(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
         """Answers for one set of modes after another."""
+        point: Point | None = None
         try:
-            yield from self.exchange(problem, modes, p)
-            if 0 < np.count_nonzero(problem.active) <= FEW:
-                yield self.settle(problem, *self.by_lemke(problem, modes, p, problem.active))
+            for point in self.exchange(problem, modes, p):
+                yield point
+            modes = modes if point is None else point.modes
+            for _ in range(CENTRES):
+                found = self.by_path(problem._replace(b=problem.b - self.proximal * p), modes)
+                if found is None:
+                    return
+                for point in self.exchange(problem, found, p, p):
+                    yield point
+                if point is None or np.array_equal(p, point.p):
+                    return
+                modes, p = point.modes, point.p
         except Singular:
             return
 
-    def exchange(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
-        """Change modes that do not fit: all together while fewer and fewer do not, then those in doubt by Lemke."""
-        fewest, patience, doubt, before = self.n_c + 1, PATIENCE, np.zeros(self.n_c, dtype=bool), False
-        for _ in range(EXCHANGES):
+    def exchange(self, problem: Problem, modes: Any, p: Any, centre: Any = None) -> Iterator[Point]:
+        """Change modes that do not fit, all together, while fewer and fewer do not; the best comes last."""
+        fewest, patience, best = self.n_c + 1, PATIENCE, None
+        while patience >= 0 and fewest > 0:
             try:
-                point = self.settle(problem, modes, p)
+                point = self.settle(problem, modes, p, centre)
             except Singular:  # of slides that jam
                 modes = np.minimum(modes, STICK)
-                point = self.settle(problem, modes, p)
+                point = self.settle(problem, modes, p, centre)
             yield point
-            wrong = point.fitting != modes
-            count = int(np.count_nonzero(wrong))
-            if count == 0:
-                return
+            count = int(np.count_nonzero(point.fitting != modes))
+            best = point if best is None or count < fewest else best
             patience = PATIENCE if count < fewest else patience - 1
-            fewest = min(fewest, count)
-            if patience >= 0:
-                modes = point.fitting
-            else:
-                known = np.count_nonzero(doubt)
-                doubt |= wrong | before
-                if np.count_nonzero(doubt) == known:
-                    doubt = self.around(problem, modes, doubt)
-                if np.count_nonzero(doubt) in (known, *range(FEW + 1, self.n_c + 1)):
-                    return
-                modes, p = self.by_lemke(problem, modes, p, doubt)
-            before = wrong
+            fewest, modes = min(fewest, count), point.fitting
+        if best is not None:
+            yield best
+
+    def by_path(self, problem: Problem, modes: Any) -> Any:
+        """Modes by a path from a guess, or, where slides that jam or rows that contradict mislead it, from none."""
+        starts = modes, np.minimum(modes, STICK), np.zeros_like(modes)
+        paths = (Path(self, problem, start).follow() for start in starts)
+        return next((found for found in paths if found is not None), None)
 
     def held(self, problem: Problem, modes: Any) -> Any:
         """Rows whose rates vanish: all joints, closed contacts, and tangents of those that stick."""
@@ -180,35 +191,50 @@ class Coupled:
         key = modes.tobytes() + problem.rough.tobytes()
         if self.kept is None or self.kept[0] != key:
             held = self.held(problem, modes)
-            diagonal = np.where(held, PROXIMAL * self.mobility, 1.0)
+            diagonal = np.where(held, self.proximal, 1.0)
             parts = self.values, self.R.data * held[self.row], diagonal, SIGN[modes] * problem.mu
             self.kept = key, self.patterned.factor(np.concatenate(parts))
         return self.kept[1]
 
-    def settle(self, problem: Problem, modes: Any, p: Any) -> Point:
-        """The answer for the modes, refined down to rounding, and judged."""
+    def settle(self, problem: Problem, modes: Any, p: Any, centre: Any = None) -> Point:
+        """The answer for the modes, refined down to rounding, and judged.
+
+        With a centre (n_r,) the proximal diagonal stays, and draws the impulses to the centre: of rows that say the
+        same thing twice none then grows against another.
+        """
         solve, held, n = self.factor(problem, modes), self.held(problem, modes), self.n_q
         tangents, slide = slice(self.n_r - self.n_c, None), SIGN[modes] * problem.mu
         normals, slides = slice(self.n_j, self.n_r - self.n_c), modes > STICK
+        proximal = 0.0 if centre is None else self.proximal
         u, before = np.append(np.zeros(n), np.where(held, p, 0.0)), np.inf
         u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
         left = np.append(-(self.L @ u), np.where(held, -problem.b, 0.0))
         for _ in range(REFINEMENTS):
-            change = solve(left)
-            u = u + change
+            u = u + solve(left)
             u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
             rates = self.R @ u[:n] + problem.b
-            left = np.append(-(self.L @ u), np.where(held, -rates, 0.0))
+            drawn = rates + proximal * (u[n:] - (p if centre is None else centre))
+            left = np.append(-(self.L @ u), np.where(held, -drawn, 0.0))
             size_x, sizes, noise = self.sizes(problem, u)
-            away = relative(rates, sizes, noise)
-            error = max(largest(left[:n] / size_x), largest(away[held]))
+            error = max(largest(left[:n] / size_x), largest(relative(drawn, sizes, noise)[held]))
             if not REFINED < error < 0.5 * before:
                 break
             before = error
+        away = relative(rates, sizes, noise)
         point = self.judged(problem, modes, u, size_x, away, largest(left[:n] / size_x))
-        if error > TOLERANCE and np.array_equal(point.fitting, modes):
-            return point._replace(fitting=self.gives_way(problem, point, change[n:]))
-        return point
+        contradiction = self.contradiction(problem, u[:n], away * sizes, held)
+        return point if contradiction <= CONTRADICTION else point._replace(residual=np.inf)
+
+    def contradiction(self, problem: Problem, x: Any, rates: Any, held: Any) -> float:
+        """The worst rate of a contact next to velocities, as impulses that grow against each other leave behind.
+
+        Next to what such impulses move it would be nothing.
+        """
+        may_close = np.append(problem.active, np.zeros(self.n_c, dtype=bool))
+        rates, held = rates[self.n_j :], held[self.n_j :]
+        missed = np.where(held, np.abs(rates), np.where(may_close, -rates, 0.0))
+        speeds = problem.size + self.abs_R @ (np.abs(x) + problem.speed)
+        return float(np.max(missed / np.maximum(speeds[self.n_j :], SMALLEST), initial=0.0))
 
     def sizes(self, problem: Problem, u: Any) -> tuple[Any, Any, Any]:
         """Sizes of the terms of A x and of the rates, and what the rounding of x makes of rates."""
@@ -237,79 +263,11 @@ class Coupled:
         residual = max(defect, *map(largest, kinds)) if np.all(np.isfinite(size_x)) else np.inf
         return Point(modes, x, p, size_x, residual, largest(away_J), fitting)
 
-    def gives_way(self, problem: Problem, point: Point, change: Any) -> Any:
-        """Modes where rows that are held contradict each other, as rods and sticking hinges in one line do.
-
-        Their impulses grow against each other along `change` until the first contact opens or begins to slide.
-        """
-        cuts = self.n_j, self.n_j + self.n_c
-        _, p_N, p_T = np.split(point.p, cuts)
-        _, d_N, d_T = np.split(change, cuts)
-        stick, limit, growth = (point.modes == STICK) & problem.rough, problem.mu * p_N, problem.mu * d_N
-        ways = (
-            (BACKWARDS, stick, limit - p_T, d_T - growth), (FORWARDS, stick, limit + p_T, -d_T - growth),
-            (OPEN, point.modes != OPEN, p_N, -d_N),
-        )  # fmt: skip
-        reach = np.array(
-            [np.where(may & (speed > 0.0), room / speed, np.inf) for _, may, room, speed in ways]
-        )
-        way, contact = np.unravel_index(int(np.argmin(reach)), reach.shape)
-        modes = point.modes.copy()
-        if np.isfinite(reach[way, contact]):
-            modes[contact] = ways[way][0]
-        return modes
-
     def shares(self, size_x: Any) -> Any:
         """The largest part that a unit impulse of each row has in an equation of x."""
         weighted = np.append(self.abs_R.data / size_x[self.R.indices], 0.0)
         felt = np.maximum.reduceat(weighted, self.R.indptr[:-1]) if self.n_r else np.zeros(0)
         return np.where(np.diff(self.R.indptr) > 0, felt, 0.0)
-
-    def by_lemke(self, problem: Problem, modes: Any, p: Any, doubt: Any) -> tuple[Any, Any]:
-        """Modes of the contacts in doubt by Lemke's method, from their dense problem, the other modes kept.
-
-        For the problem see `kernels.coulomb`. Its impulses are among those that do the same, and within their limits.
-        Where it has no answer modes and impulses stay as they are.
-        """
-        contacts, rough = np.flatnonzero(doubt), np.flatnonzero(doubt & problem.rough)
-        others, n, a, f = np.where(doubt, OPEN, modes), self.n_q, len(contacts), len(rough)
-        rows = self.n_j + np.append(contacts, self.n_c + rough)
-        solve, held, H = self.factor(problem, others), self.held(problem, others), self.R[rows].toarray()
-        X = np.column_stack([solve(np.append(h, np.zeros(self.n_r)))[:n] for h in H])
-        x = solve(np.append(np.zeros(n), np.where(held, -problem.b, 0.0)))[:n]
-        W, b = H @ X, problem.b[rows] + H @ x
-        carrier, mu, m = np.searchsorted(contacts, rough), problem.mu[rough], a + f
-        M = np.zeros((m + f, m + f))
-        M[:m, :m] = W
-        M[:m, carrier] -= W[:, a:] * mu
-        M[a:m, m:] = np.eye(f)
-        M[m + np.arange(f), carrier], M[m:, a:m] = 2.0 * mu, -np.eye(f)
-        answer = solve_lcp(M, np.append(b, np.zeros(f)), method="lemke")
-        if not answer.solved:
-            return modes, p
-        z, found = answer.z, others.copy()
-        found[contacts] = np.where(z[:a] > 0.0, STICK, OPEN)
-        right, left = z[a:m], 2.0 * mu * z[carrier] - z[a:m]  # what is missing to either limit
-        moving = np.minimum(np.abs(right), np.abs(left)) <= AT_LIMIT * (np.abs(right) + np.abs(left))
-        slides = np.where(np.abs(right) <= np.abs(left), FORWARDS, BACKWARDS)
-        found[rough] = np.where(moving & (found[rough] != OPEN), slides, found[rough])
-        given = np.zeros(self.n_r)
-        given[rows[:a]], given[rows[a:]] = z[:a], z[a:m] - mu * z[carrier]
-        u = solve(np.append(np.zeros(n), np.where(held, -problem.b, given)))
-        return found, u[n:]
-
-    def around(self, problem: Problem, modes: Any, doubt: Any) -> Any:
-        """The contacts in doubt, and as many others that impulses of these move most."""
-        solve, others = self.factor(problem, np.where(doubt, OPEN, modes)), problem.active & ~doubt
-        normals = self.R[self.n_j : self.n_j + self.n_c]
-        pushed = normals.T @ np.where(doubt, 1.0, 0.0)
-        moved = np.abs(normals @ solve(np.append(pushed, np.zeros(self.n_r)))[: self.n_q])
-        most = np.argsort(np.where(others, -moved, 1.0))[
-            : min(np.count_nonzero(doubt), np.count_nonzero(others))
-        ]
-        doubt = doubt.copy()
-        doubt[most] = True
-        return doubt
 
 
 def relative(value: Any, size: Any, rounding: Any) -> Any:

@@ -18,7 +18,7 @@ from lagrangian import Harmonic, Joints, Scene
 from lcpstep.lcp.factor import factoriser
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
-from lcpstep.stepping.sparse_coulomb import STICK, Coupled, Problem
+from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS
 from lcpstep.trajectory import Status
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 FEW = 200  # coordinates up to which dense steps are fast enough, and know more
-CONTRADICTION = 1e-9  # of the terms of a joint's rate: `constraints.joint_rows`
 CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next three: `row_impulses`
 CANCELLED = 0.1
 ROUNDING = 1e-13

@@ -1,7 +1,8 @@
 """Steps chosen by an error estimate: one step of h is compared with two of h/2, which are kept.
 
-A step is accepted where its error, relative to 1 + the size of the motion, takes no more than its share h / span of
-the tolerance. So errors of the whole motion are proportional to the tolerance, up to what the motion itself
+A step is accepted where its error, relative to 1 + the size of the motion, takes no more of the tolerance than its
+share of the span: h / span, and of a step that an event has cut the part that it covers, for there may be thousands
+of those in an h. So errors of the whole motion are proportional to the tolerance, up to what the motion itself
 magnifies. Steps with events, and those that hold a jump of the forces, are few, and their errors fall no faster than
 h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller.
 
@@ -160,7 +161,7 @@ class Control:
         size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
         noise = min(NOISE, LEAST_SHARE * self.tolerance)
         error = max(self.apart_q / (1.0 + size_q), self.apart_v / (1.0 + size_v)) - noise
-        allowed = h / self.span
+        allowed = (min(self.cut, h) - self.into) / self.span
         if self.happened or FLAT * error > self.last:
             allowed = max(allowed, LEAST_SHARE)
         allowed *= self.tolerance

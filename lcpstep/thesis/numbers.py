@@ -19,11 +19,12 @@ from lagrangian.scenes.cam_follower import NOSE_END, NOSE_START, detachment_rpm
 from lcpstep import EventDriven
 from lcpstep.analysis.abs_cycle import limit_cycle, peak
 from lcpstep.analysis.abs_parameters import vanishing
-from lcpstep.analysis.border_collision import NormalForm, PiecewiseLinearMap, classify, normal_form
+from lcpstep.analysis.border_collision import PiecewiseLinearMap, classify
 from lcpstep.analysis.chattering import Crossing, corner_crossings
 from lcpstep.analysis.continuation import Steps
 from lcpstep.analysis.corner_branches import ROUNDING, uncertainty
 from lcpstep.analysis.corners import corner_impact, local_map
+from lcpstep.analysis.normal_form import NormalForm, normal_form
 from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
 from lcpstep.maps import periods
 

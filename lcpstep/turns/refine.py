@@ -3,6 +3,7 @@
 A window is halved until the bounds of its curve differ by no more than a share of what the curve is nearby (in the
 window 16 times as long around it), or the place cannot leave its straight way by more than NOTHING. So a burr is
 found however narrow it is, where bounds are enclosures. Neighbouring leaves that are alike are put together again.
+Of what is steady it is by how much the curve differs nearby that counts, in a window 64 times as long.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from lcpstep.turns.source import Source
 Array = NDArray[np.float64]
 CHANGE = 0.25  # of the curve nearby
 GENERATIONS = 5  # of windows that are nearby: the own one, and four that contain it
+GENERATIONS_STEADY = 7  # enclosures of a difference may be far wider than it is
 NOTHING = 1e-7  # of the range of places
+NOTHING_STEADY = 1e-9  # of the way that what is steady goes
 DEEPEST = 28  # halvings of the whole
 MOST = 4096  # windows of one size
 MUCH, FAST = 0.25, 1 / 32  # share of the time that turns fast, and how fast: then all of it does
@@ -50,7 +53,7 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
     shares = np.arange(ROOTS) / ROOTS
     a = (ends[:-1, None] + np.diff(ends)[:, None] * shares).ravel()
     b = np.append(a[1:], ends[-1])
-    near, kept = np.zeros((len(a), 0)), []
+    near, kept = np.zeros((len(a), 0, source.rows, 2)), []
     least, most = np.full(source.rows, np.inf), np.full(source.rows, -np.inf)
     whole = ends[-1] - ends[0]
     while len(a):
@@ -61,14 +64,16 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
         least = np.minimum(least, looks[..., 0].min(axis=(0, 1)))
         most = np.maximum(most, looks[..., 0].max(axis=(0, 1)))
         range_ = np.maximum(most - least, _extent(seen.lo[..., 0], seen.hi[..., 0]))
-        near = np.column_stack([np.abs(looks[..., 2]).max(axis=(1, 2)), near])[:, :GENERATIONS]
+        if source.steady:
+            range_ *= whole * NOTHING_STEADY / NOTHING
+        near, size = _nearby(source, near, looks[..., 2])
         lo, hi = seen.lo[..., 2], seen.hi[..., 2]
-        even = alike(lo, hi, near.max(axis=1), b - a, source.order, range_)
+        even = alike(lo, hi, size, b - a, source.order, range_)
         done = even & ~seen.branched
         last = b - a <= whole * 2.0**-DEEPEST
         jumps = last & (~even | _jumps(seen.lo[..., 1], seen.hi[..., 1]))
         end = done | last
-        kept.append(Leaves(a, b, lo, hi, near.max(axis=1), jumps & ~done).chosen(end))
+        kept.append(Leaves(a, b, lo, hi, size, jumps & ~done).chosen(end))
         a, b, near = a[~end], b[~end], near[~end]
         if len(a) > MOST or (np.sum(b - a) > MUCH * whole and np.max(b - a) < FAST * base):
             return None
@@ -76,6 +81,18 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
         a, b, near = np.concatenate([a, middle]), np.concatenate([middle, b]), np.vstack([near, near])
     joined = Leaves(*[np.concatenate(x) for x in zip(*kept, strict=True)])
     return together(joined.chosen(np.argsort(joined.a)), ends, source.order, range_)
+
+
+def _nearby(source: Source, before: Array, curve: Array) -> tuple[Array, Array]:
+    """Least and largest looks at the curve in windows and those around them (n, generations, rows, 2); its size.
+
+    before : of the windows around;  curve : looks, (n, looks, rows)
+    """
+    own = np.stack([curve.min(axis=1), curve.max(axis=1)], axis=2)[:, None]
+    near = np.concatenate([own, before], axis=1)[:, : GENERATIONS_STEADY if source.steady else GENERATIONS]
+    least, most = near[..., 0].min(axis=1), near[..., 1].max(axis=1)
+    size = most - least if source.steady else np.maximum(np.abs(least), np.abs(most))
+    return near, size.max(axis=1)
 
 
 def _extent(lo: Array, hi: Array) -> Array:
@@ -97,17 +114,20 @@ def alike(lo: Array, hi: Array, near: Array, h: Array, order: int, range_: Array
 
 
 def together(found: Leaves, ends: Array, order: int, range_: Array) -> Leaves:
-    """Neighbours that are alike put together, but not across one of the ends."""
+    """Neighbours that are alike put together, but not across one of the ends.
+
+    What the curve is nearby is the least of theirs: what little it is where a jerk begins is much beside the rest.
+    """
     made: list[tuple[float, float, Array, Array, float, bool]] = []
     borders = set(ends.tolist())
     for row in zip(*found, strict=True):
         a, b, lo, hi, near, jumps = row
         if made and a not in borders and not jumps and not made[-1][5]:
             before = made[-1]
-            least, most, more = np.minimum(before[2], lo), np.maximum(before[3], hi), max(before[4], near)
+            least, most, less = np.minimum(before[2], lo), np.maximum(before[3], hi), min(before[4], near)
             h = np.array([b - before[0]])
-            if alike(least[None], most[None], np.array([min(before[4], near)]), h, order, range_)[0]:
-                made[-1] = before[0], b, least, most, more, False
+            if alike(least[None], most[None], np.array([less]), h, order, range_)[0]:
+                made[-1] = before[0], b, least, most, less, False
                 continue
         made.append((a, b, lo, hi, near, bool(jumps)))
     a, b, lo, hi, near, jumps = zip(*made, strict=True)

@@ -6,14 +6,14 @@ A frame and the obstacles of flat contacts give all three (s, s', s''); gaps of 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
-from lcpstep.intervals import Interval, NotEnclosed, enclose
+from lcpstep.intervals import Interval, Moving, NotEnclosed, enclose
 from lcpstep.intervals.callbacks import Enclosed, plain
 
 Array = NDArray[np.float64]
@@ -40,6 +40,8 @@ class Source:
     rows: int
     sampled: str = ""
 
+    steady = False  # whether a curve that stays what it is is none: it turns where it changes
+
     @property
     def key(self) -> tuple[Any, ...]:
         """What its answers depend on."""
@@ -49,6 +51,10 @@ class Source:
     def order(self) -> int:
         """How often the curve is integrated for the place."""
         return 2 if self.also is None else 1
+
+    def ways(self) -> list[Source]:
+        """Ways to see where it turns, the best first; the last one always gives bounds."""
+        return [self]
 
     def bounds(self, a: Array, b: Array) -> Enclosed:
         """Place, speed and curve in the windows [a, b] of time: bounds of shape (n, rows, 3)."""
@@ -102,6 +108,35 @@ class Source:
         return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
 
 
+@dataclass(eq=False)
+class Belt(Source):
+    """The sliding velocity of a belt, which is place and speed; its rate is the curve, or itself where `steady`.
+
+    A belt that runs on as it does turns nowhere, however fast it is.
+    """
+
+    steady: bool = False
+
+    def ways(self) -> list[Source]:
+        """By the rate, or by the velocity alone where that is not known."""
+        return [self, replace(self, steady=True)]
+
+    def bounds(self, a: Array, b: Array) -> Enclosed:
+        """Place, speed and curve in the windows [a, b]; NotEnclosed where the rate has no bounds."""
+        return super().bounds(a, b) if self.steady else self.enclosed(a, b)
+
+    def enclosed(self, a: Array, b: Array) -> Enclosed:
+        """The same by interval arithmetic."""
+        if self.steady:
+            return super().enclosed(a, b)
+        q, v, p = self.at
+        state = [[Moving(np.full(len(a), x), np.full(len(a), x), 0.0) for x in y] for y in (q, v)]
+        found = enclose(self.f, Moving(a, b, 1.0), state[0], state[1], p, (self.rows,), rates=True)
+        if not np.any(np.isfinite(found.hi[..., 1] - found.lo[..., 1])):
+            raise NotEnclosed("bounds of its rate are not known")
+        return Enclosed(found.lo[..., [0, 0, 1]], found.hi[..., [0, 0, 1]], found.branched)
+
+
 def sources(scene: Scene) -> list[Source]:
     """What moves by itself in a scene, but for the functions of the ready ones."""
     found = []
@@ -118,12 +153,12 @@ def sources(scene: Scene) -> list[Source]:
 
 
 def belts(scene: Scene) -> list[Source]:
-    """The belts of a scene, told from their sliding velocity alone, which stands for place and curve."""
+    """The belts of a scene."""
     friction = None if scene.contacts is None else scene.contacts.friction
     if friction is None or not callable(friction.slip):
         return []
     state = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
-    return _own([Source("friction.slip", friction.slip, friction.slip, state, scene.n_c)])
+    return _own([Belt("friction.slip", friction.slip, friction.slip, state, scene.n_c)])
 
 
 def _own(found: list[Source]) -> list[Source]:

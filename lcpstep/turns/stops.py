@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.turns.refine import MUCH, Leaves, leaves
+from lcpstep.intervals import NotEnclosed
+from lcpstep.turns.refine import JUMP, MUCH, Leaves, leaves
 from lcpstep.turns.source import Source, belts, sources
 
 Array = NDArray[np.float64]
@@ -92,12 +93,11 @@ def _remembered(
     ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
     stops, stretches, words = [np.array(corners)], [np.zeros((0, 2))], []
     for key in keys:
-        source = key.source
-        found = leaves(source, ends, base)
+        source, found = _divided(key.source, ends, base)
         if found is None:  # all of it turns fast, as samples show as well
             continue
-        short = fast(found, SHORT * usual(found, base), ends)
-        stops.append(np.concatenate([found.a[short], found.b[short]]))
+        short = fast(found, SHORT * usual(found, base), ends, source.steady)
+        stops.append(np.concatenate([found.a[short], found.b[short], corners_between(source, found)]))
         stretches.append(np.column_stack([found.a[short], found.b[short]]))
         if source.sampled and np.any(short):
             shortest = np.min((found.b - found.a)[short])
@@ -112,6 +112,27 @@ def _remembered(
         _widened(np.concatenate(stretches)),
         "; ".join(words),
     )
+
+
+def corners_between(source: Source, found: Leaves) -> Array:
+    """Ends of leaves at which the curve jumps: elsewhere enclosures of neighbours have a number in common."""
+    if source.sampled:
+        return np.zeros(0)
+    size = JUMP * np.maximum(found.near[1:], found.near[:-1])[:, None]
+    apart = np.maximum(found.lo[1:] - found.hi[:-1], found.lo[:-1] - found.hi[1:])
+    return np.asarray(found.b[:-1][np.any(apart > size, axis=1)])
+
+
+def _divided(source: Source, ends: Array, base: float) -> tuple[Source, Leaves | None]:
+    """The leaves by the first way of the source that tells them."""
+    for way in source.ways():
+        try:
+            found = leaves(way, ends, base)
+        except NotEnclosed:
+            continue
+        if found is not None:
+            return way, found
+    return source, None
 
 
 def _widened(stretches: Array) -> Array:
@@ -147,10 +168,11 @@ def _apart(stops: Array, whole: float, corners: Array) -> Array:
     return np.asarray(stops[~near | np.isin(stops, corners)])
 
 
-def fast(found: Leaves, least: float, borders: Array) -> NDArray[np.bool_]:
+def fast(found: Leaves, least: float, borders: Array, steady: bool) -> NDArray[np.bool_]:
     """Which leaves are shorter than `least`, and not because a corner ends them, or hold a jump.
 
     Leaves side by side, between two borders, whose curve hardly changes over all of them need no look of their own.
+    steady : whether what they hardly change by is small beside the changes nearby, and not beside the curve
     """
     short = (found.b - found.a < least) | found.jumps
     starts = ~np.append(False, short[:-1]) | np.isin(found.a, borders)
@@ -158,6 +180,7 @@ def fast(found: Leaves, least: float, borders: Array) -> NDArray[np.bool_]:
     for k in range(1, int(group.max(initial=0)) + 1):
         own = group == k
         lo, hi = found.lo[own].min(axis=0), found.hi[own].max(axis=0)
-        if np.all(hi - lo <= EVEN * np.maximum(np.abs(lo), np.abs(hi))) and not np.any(found.jumps[own]):
+        size = np.max(found.near[own]) if steady else np.maximum(np.abs(lo), np.abs(hi))
+        if np.all(hi - lo <= EVEN * size) and not np.any(found.jumps[own]):
             short[own] = False
     return short

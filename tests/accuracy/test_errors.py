@@ -177,7 +177,7 @@ def test_a_part_of_a_fine_grid_tells_what_all_of_it_does(scene, h, method, monke
 points = st.lists(st.floats(-5, 5, allow_nan=False), min_size=2, max_size=12)
 
 
-def brute(a, b, n=400):
+def brute(a, b, n=200):
     """Hausdorff distance of two polylines from many points on each."""
 
     def dense(p):
@@ -195,9 +195,26 @@ def test_the_distance_of_polylines_is_that_of_their_points(a, b, random):
     a, b = (np.column_stack([sorted(random.choice(range(9)) for _ in v), v]) for v in (a, b))
     found, again = (hausdorff(Graph(*x.T), Graph(*y.T)) for x, y in ((a, b), (b, a)))
     assert found == pytest.approx(again, rel=1e-5, abs=1e-12)
-    spacing = 13.0 / 400
+    spacing = 13.0 / 200
     assert brute(a, b) - spacing <= found <= brute(a, b) + spacing
     assert hausdorff(Graph(*a.T), Graph(*a.T)) == 0.0
+
+
+@settings(max_examples=20, deadline=None)
+@given(points, points, st.floats(0.0, 20.0))
+def test_what_is_nearer_than_is_asked_is_not_looked_for(a, b, least):
+    a, b = (np.column_stack([np.arange(len(v)), v]) for v in (a, b))
+    whole = hausdorff(Graph(*a.T), Graph(*b.T))
+    assert hausdorff(Graph(*a.T), Graph(*b.T), least) == pytest.approx(max(whole, least), rel=2e-6, abs=1e-12)
+
+
+def test_the_distance_of_graphs_is_that_of_the_farthest_coordinate():
+    scene = scenes.elastic_gas(n=4)
+    apart = Difference(simulate(scene, Moreau(1e-2)), simulate(scene, Moreau(1e-3)))
+    t, v, v_ref = apart._graphs
+    each = [hausdorff(Graph(t, x), Graph(t, y)) for x, y in zip(v.T, v_ref.T, strict=True)]
+    assert apart.graph_distance == pytest.approx(max(each), rel=2e-6)
+    assert min(each) < 0.9 * max(each)
 
 
 def test_long_graphs_are_as_far_apart_as_one_of_them_was_moved():

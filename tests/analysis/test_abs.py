@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -181,6 +182,9 @@ def test_the_command_writes_what_it_prints(capsys, tmp_path):
     assert (tmp_path / "abs.png").stat().st_size > 1000
     assert main(arguments) == 2
     assert "exists already" in capsys.readouterr().err
+    quick = ["--grid", "0", "--points", "2", "--overwrite", "--no-picture", "--out", str(tmp_path)]
+    assert main(["abs", *quick]) == 0
+    assert re.findall(r"wrote (.*)", capsys.readouterr().out) == [str(tmp_path / "abs.json")]
     assert main(["abs", "--torque-min", "1700"]) == 2
     assert "torque_min: expected less" in capsys.readouterr().err
     assert main(["abs", "--road", "wet", "--grid", "0"]) == 0

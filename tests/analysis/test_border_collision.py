@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from lcpstep.analysis.border_collision import (
     NotContinuous,
     PiecewiseLinearMap,
-    canonical_form,
     classify,
     diagram,
 )
-from lcpstep.analysis.border_collision import normal_form as with_the_border_at_zero
+from lcpstep.analysis.normal_form import canonical_form
+from lcpstep.analysis.normal_form import normal_form as with_the_border_at_zero
 
 
 def one_dimensional(a, b):

@@ -197,3 +197,15 @@ def test_the_command_finds_the_corner_impact_and_keeps_what_is_there(capsys, tmp
     assert len(saved["diagrams"]["full"]) == 5
     assert main(call) == 2
     assert "exists already" in capsys.readouterr().err
+
+
+def test_the_command_names_the_files_it_wrote(capsys, tmp_path):
+    from argparse import Namespace
+
+    from lcpstep.cli import corner
+
+    corner._tell_files(Namespace(out=tmp_path, json=False), "corner.json", "corner.png")
+    assert capsys.readouterr().out == f"wrote {tmp_path / 'corner.json'}\nwrote {tmp_path / 'corner.png'}\n"
+    for quiet in (Namespace(out=None, json=False), Namespace(out=tmp_path, json=True)):
+        corner._tell_files(quiet, "corner.json")
+    assert capsys.readouterr().out == ""

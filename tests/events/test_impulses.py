@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import LinearSystem, scenes
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, simulate
 from lcpstep.trajectory import Kind
 from tests.models import GRAVITY, ball_on_table, bowl_scene
@@ -107,3 +107,21 @@ def test_a_point_in_a_bowl_balances_its_momentum():
     k = int(np.searchsorted(m.t, e.time))
     q, before = m.q[k], np.array([0.0, -e.time])
     np.testing.assert_allclose(m.v[k] - before, -q / np.hypot(*q) * e.impulse, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_dependent_contacts_at_rest_only_push(tolerance):
+    """What the end of a chattering takes on account is paid by those that bear the force, whoever had the impulse."""
+    G = [[0.272, 0.0948, 0.958], [-0.253, 0.725, 0.64], [-0.437, -0.152, 0.886], [0.318, -0.914, 0.252]]
+    m = np.array([0.532, 0.937, 0.749])
+    w, t = 1.98, 7.0
+    constant, cosine, sine = np.array([[0.0, 0.0, -7.35], [0.779, 3.2, 2.94], [1.45, 0.534, -0.432]])
+    scene = Scene(
+        system=LinearSystem(M=np.diag(m), force=Harmonic(constant=constant, cosine=cosine, sine=sine, omega=w)),
+        contacts=LinearContacts(G=G, restitution=0.042), q0=np.zeros(3), v0=np.zeros(3), t_span=(0.0, t),
+    )  # fmt: skip
+    motion = simulate(scene, EventDriven(tolerance, tolerance))
+    pushed = constant * t + cosine * np.sin(w * t) / w + sine * (1.0 - np.cos(w * t)) / w
+    assert np.min(motion.impulse) >= 0.0
+    borne = np.array(G).T @ motion.impulse.sum(axis=0)
+    assert pushed + borne == pytest.approx(m * motion.v[-1], abs=100.0 * tolerance)

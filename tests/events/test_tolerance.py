@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import scenes
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Status, simulate
 
 TIMES = 4001
@@ -37,3 +37,21 @@ def test_positions_at_any_time_are_within_ten_tolerances(scene):
         assert m.status is Status.DONE
         over = np.max(np.abs(m.at(times)[0] - truth) / (1.0 + np.abs(truth))) / tolerance
         assert over < 10.0, f"{over:.3g} tolerances of {tolerance:g}"
+
+
+@pytest.mark.parametrize("speed", [1e-3, 0.0, -1e-3])
+def test_a_start_within_the_tolerance_of_a_surface_keeps_its_height(speed):
+    """A contact that moves there is in a hop: v^2 = v0^2 + 2 |a| g0. One that is still there rests."""
+    gap, pressure, tolerance = 5e-7, 10.0, 1e-6
+    scene = Scene(
+        system=LinearSystem(M=np.eye(2), K=np.eye(2), force=[-pressure, 0.0]),
+        contacts=LinearContacts(G=[[1.0, 0.0]], restitution=1.0), q0=[gap, 1.0], v0=[speed, 0.0], t_span=(0.0, 0.01),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven(tolerance, tolerance))
+    if speed == 0.0:
+        assert not np.any(m.v[:, 0])
+        assert m.impulse.sum() == pytest.approx(pressure * 0.01, rel=1e-6)
+    else:
+        strikes = m.impacts.before
+        assert len(strikes) > 10
+        assert strikes == pytest.approx(-np.sqrt(speed**2 + 2.0 * pressure * gap), rel=1e-5)

@@ -123,4 +123,34 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4-tolerance",),
     ),
+    # A hop was left out, being low, whose impact threw another contact off by a hop that was not
+    "a low hop beside a contact that is hardly pressed": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(-0.312, 1.68), v0=(-0.669, -1.31), t_span=(0.0, 2.68944), h=0.00208,
+            G=((-0.0152, 1.63), (-0.415, 0.776)), offset=(-2.7166423999999996, -1.40726), restitution=(0.0, 0.043),
+            K=((210.0, -208.0), (-208.0, 437.0)), constant=(0.754, 0.326), cosine=(-0.0544, -0.385),
+            force_omega=0.338, family="square",
+        ),
+        ("event-driven-loose",),
+    ),
+    # Every part of a step between two impacts was allowed the error of the whole step
+    "forty elastic impacts in a step": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(0.105, 1.5), v0=(0.0, 0.0), t_span=(-1190.0, -1189.92952), h=0.00881,
+            G=((-1.0, 0.0), (0.0, -1.0)), offset=(0.09523633150776512, 1.5), restitution=1.0,
+            K=((84.4, -84.4), (-84.4, 84.4)), constant=(-0.224, 0.00767), force_omega=14.4, amplitude=(-0.00985, 0.0),
+            phase=(0.0, 0.215), omega=1.53, form=1, family="chain",
+        ),
+        ("located-tolerance",),
+    ),
+    # What a stop took on account fell to one of four dependent contacts, and the others bore its force afterwards
+    "a debt of a contact that bears no force any more": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.102)), q0=(0.0, 0.0), v0=(-0.308, -0.0525), t_span=(0.0, 18.3924), h=0.0156,
+            G=((1.0, -0.5), (1.0, -0.3), (1.0, -0.1), (1.0, 0.1), (1.0, 0.3), (1.0, 0.5)), offset=(0.0,) * 6,
+            restitution=(0.55, 1.0, 0.0, 0.44, 0.0, 0.8), constant=(-9.81, 0.0), cosine=(0.0294, 0.000737),
+            sine=(-0.478, -0.0563), force_omega=7.31, function=True, family="feet",
+        ),
+        ("event-driven-loose",),
+    ),
 }  # fmt: skip

@@ -286,9 +286,9 @@ def test_a_callback_that_writes_into_what_it_is_shown_is_refused(k):
 # --- scenes ready to use
 
 
-@pytest.mark.parametrize("name", scenes.CATALOGUE)
+@pytest.mark.parametrize("name", scenes.CATALOGUE | scenes.LARGE)
 def test_every_scene_of_the_catalogue_starts_from_its_defaults(name):
-    made = scenes.CATALOGUE[name].make()
+    made = scenes.SCENES[name].make()
     assert made.name == name
     assert np.all(made.gap(made.t_span[0], made.q0, made.v0)[0] >= 0.0)
 

@@ -41,7 +41,8 @@ def test_the_motion_on_an_even_belt_obeys_coulomb_and_is_continuous(belt, mu, x0
     t = np.linspace(0.01, 39.0, 700)
     obeys_coulomb(scene, mu, lambda s: belt + 0.0 * s, t)
     q, v = scene.exact(np.linspace(0.0, 40.0, 40001))
-    assert np.max(np.abs(np.diff(q[:, 0]))) <= 1e-3 * 1.1 * np.max(np.abs(v))
+    last_digit = np.spacing(np.max(np.abs(q)))  # of a mass that all but rests
+    assert np.max(np.abs(np.diff(q[:, 0]))) <= 1e-3 * 1.1 * np.max(np.abs(v)) + last_digit
     assert np.max(np.abs(np.diff(v[:, 0]))) <= 1e-3 * 1.1 * (np.max(np.abs(q[:, 0])) + mu)
 
 

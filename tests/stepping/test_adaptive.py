@@ -189,6 +189,34 @@ def test_what_rests_on_a_moving_table_stays_on_it_between_steps():
     assert np.max(np.abs(m.at(t)[0][:, 0] - 0.03 * np.sin(1.3 * t))) < 1e-9
 
 
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_many_impacts_in_a_step_have_one_share_of_the_tolerance_together(tolerance):
+    """A body that a spring presses to and fro against a wall, some two thousand elastic hops, beside a free one."""
+    system = LinearSystem(np.eye(2), K=84.0 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    contacts = LinearContacts([[-1.0, 0.0]], [0.1], 1.0)
+    scene = Scene(system, [0.1, 1.5], [-0.0018, 0.0], t_span=(0.0, 0.07), contacts=contacts)
+    at = np.linspace(0.0, 0.07, 30)
+    m, true = (
+        simulate(scene, Located(0.07, tolerance=tolerance), keep=at),
+        simulate(scene, EventDriven(), keep=at),
+    )
+    assert len(true.impacts) > 2000
+    assert np.max(np.abs(m.q - true.q)) <= 0.3 * tolerance
+
+
+@pytest.mark.parametrize(("h", "t_end"), [(0.24, 0.69), (0.24, 0.71), (0.24, 0.77), (0.1, 0.64)])
+def test_two_walls_met_at_once_along_a_groove_are_struck_together(h, t_end):
+    """A body slides to and fro in a pyramid whose four faces meet in one point, where its step may end anyhow."""
+    rows = [[0.272, 0.0948, 0.958], [-0.253, 0.725, 0.64], [-0.437, -0.152, 0.886], [0.318, -0.914, 0.252]]
+    force = Harmonic([0.0, 0.0, -7.35], [0.779, 3.2, 2.94], [1.45, 0.534, -0.432], omega=1.98)
+    system = LinearSystem(np.diag([0.532, 0.937, 0.749]), force=force)
+    contacts = LinearContacts(rows, restitution=0.042)
+    scene = Scene(system, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], t_span=(0.0, t_end), contacts=contacts)
+    at = np.linspace(0.0, t_end, 60)
+    m, true = simulate(scene, Located(h, 4, tolerance=1e-8), keep=at), simulate(scene, EventDriven(), keep=at)
+    assert np.max(np.abs(m.q - true.q)) <= 1e-9
+
+
 def test_bad_input_is_named():
     for bad in (0.0, -1.0, np.nan):
         with pytest.raises(ValueError, match="tolerance"):

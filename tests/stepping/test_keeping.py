@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import Moreau, simulate
+from lcpstep import Located, Moreau, simulate
+from lcpstep.stepping.pieces import run as pieces
 from lcpstep.trajectory import Kind, Status
 from tests.stepping.test_step import three_masses
 
@@ -181,3 +182,28 @@ def test_logs_longer_than_the_buffer_are_complete():
     assert np.all(log.kind == Kind.IMPACT)
     assert len(log) > 4096
     assert np.all(np.diff(log.time) > 0.0)
+
+
+def test_states_soon_after_the_start_cost_no_run_to_the_end(monkeypatch):
+    """Orders above 2 are run again for the states between kept ones, as far as these are asked for."""
+    run = simulate(scenes.impact_oscillator(t_end=100.0), Located(1e-3, order=4))
+    taken, take = [], pieces.LocatedRun.take
+    monkeypatch.setattr(pieces.LocatedRun, "take", lambda self, last: taken.append(last) or take(self, last))
+    early = run.at([0.0, 0.01])
+    first = len(taken)
+    whole = run.at([0.0, 0.01, 99.0])
+    assert len(taken) - first > 5 * first
+    np.testing.assert_array_equal(early[0], whole[0][:2])
+    np.testing.assert_array_equal(early[1], whole[1][:2])
+    assert run.at(np.array([]))[0].shape == (0, 1)
+
+
+def test_an_interrupt_while_states_are_found_again_is_one(monkeypatch):
+    run = simulate(scenes.bouncing_ball(t_end=1.0), Located(1e-3, order=4))
+
+    def interrupted(self, last):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pieces.LocatedRun, "take", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run.at([0.5])

@@ -316,6 +316,13 @@ def test_random_discs_and_blocks_go_with_the_event_driven_run(seed):
         assert fine < 1e-11 or fine < coarse / (0.6 * 4**order)
 
 
+@pytest.mark.parametrize(("seed", "order", "n"), [(5, 2, 1603), (37, 4, 400)])
+def test_feet_that_touch_down_far_slower_than_they_slide_find_their_impulses(seed, order, n):
+    """At the end of a chattering, the last approach being as slow as the rounding of the sliding velocity."""
+    run = simulate(block(seed), Located(1.0 / n, order=order), keep=[0.05, 1.0])
+    assert run.status is Status.DONE, run.message
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1000, 1150))
 def test_more_random_discs_and_blocks_go_with_the_event_driven_run(seed):

@@ -147,6 +147,20 @@ def test_joints_that_contradict_each_other_end_the_run_with_what_was_computed():
     assert np.isfinite(run.q).all()
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.3])
+def test_walls_that_close_on_a_body_end_the_run(mu):
+    def closing(t, q, v, p, out):
+        out[0, 0], out[0, 1], out[0, 2] = t - 1.0, 1.0, 0.0
+        out[1, 0], out[1, 1], out[1, 2] = t - 1.0, 1.0, 0.0
+
+    walls, along = sparse.csr_array([[1.0, 0.0], [-1.0, 0.0]]), sparse.csr_array([[0.0, 1.0]] * 2)
+    contacts = LinearContacts(walls, motion=closing, friction=Coulomb(mu, along))
+    system = LinearSystem(sparse.eye_array(2))
+    run = simulate(Scene(system, np.zeros(2), np.zeros(2), (0.0, 1.5), contacts), Moreau(1e-2))
+    assert run.status == Status.LCP_FAILED
+    assert run.t[-1] == pytest.approx(1.0, abs=0.02)
+
+
 def test_what_these_steps_do_not_know_takes_the_dense_ones():
     flat = scenes.hinged_chain(n=3, t_end=0.1)
     c = flat.contacts

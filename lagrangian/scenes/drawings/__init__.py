@@ -28,6 +28,7 @@ from lagrangian.scenes.drawings.mechanisms import (
     cam_outline,
     crank,
     leaning_rod,
+    links,
     pecking,
     pendulum,
     two_rods,
@@ -99,6 +100,9 @@ MAKERS: dict[str, Callable[[Any, Any], Drawing]] = {
     "slope-landing": lambda s, p: partial(on_slope, slope=p["slope"], size=0.2, reach=p["v0"] * s.t_span[1]),
     "slider-crank": lambda s, p: partial(crank, p=s.p),
     "woodpecker": lambda s, p: partial(pecking, height=0.05),
+    "hinged-chain": lambda s, p: partial(
+        links, left=-p["link"], right=(p["n"] + 1) * p["link"] + max(0.0, p["speed"]) * s.t_span[1]
+    ),
     "falling-rod": lambda s, p: partial(leaning_rod, half=s.p[0], reach=1.5),
     "cam-follower": lambda s, p: partial(
         cam, p=s.p, outline=cam_outline(s.p), relative=p["coordinates"] == "relative"

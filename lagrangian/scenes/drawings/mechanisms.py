@@ -24,6 +24,13 @@ def pendulum(t: float, q: Any, *, length: float) -> Shapes:
     ]
 
 
+def links(t: float, q: Any, *, left: float, right: float) -> Shapes:
+    """Links hinged to each other above a floor from left to right; q are the places of the hinges."""
+    places = [(float(x), float(y)) for x, y in np.reshape(q, (-1, 2))]
+    hinges = [Point(place, contacts=(k,)) for k, place in enumerate(places)]
+    return [Line([(left, 0.0), (right, 0.0)], fixed=True), Line(places), *hinges]
+
+
 def two_rods(
     t: float, q: Any, *, points: bool, wall: float | None = None, floor: float | None = None
 ) -> Shapes:

@@ -1,6 +1,7 @@
 from libc.math cimport cos, sin
 from lcpstep.arrays cimport doubles
 from lcpstep.events.flight.oscillator cimport Oscillator, fundamental
+from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.function cimport Function
 from lcpstep.kernels.model cimport Model
@@ -17,6 +18,7 @@ cdef class Flight(Clock):
     cdef readonly Model model
     cdef readonly Record record
     cdef readonly Tally tally
+    cdef Bracket bracket
     cdef Function frame, motion
     cdef readonly bint contact
     cdef readonly double delta, w2, f0, X, Y, Omega, fc, fs, G, offset, r, response

@@ -29,7 +29,6 @@ LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their d
 SETTLED = 1e-7  # change of the length of the longest hop that needs no further pass
 PASSES = 8  # of the search for the end of a short hop; two are the rule
 LONGER = 3.0  # how much longer than its guess a short hop may last
-HALVINGS = 60  # of a stretch, in search of the first root of the gap
 N1, N2, N3 = 0.1127016653792583, 0.5, 0.8872983346207417  # nodes of Gauss on [0, 1]
 
 
@@ -92,16 +91,13 @@ def along(s: Flight, level: int, h: float, sigma: float) -> float:
 
 def turn(s: Flight, level: int, h: float, a: float, b: float) -> float:
     """Where a monotone gap, velocity or acceleration changes its sign between a and b; b if it does not."""
-    rising = along(s, level, h, a) > 0.0
-    if rising == (along(s, level, h, b) > 0.0):
+    f_a, f_b = along(s, level, h, a), along(s, level, h, b)
+    if (f_a > 0.0) == (f_b > 0.0):
         return b
-    for _ in range(HALVINGS):
-        middle = 0.5 * (a + b)
-        if (along(s, level, h, middle) > 0.0) == rising:
-            a = middle
-        else:
-            b = middle
-    return b
+    s.bracket.span(a, f_a, b, f_b)
+    while s.bracket.seek(RESOLUTION * s.bracket.x):
+        s.bracket.chord(along(s, level, h, s.bracket.x))
+    return s.bracket.x
 
 
 def first_fall(s: Flight, h: float) -> float:

@@ -1,7 +1,7 @@
 from lcpstep.events.flight.motion cimport Flight, on_obstacle
 from lcpstep.pointers cimport abs
 
-cdef Py_ssize_t MAX_ITERATIONS, PROBES, NODES
+cdef Py_ssize_t PROBES, NODES
 cdef double NONE, RESOLUTION
 cdef double[8] NODE
 cdef double[8] WEIGHT

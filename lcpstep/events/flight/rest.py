@@ -16,7 +16,6 @@ if not cython.compiled:
     from lcpstep.events.flight.motion import Flight, on_obstacle
     from lcpstep.pointers import abs
 
-MAX_ITERATIONS = 100
 PROBES = 4  # samples of alpha per interval while the contact is closed
 NODES = 8  # and weights of Gauss on [0, 1], for the impulse of the contact force
 if not cython.compiled:
@@ -68,23 +67,11 @@ def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
 
 
 def alpha_root(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
-    """Where alpha turns positive between a and b; the secant method safeguarded by bisection."""
-    t, f, old, f_old = b, f_b, a, f_a
-    before = b - a
-    for _ in range(MAX_ITERATIONS):
-        new = t - f * (t - old) / (f - f_old) if f != f_old else a
-        if not a < new < b or abs(new - t) > 0.5 * abs(before):
-            new = 0.5 * (a + b)
-        before = new - t
-        old, f_old, t = t, f, new
-        f = alpha_at(s, t)
-        if f > 0.0:
-            b = t
-        else:
-            a = t
-        if f == 0.0 or abs(before) <= RESOLUTION * abs(t) or b - a <= RESOLUTION * abs(t):
-            break
-    return t
+    """Where alpha turns positive between a and b."""
+    s.bracket.span(a, f_a, b, f_b)
+    while s.bracket.seek(RESOLUTION * abs(s.bracket.x)):
+        s.bracket.chord(alpha_at(s, s.bracket.x))
+    return s.bracket.x
 
 
 def summit(s: Flight, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:

@@ -1,8 +1,9 @@
 cimport cython
 from lcpstep.events.flight.motion cimport Flight, free
-from lcpstep.pointers cimport abs, max, min
+from lcpstep.kernels.bracket cimport Bracket
+from lcpstep.pointers cimport abs
 
-cdef Py_ssize_t MAX_ITERATIONS, GUESSES, POLISHES
+cdef Py_ssize_t GUESSES, POLISHES
 cdef double NONE, RESOLUTION, STRAIGHT, COARSE, POLISH, POLISHED
 
 @cython.locals(falling=bint)
@@ -13,8 +14,8 @@ cdef double first_in_half(
 cdef double gap_root(
     Flight s, double a, double g_a, double u_a, double b, double g_b, double u_b
 ) noexcept nogil
-@cython.locals(near=bint)
 cdef double root(
     Flight s, Py_ssize_t level, double a, double f_a, double b, double f_b, double guess
 ) noexcept nogil
+cdef bint approach(Bracket r, double g, double u, double alpha) noexcept nogil
 cdef (double, double, double) polish(Flight s, double tau) noexcept nogil

@@ -3,8 +3,7 @@
 On an interval short enough for the gap acceleration to change its sign at most once, that sign change splits the gap
 velocity into monotone parts, whose sign changes split the gap into monotone parts. So the first root is found even
 where the gap dips below zero and returns within the interval (grazing). For flights that stay hardly above the
-obstacle see `near`. Source of the polishing: Halley's and Newton's methods safeguarded by bisection, W. Press et al.,
-Numerical Recipes, section 9.4.
+obstacle see `near`.
 """
 
 from __future__ import annotations
@@ -15,9 +14,9 @@ from lcpstep.events.flight.contact import NONE, RESOLUTION
 
 if not cython.compiled:
     from lcpstep.events.flight.motion import Flight, free
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.kernels.bracket import Bracket
+    from lcpstep.pointers import abs
 
-MAX_ITERATIONS = 100
 STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it
 GUESSES = 3  # steps of Newton's on the cubic of a first guess
 COARSE = 1e-9  # of the bracket: where a gap turns it changes by the square of this
@@ -71,48 +70,34 @@ def gap_root(s: Flight, a: float, g_a: float, u_a: float, b: float, g_b: float, 
 def root(s: Flight, level: int, a: float, f_a: float, b: float, f_b: float, guess: float) -> float:
     """Root between a and b of the gap (level 0), its velocity (1) or acceleration (2); f_a f_b <= 0.
 
-    Halley's method for the gap and Newton's for the others, safeguarded by bisection, from a guess that may be
-    anything. The gap's last step is not evaluated any more once its own error, (|curvature| step / |slope|)^2 step,
-    is far below what a step of Newton's at its end takes out (`polish`), or below rounding. Source: W. Press et
-    al., Numerical Recipes, section 9.4.
+    Halley's steps for the gap, Newton's and chords for the others, from a guess that may be anything. The gap's last
+    step is not evaluated any more once its own error, (|curvature| step / |slope|)^2 step, is far below what a step
+    of Newton's at its end takes out (`polish`), or below rounding.
     """
-    if f_a == 0.0:
-        return a
-    tau, f = a, f_a
-    if abs(f_b) < abs(f_a):
-        tau, f = b, f_b
-    new = guess if a < guess < b else tau - f * (b - a) / (f_b - f_a)
-    width = before = b - a
-    for _ in range(MAX_ITERATIONS):
-        if f == 0.0:
-            return tau
-        if not (a < new < b) or abs(new - tau) > 0.5 * abs(before):
-            new = 0.5 * (a + b)
-        before = new - tau
-        old, f_old, tau = tau, f, new
-        g, u, alpha = free(s, tau)
-        f, slope, curvature = g, u, alpha
-        if level == 1:
-            f, slope, curvature = u, alpha, 0.0
-        elif level == 2:
-            f, slope, curvature = alpha, (alpha - f_old) / (tau - old), 0.0
-        if (f > 0.0) == (f_a > 0.0):
-            a, f_a = tau, f
-        else:
-            b = tau
-        step = -f / slope if slope != 0.0 else before
-        bent = abs(curvature * step)
-        # Near the end at which f has not turned yet it may still run away from its root
-        near = level == 0 and bent <= STRAIGHT * abs(slope) and abs(step) <= STRAIGHT * width
-        near = near and slope * f_a < 0.0
-        if 0.0 < bent <= abs(slope):
-            step -= 0.5 * curvature * step * step / slope
-        small = RESOLUTION * abs(tau) if level == 0 else COARSE * width
-        if near or abs(before) <= small or b - a <= small:
-            # At the end of a bracket the root may lie outside by rounding, and by no more
-            return tau + step if abs(step) <= 4.0 * RESOLUTION * abs(tau) else min(max(tau + step, a), b)
-        new = tau + step
-    return tau
+    width = b - a
+    s.bracket.span(a, f_a, b, f_b)
+    if a < guess < b:
+        s.bracket.step = guess - s.bracket.x
+    while s.bracket.seek(RESOLUTION * abs(s.bracket.x) if level == 0 else COARSE * width):
+        g, u, alpha = free(s, s.bracket.x)
+        if level == 2:
+            s.bracket.chord(alpha)
+        elif level == 1:
+            s.bracket.newton(u, alpha)
+        elif approach(s.bracket, g, u, alpha) and s.bracket.arrive(STRAIGHT * width):
+            break
+    return s.bracket.x
+
+
+def approach(r: Bracket, g: float, u: float, alpha: float) -> bool:
+    """Take Halley's step for the gap; whether the gap is as good as straight over it."""
+    step = -g / u if u != 0.0 else 0.0
+    bent = abs(alpha * step)
+    if 0.0 < bent <= abs(u):
+        r.take(g, step - 0.5 * alpha * step * step / u)
+    else:
+        r.take(g, step)
+    return bent <= STRAIGHT * abs(u)
 
 
 def polish(s: Flight, tau: float) -> tuple[float, float, float]:

@@ -54,12 +54,12 @@ def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
 
 def measure_biases(s: Rubbing, t: float, y: Doubles) -> None:
     """Accelerations of the rows that the state alone makes."""
-    n_j, k = s.n_j, s.n_j + s.n_c
+    n_j, k, low, high = s.n_j, s.n_j + s.n_c, s.clock.low, s.clock.high
     q, v, side = y, after(y, s.n_q), s.clock.inside(t)
     if n_j > 0:
-        bias(s.joints, side, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
-    bias(s.contacts, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
-    bias(s.tangents, side, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
+        bias(s.joints, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
+    bias(s.contacts, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
+    bias(s.tangents, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
 
 
 def renew_mass(s: Rubbing, t: float, y: Doubles) -> bool:

@@ -31,19 +31,17 @@ def start(
     atol: float,
     *more: Any,
     yields: bool = False,
-    belts: bool = False,
 ) -> Any:
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
 
     yields : whether sliding that jams ends in an impact
-    belts : whether the motion also stops to look where a belt turns fast
     """
     contacts, joints, tangents = models(scene)
     given: Any = scene.contacts
     friction = given and given.friction
     tangential = np.zeros(scene.n_c) if friction is None else friction.tangential(given.restitution)
     scan = scan_interval(scene, contacts, 0.0)
-    clock = Clock(scene.t_span, turns(scene, belts).stops, scene.period)
+    clock = Clock(scene.t_span, turns(scene, with_belts=True).stops, scene.period)
     s = kind(
         contacts, joints, tangents, coefficients(scene), tangential,
         friction is not None and friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol,
@@ -67,7 +65,7 @@ class FrictionRun(running.EventRun):
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
-        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact", belts=True)
+        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
 
     @property
     def now(self) -> float:

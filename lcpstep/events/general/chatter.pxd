@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows, measure_again
-from lcpstep.events.general.held cimport hold_contacts, right_hand_side, solve_held
+from lcpstep.events.general.held cimport constrain, hold_contacts, is_held, right_hand_side, solve_held
 from lcpstep.events.general.impact cimport apply, speed_noise
 from lcpstep.events.general.keep cimport log
 from lcpstep.events.general.motion cimport gap_tolerance, speed_tolerance
@@ -9,7 +9,7 @@ from lcpstep.events.general.state cimport Mechanism, NOISE
 from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport product
+from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after, max, min, nan
 
 cdef Py_ssize_t ACCUMULATION
@@ -18,8 +18,11 @@ cdef Py_ssize_t ACCUMULATION
 cdef bint close_chatter(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef void find_stop(Mechanism s) noexcept nogil
 cdef void stop(Mechanism s) noexcept nogil
+@cython.locals(low=bint)
+cdef bint throws_off(Mechanism s) noexcept nogil
 cdef bint drives_others(Mechanism s) noexcept nogil
 cdef void owe(Mechanism s, double until) noexcept nogil
+cdef void hand_on(Mechanism s) noexcept nogil
 @cython.locals(low=bint, slow=bint)
 cdef double chatter_left(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(held=bint, passed_on=bint)

@@ -2,11 +2,11 @@
 
 Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
 higher than the tolerance, and when nothing else happens before T to what the contact is connected with: closed, it
-answers another impact in another way than in flight. Closing takes the speed u, by an impulse that the contact force
-up to T pays for. Hops as slow as the tolerance are left out too, elastic ones as well, and impacts of contacts that
-nothing presses (inelastic collapse) when they have both a speed and a way below it. Source: A. Nordmark, P.
-Piiroinen, Simulation and stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58
-(2009).
+answers another impact in another way than in flight, and its own may throw a contact off that rests. Closing takes
+the speed u, by an impulse that the contact force up to T pays for. Hops as slow as the tolerance are left out too,
+elastic ones as well, and impacts of contacts that nothing presses (inelastic collapse) when they have both a speed
+and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with
+complete chattering, Nonlinear Dynamics 58 (2009).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from lcpstep.events.general.ends import ACCUMULATION
 
 if not cython.compiled:
     from lcpstep.events.general.equations import bias_of, biases, constraint_rows, measure_again
-    from lcpstep.events.general.held import hold_contacts, right_hand_side, solve_held
+    from lcpstep.events.general.held import constrain, hold_contacts, is_held, right_hand_side, solve_held
     from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.keep import log
     from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
@@ -26,7 +26,7 @@ if not cython.compiled:
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import product
+    from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, after, max, min, nan
 
 
@@ -47,11 +47,13 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
             s.contact.rest[c] = 0.0
         if s.contact.rest[c] >= 0.0:
             s.contact.closed[c] = 1
-    find_stop(s)
-    if drives_others(s):
+    if throws_off(s) or drives_others(s):
         for c in range(n_c):
             if s.contact.rest[c] >= 0.0:
                 s.contact.closed[c] = 0
+        hold_contacts(s)
+        copy(s.trial, s.a_free, s.n_q)
+        constrain(s, s.trial)
         return False
     longest = 0.0
     for c in range(n_c):
@@ -85,6 +87,31 @@ def stop(s: Mechanism) -> None:
             s.contact.speed[c] = 0.0
 
 
+def throws_off(s: Mechanism) -> bool:
+    """Whether the impacts left out would throw a closed contact off, by hops that the tolerance does not leave out.
+
+    Held, it would have to pull with the impulse x that `find_stop`, which turns the impacts' effect round, has it
+    push with. Let go, it leaves at w = x / d, d its entry of D^-1, and the force that presses it brings it back with
+    lambda / d: no higher than w^2 d / (2 lambda).
+    """
+    n_j = s.n_j
+    hold_contacts(s)
+    copy(s.trial, s.a_free, s.n_q)
+    constrain(s, s.trial)
+    find_stop(s)
+    for m in range(s.n_held):
+        c = s.row[m] - n_j
+        if c >= 0 and s.contact.rest[c] < 0.0 and s.change[m] > 0.0:
+            x, force, unit = s.change[m], max(s.held[m], 0.0), s.trial
+            clear(unit, s.n_held)
+            unit[m] = 1.0
+            solve_held(s, s.n_held, unit)
+            low = x * x <= 2.0 * force * unit[m] * gap_tolerance(s, c)
+            if not low and x > speed_noise(s, c) * unit[m]:
+                return True
+    return False
+
+
 def drives_others(s: Mechanism) -> bool:
     """Whether the impulses of `find_stop` would drive an open contact that touches onto its surface."""
     for c in range(s.n_c):
@@ -103,6 +130,31 @@ def owe(s: Mechanism, until: float) -> None:
         if s.contact.closed[c] == 1 and s.contact.impulse[c] < 0.0:
             s.contact.owed[c] = s.contact.owed[c] + s.contact.impulse[c]
             s.contact.impulse[c], s.contact.owed_until[c] = 0.0, until
+
+
+def hand_on(s: Mechanism) -> None:
+    """What a closed contact still owes goes to the rows held, if it is none: R_c = sum y_m R_m, they bear its force.
+
+    Where y_m < 0 row m has a claim instead, at once. The rows held must be those of the forces just found.
+    """
+    n_j = s.n_j
+    for c in range(s.n_c):
+        p = s.contact.impulse[c] + s.contact.owed[c]
+        if s.contact.owed[c] < 0.0 and p < 0.0 and s.contact.closed[c] == 1 and not is_held(s, n_j + c):
+            for m in range(s.n_held):
+                s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
+            solve_held(s, s.n_held, s.change)
+            for m in range(s.n_held):
+                share, i = p * s.change[m], s.row[m]
+                d = i - n_j
+                if i < n_j:
+                    s.joint.impulse[i] = s.joint.impulse[i] + share
+                elif share > 0.0:
+                    s.contact.impulse[d] = s.contact.impulse[d] + share
+                else:
+                    s.contact.owed[d] = s.contact.owed[d] + share
+                    s.contact.owed_until[d] = max(s.contact.owed_until[d], s.contact.owed_until[c])
+            s.contact.impulse[c] = s.contact.owed[c] = 0.0
 
 
 def chatter_left(s: Mechanism, c: int) -> float:

@@ -8,7 +8,7 @@ from lcpstep.kernels.dynamics cimport gap_rounding, gaps
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, max
 
-cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER, MAX_ITERATIONS
+cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER
 cdef double NONE, NEVER, UNSEEN
 
 cdef double first_event(Mechanism s, double a, double b) noexcept nogil

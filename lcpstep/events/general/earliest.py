@@ -3,8 +3,7 @@
 Gaps are looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to
 change its sign at most once (`turns_unseen` says which is not), that change splits the gap velocity into monotone
 parts, whose changes of sign split the gap into monotone parts; so a gap that dips below zero and returns is found. A
-closed contact opens where its multiplier turns negative. Source of the polishing: Newton's method safeguarded by
-bisection, W. Press et al., Numerical Recipes, section 9.4.
+closed contact opens where its multiplier turns negative.
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ if not cython.compiled:
 MEETS, LANDS, OPENS, NEVER_LEFT = range(4)  # what a contact does
 GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
 NONE, NEVER = -1.0, -2.0  # in place of a root's time: not known; there is none
-MAX_ITERATIONS = 100
 UNSEEN = 0.02  # of a gap: what its turns may hide
 
 
@@ -131,29 +129,15 @@ def turns_unseen(s: Mechanism, d: float) -> bool:
 
 def root(s: Mechanism, level: int, c: int, a: float, f_a: float, b: float, f_b: float) -> float:
     """Root between a and b of the gap of contact c, or of what `level` says; f_a f_b <= 0."""
-    if f_a == 0.0:
-        return a
-    x, f_x = (b, f_b) if abs(f_b) < abs(f_a) else (a, f_a)
-    slope = (f_b - f_a) / (b - a)
-    before = b - a
-    for _ in range(MAX_ITERATIONS):
-        if f_x == 0.0:
-            return x
-        x_new = x - f_x / slope if slope != 0.0 else a
-        if not (a < x_new < b) or abs(x_new - x) > 0.5 * abs(before):
-            x_new = 0.5 * (a + b)
-        before = x_new - x
-        x_old, f_old, x = x, f_x, x_new
-        observe(s, x)
-        f_x = s.contact.gap[level * s.n_c + c]  # all in one piece
-        if (f_x > 0.0) == (f_a > 0.0):
-            a, f_a = x, f_x
+    s.bracket.span(a, f_a, b, f_b)
+    while s.bracket.seek(2.0 * RESOLUTION * abs(s.bracket.x)):
+        observe(s, s.bracket.x)
+        f = s.contact.gap[level * s.n_c + c]  # all in one piece
+        if level < CURVE:
+            s.bracket.newton(f, s.contact.gap[(level + 1) * s.n_c + c])
         else:
-            b = x
-        slope = s.contact.gap[(level + 1) * s.n_c + c] if level < CURVE else (f_x - f_old) / (x - x_old)
-        if abs(before) <= 2.0 * RESOLUTION * abs(x) or b - a <= 2.0 * RESOLUTION * abs(x):
-            return x
-    return x
+            s.bracket.chord(f)
+    return s.bracket.x
 
 
 def observe(s: Mechanism, tau: float) -> bool:

@@ -80,7 +80,7 @@ def constraint_rows(s: Mechanism, t: float, q: Doubles, v: Doubles) -> None:
 def biases(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:
     """(dG/dt) v + d(rate)/dt along the motion, for all rows of a model; G is overwritten."""
     if now.n > 0:
-        bias(model, t, q, v, s.work, now.G, now.shifted, now.bias)
+        bias(model, t, s.low, s.high, q, v, s.work, now.G, now.shifted, now.bias)
 
 
 def bias_of(s: Mechanism, i: int) -> float:

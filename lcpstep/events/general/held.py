@@ -173,9 +173,9 @@ def project(s: Mechanism, t: float) -> None:
 
 
 def is_held(s: Mechanism, i: int) -> bool:
-    """Whether joint i is among the rows held."""
+    """Whether row i is held."""
     found = False
-    for m in range(s.n_held_joints):
+    for m in range(s.n_held):
         found = found or s.row[m] == i
     return found
 

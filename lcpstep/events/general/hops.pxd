@@ -9,7 +9,6 @@ from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.vectors cimport largest
 from lcpstep.pointers cimport abs, inf, max, min, nan
 
-cdef Py_ssize_t MAX_ITERATIONS
 cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, STEADY
 
 cdef void find_landings(Mechanism s, double h) noexcept nogil
@@ -19,9 +18,7 @@ cdef double shortest_hop(Mechanism s) noexcept nogil
 cdef double hop_time(Mechanism s, Py_ssize_t c, double g, double u, double alpha) noexcept nogil
 cdef bint is_low(Mechanism s, Py_ssize_t c, double h) noexcept nogil
 @cython.locals(f=double, u=double, exact=bint)
-cdef double short_hop(Mechanism s, Py_ssize_t c, double guess, double longest) noexcept nogil
-@cython.locals(f=double, u=double, _=bint)
-cdef double low_hop(Mechanism s, Py_ssize_t c, double guess, double longest) noexcept nogil
+cdef double hop_end(Mechanism s, Py_ssize_t c, double guess, double longest) noexcept nogil
 @cython.locals(exact=bint)
 cdef (double, double, bint) follow(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 cdef double speed_at(Mechanism s, Py_ssize_t c, double tau) noexcept nogil

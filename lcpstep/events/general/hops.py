@@ -37,7 +37,6 @@ LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
 STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
-MAX_ITERATIONS = 60
 
 
 def find_landings(s: Mechanism, h: float) -> None:
@@ -53,7 +52,7 @@ def landing(s: Mechanism, c: int, h: float) -> float:
     if not low and not guess < h:
         return NONE
     longest = min(LONGER * guess, h)
-    tau = low_hop(s, c, guess, longest) if s.start.gap[c] > 0.0 else short_hop(s, c, guess, longest)
+    tau = hop_end(s, c, guess, longest)
     return NEVER if low and tau == NONE else tau
 
 
@@ -82,50 +81,25 @@ def is_low(s: Mechanism, c: int, h: float) -> bool:
     return highest <= LOW * largest(s.q0, 0.0, s.n_q)
 
 
-def short_hop(s: Mechanism, c: int, guess: float, longest: float) -> float:
-    """End of a hop that left the surface at the base, or NONE if it is longer than `longest`: (g - g0) / tau = 0.
+def hop_end(s: Mechanism, c: int, guess: float, longest: float) -> float:
+    """End of a hop that begins with a gap g0 >= 0 at the base, or NONE if it is longer than `longest`: g / tau = 0.
 
-    NONE as well where the acceleration changes too much for the quadrature: such hops are seen in the gap itself.
+    NONE as well where g0 is zero and the acceleration changes too much for the quadrature: such hops are seen in the
+    gap itself.
     """
-    a, b = 0.0, longest
-    f, u, exact = follow(s, c, b)
-    if f > 0.0:
+    g0 = s.start.gap[c]
+    f, u, exact = follow(s, c, longest)
+    if f + g0 / longest > 0.0:
         return NONE
-    x = min(guess, b)
-    for _ in range(MAX_ITERATIONS):
+    s.bracket.begin(0.0, longest, True, min(guess, longest))
+    while s.bracket.seek(2.0 * RESOLUTION * s.bracket.x):
+        x = s.bracket.x
         f, u, exact = follow(s, c, x)
-        if not exact:
+        if g0 == 0.0 and not exact:
             return NONE
-        if f > 0.0:
-            a = x
-        else:
-            b = x
-        slope = (u - f) / x  # of g / tau
-        x_new = x - f / slope if slope != 0.0 else a
-        if not (a <= x_new <= b):
-            x_new = 0.5 * (a + b)
-        if abs(x_new - x) <= 2.0 * RESOLUTION * x:
-            return x_new
-        x = x_new
-    return x
-
-
-def low_hop(s: Mechanism, c: int, guess: float, longest: float) -> float:
-    """End of a hop that begins with a gap g0 at the base, or NONE if it is longer: Newton's method for g / tau."""
-    x, g0 = guess, s.start.gap[c]
-    for _ in range(MAX_ITERATIONS):
-        if not 0.0 < x <= longest:
-            return NONE
-        f, u, _ = follow(s, c, x)
         f += g0 / x
-        slope = (u - f) / x
-        if not slope < 0.0:
-            return NONE
-        change = -f / slope
-        x = max(x + change, 0.1 * x)
-        if abs(change) <= 2.0 * RESOLUTION * x:
-            break
-    return x
+        s.bracket.newton(f, (u - f) / x)
+    return s.bracket.x
 
 
 def follow(s: Mechanism, c: int, tau: float) -> tuple[float, float, bool]:

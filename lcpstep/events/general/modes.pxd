@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.general.balance cimport balanced_forces
-from lcpstep.events.general.chatter cimport close_chatter
+from lcpstep.events.general.chatter cimport close_chatter, hand_on
 from lcpstep.events.general.cycle cimport FOR_EVER, look_back, recurrence, sum_up
 from lcpstep.events.general.equations cimport measure_again
 from lcpstep.events.general.forces cimport contact_forces

@@ -13,7 +13,7 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENT
 
 if not cython.compiled:
     from lcpstep.events.general.balance import balanced_forces
-    from lcpstep.events.general.chatter import close_chatter
+    from lcpstep.events.general.chatter import close_chatter, hand_on
     from lcpstep.events.general.cycle import FOR_EVER, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
     from lcpstep.events.general.forces import contact_forces
@@ -177,6 +177,7 @@ def settle(s: Mechanism, record: Record, tally: Tally) -> int:
     if tell_modes(s, record, tally, t) and s.constant:
         polish(s)
     rebase(s, t)
+    hand_on(s)
     keep_event(s, record, t)
     return DONE
 
@@ -206,6 +207,7 @@ def obey(s: Mechanism, record: Record, tally: Tally) -> None:
             s.contact.gap[c] = s.contact.speed[c] = 0.0
             s.contact.curve[c] = max(s.contact.curve[c], 0.0)
     tell_modes(s, record, tally, t)
+    hand_on(s)
     keep_event(s, record, t)
 
 

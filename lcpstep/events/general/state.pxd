@@ -1,5 +1,6 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock, RESOLUTION
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.rungekutta cimport RungeKutta
@@ -63,6 +64,7 @@ cdef class Mechanism(Clock):
     cdef Rows joint
     cdef Seen start, left, right
     cdef Workspace lcp
+    cdef Bracket bracket
     cdef readonly bint constant
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit
     cdef readonly double scan, t_end, rtol, atol

@@ -10,6 +10,7 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.state import Motion
+    from lcpstep.kernels.bracket import Bracket
     from lcpstep.kernels.clock import RESOLUTION, Clock
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
@@ -145,6 +146,7 @@ class Mechanism(Clock):
     kept              rows held, while others are tried
     doubt             relative error of the diagonal of L, in units of rounding
     change            work space by row
+    bracket           in which a root is sought
     W                 matrix of the problem of the n_members members of it
     culprit           joint that contradicts others, or -1
 
@@ -210,6 +212,7 @@ class Mechanism(Clock):
         self.row = indices(self.lists)
         self.kept = indices_after(self.row, r)
         self.contact, self.joint = Contacts(n_c), Rows(n_j)
+        self.bracket = Bracket()
         self.start, self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Seen(n_c), Workspace(n_c)
         self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
         self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)

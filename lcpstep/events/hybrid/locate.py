@@ -121,13 +121,9 @@ def locate(s: Motion, k: int, h: float, at: float, slope: float) -> float:
 def bisect(s: Motion, k: int, h: float, at: float) -> float:
     """The same for a guard that jumps, which secants cannot follow: bisection on the dense output."""
     low, high = max(at - 1.0 / PARTS, 0.0), min(at + 1.0 / PARTS, 1.0)
-    while high - low > RESOLUTION:
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        s.at(middle, s.y_new)
-        if guard(s.m, s.mode, k, s.now + middle * h, s.y_new) < s.event_at:
-            low = middle
-        else:
-            high = middle
-    return high * h
+    s.scan.bracket.begin(low, high, False, 0.5 * (low + high))
+    while s.scan.bracket.seek(RESOLUTION):
+        s.at(s.scan.bracket.x, s.y_new)
+        g = guard(s.m, s.mode, k, s.now + s.scan.bracket.x * h, s.y_new)
+        s.scan.bracket.take(-1.0 if g < s.event_at else 1.0, 0.0)
+    return s.scan.bracket.b * h

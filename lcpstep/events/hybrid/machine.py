@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.hybrid import BOTH, Guard, HybridScene, HybridSystem
+from lagrangian.hybrid import HybridScene, HybridSystem
+from lagrangian.modes import BOTH, Guard
 from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.events.hybrid.field import Machine

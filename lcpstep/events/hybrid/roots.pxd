@@ -1,16 +1,18 @@
 cimport cython
 from lcpstep.arrays cimport doubles
+from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, after, max
 
-cdef Py_ssize_t DEGREE, DEPTH, CHECKS, MAX_ITERATIONS
+cdef Py_ssize_t DEGREE, DEPTH, CHECKS
 cdef double NONE
 
 
 @cython.final
 cdef class Scan:
     cdef object arrays
+    cdef Bracket bracket
     cdef double* points
     cdef double* to_bernstein
     cdef double* at_checks
@@ -26,4 +28,4 @@ cdef double convert(Scan scan) noexcept nogil
 cdef (double, double, double) taylor(double* d, double s, double* work) noexcept nogil
 @cython.locals(changes=Py_ssize_t)
 cdef double first_rise(Scan scan, double sign, double level, double start) noexcept nogil
-cdef double single_root(double* d, double* work) noexcept nogil
+cdef double single_root(Bracket r, double* d, double* work) noexcept nogil

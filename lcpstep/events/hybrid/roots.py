@@ -17,6 +17,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
+    from lcpstep.kernels.bracket import Bracket
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, after, max
@@ -25,7 +26,6 @@ DEGREE = 9
 DEPTH = 42  # halvings at most
 NONE = -1.0  # in place of a root
 CHECKS = 2  # further samples, which say whether the polynomial is the guard
-MAX_ITERATIONS = 60
 
 
 def bernstein(s: Any) -> Any:
@@ -45,11 +45,13 @@ class Scan:
     points, sample : (N + CHECKS,)   where the guard is sampled, in [0, 1]; its values there
     to_bernstein : (N, N);  at_checks : (CHECKS, N)
     c, half : (N,)   Bernstein coefficients of the guard; work space
+    bracket          in which a single root is sought
     stack : (DEPTH + 3, N);  low, high : (DEPTH + 3,)   polynomials on parts of the interval, and their ends
     """
 
     def __init__(self) -> None:
         n = DEGREE + 1
+        self.bracket = Bracket()
         self.arrays = [
             np.concatenate([NODES, AT_CHECKS]),
             np.ascontiguousarray(FROM_NODES),
@@ -113,7 +115,7 @@ def first_rise(scan: Scan, sign: float, level: float, start: float) -> float:
         if changes == 0 or (changes == 1 and d[0] >= 0.0):
             continue
         if changes == 1:
-            s = a + (b - a) * single_root(d, scan.half)
+            s = a + (b - a) * single_root(scan.bracket, d, scan.half)
             if s > start:
                 return s
             continue
@@ -133,20 +135,10 @@ def first_rise(scan: Scan, sign: float, level: float, start: float) -> float:
     return NONE
 
 
-def single_root(d: Doubles, work: Doubles) -> float:
-    """The root in [0, 1] of a polynomial that rises through zero once: Newton's method within a bracket."""
-    a, b = 0.0, 1.0
-    s = d[0] / (d[0] - d[DEGREE])
-    for _ in range(MAX_ITERATIONS):
-        f, slope, _curvature = taylor(d, s, work)
-        if f < 0.0:
-            a = s
-        else:
-            b = s
-        new = s - f / slope if slope > 0.0 else a
-        if not a < new < b:
-            new = 0.5 * (a + b)
-        if abs(new - s) <= RESOLUTION or b - a <= RESOLUTION:
-            return new
-        s = new
-    return s
+def single_root(r: Bracket, d: Doubles, work: Doubles) -> float:
+    """The root in [0, 1] of a polynomial that rises through zero once."""
+    r.begin(0.0, 1.0, False, d[0] / (d[0] - d[DEGREE]))
+    while r.seek(RESOLUTION):
+        f, slope, _curvature = taylor(d, r.x, work)
+        r.newton(f, slope)
+    return r.x

@@ -10,6 +10,7 @@ from lcpstep.stepping.pieces.corners cimport choose_jumping
 from lcpstep.stepping.pieces.jointed cimport answer_impulse
 from lcpstep.stepping.pieces.magnitudes cimport faint, speed_terms
 from lcpstep.stepping.pieces.refine cimport NONE, solve_chosen
+from lcpstep.stepping.pieces.smooth cimport ON_THE_SURFACE
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport (
     AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, idle, release, stick, turn,

@@ -33,6 +33,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.jointed import answer_impulse
     from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
     from lcpstep.stepping.pieces.refine import NONE, solve_chosen
+    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import (
         AT_ONCE_FAST,
@@ -114,11 +115,15 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int) -> int:
 def tied(m: Model, plan: Plan, w: Work, first: int, c: int) -> bool:
     """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
 
-    Contacts that have struck at this instant already are in the midst of a sequence, which has an order.
+    Contacts that have struck at this instant already are in the midst of a sequence, which has an order. Along closed
+    contacts, as into the apex of a wedge, both have come together as far as these have been kept on their surfaces.
     """
     if at_this_instant(plan, w, first) or at_this_instant(plan, w, c):
         return False
-    if w.gap[c] > gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c)):
+    rounding = gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c))
+    if w.closed_now > 0:
+        rounding += ON_THE_SURFACE * plan.slack
+    if w.gap[c] > rounding:
         return False
     W, n, r = w.W, w.n_c, m.restitution
     W_c, W_d, W_cd = W[first * n + first], W[c * n + c], W[first * n + c]

@@ -36,7 +36,7 @@ def take_joints(w: Work, t: float) -> None:
 
 def join_acceleration(w: Work, t: float, q: Doubles, v: Doubles, a: Doubles) -> None:
     """The acceleration with the forces of the joints, a being that without."""
-    accelerate(w.joints, w.M, t, q, v, a)
+    accelerate(w.joints, w.M, t, w.low, w.high, q, v, a)
 
 
 def reduce_mobility(w: Work, c: int) -> None:

@@ -92,10 +92,12 @@ def take(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles) -> None:
     factorise_joints(j.elimination, j.S, n, 0)
 
 
-def accelerate(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, a: Doubles) -> None:
-    """The acceleration with the forces of the joints, a being that without."""
+def accelerate(
+    j: Joints, M: Doubles, t: float, low: float, high: float, q: Doubles, v: Doubles, a: Doubles
+) -> None:
+    """The acceleration with the forces of the joints, a being that without; t lies in a smooth interval."""
     take(j, M, t, q, v)
-    bias(j.rows, t, q, v, j.shifted, j.J_try, j.stretch, j.curvature)
+    bias(j.rows, t, low, high, q, v, j.shifted, j.J_try, j.stretch, j.curvature)
     answer(j, a, j.curvature, j.free)
 
 

@@ -198,16 +198,11 @@ def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
 
 def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: float) -> float:
     """Where a gap that is open at `low` and negative at `high` closes between them: by bisection."""
-    while high - low > EPS * high:
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        look(m, plan, w, t, middle)
-        if w.gap_try[c] > 0.0:
-            low = middle
-        else:
-            high = middle
-    return high
+    w.bracket.begin(low, high, True, 0.5 * (low + high))
+    while w.bracket.seek(EPS * w.bracket.b):
+        look(m, plan, w, t, w.bracket.x)
+        w.bracket.take(1.0 if w.gap_try[c] > 0.0 else -1.0, 0.0)  # the first zero, where rounding makes many
+    return w.bracket.b
 
 
 def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:

@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.kernels.linear cimport grow_factor, solve_definite, solve_factored
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.kernels.vectors cimport clear, copy, largest, product
 from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.pieces.codes cimport EPS, INERTIA, ROUNDING

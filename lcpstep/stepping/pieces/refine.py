@@ -23,7 +23,7 @@ from lcpstep.lcp.status import SOLVED
 if not cython.compiled:
     from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import EPS, INERTIA, ROUNDING
@@ -202,9 +202,7 @@ def factor_pressed(w: Work, W: Doubles, n: int, everybody: bool) -> int:
 
 def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: int, solved: bool) -> bool:
     """Correct z by what it leaves; False where that is no answer either. n_k: rows of the factor; < 0: none yet."""
-    size = 0.0
-    for k in range(n):
-        size = max(size, abs(w.b[k]))
+    size = largest(w.b, 0.0, n)
     leftover(w, inverse, factored, n)
     for _ in range(REFINEMENTS):
         worst = 0.0
@@ -215,9 +213,9 @@ def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: i
             break
         if n_k < 0:
             n_k = factor_pressed(w, W, n, not solved)
-        largest, change = correct(w, n, n_k)
+        most, change = correct(w, n, n_k)
         leftover(w, inverse, factored, n)
-        if change <= SETTLED * largest:
+        if change <= SETTLED * most:
             break
     answered = solved or presses(w, W, n)
     if not answered and 0 < n_k < n:
@@ -237,9 +235,7 @@ def squeeze(w: Work, W: Doubles, n: int, n_k: int) -> None:
     Bodies without clearance between two walls can be squeezed by any force: y with W y = 0. Each row left out of the
     factor, for it depends on those in it, gives one.
     """
-    largest, i = 0.0, 0
-    for k in range(n):
-        largest = max(largest, abs(w.z[k]))
+    least, i = PULLS * largest(w.z, 0.0, n), 0
     for k in range(n):
         if i < n_k and w.place[i] == k:
             i += 1
@@ -251,7 +247,7 @@ def squeeze(w: Work, W: Doubles, n: int, n_k: int) -> None:
         for j in range(n_k):
             if w.change[j] > PULLS:
                 more = max(more, -w.z[w.place[j]] / w.change[j])
-        more += PULLS * largest
+        more += least
         for j in range(n_k):
             w.z[w.place[j]] += more * w.change[j]
         w.z[k] += more

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.errors import SimulationError
+from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
@@ -182,9 +182,23 @@ class Again:
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Q and v at these times, each (m, n_q)."""
+        if len(times) == 0:
+            return np.zeros((0, len(self.q_end))), np.zeros((0, len(self.q_end)))
         unique, place = np.unique(times, return_inverse=True)
+        past = False
+
+        def look(now: float) -> None:
+            nonlocal past
+            past = bool(now > unique[-1])
+            if past:
+                raise KeyboardInterrupt  # nobody asks for what comes
+
         try:
-            m = self.method.run(self.scene, Kept.parse(unique, self.scene.t_span), lambda _: None)
+            m = self.method.run(self.scene, Kept.parse(unique, self.scene.t_span), look)
+        except SimulationInterrupted as stopped:
+            if not past:
+                raise
+            m = stopped.trajectory
         except SimulationError as stopped:
             m = stopped.trajectory
         n = len(unique) - len(m.t)  # times as late as the end to rounding, which the run no longer passes

@@ -9,7 +9,7 @@ from lcpstep.stepping.pieces.magnitudes cimport speed_terms
 from lcpstep.stepping.pieces.polynomial cimport NODES, Polynomial, WEIGHTS, contacts_at, force_at
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef Py_ssize_t NOWHERE, PARTS, PROBES, ITERATIONS
+cdef Py_ssize_t NOWHERE, PARTS, PROBES
 cdef double SOON
 cdef (double, double) gap_at(
     Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c

@@ -1,9 +1,8 @@
 """Events on a polynomial piece of motion, as kernels: the first gap that closes, the first contact that opens.
 
 The piece is divided into intervals in which each gap velocity changes its sign at most once; so a gap that falls to
-zero and returns within an interval is found at its lowest point. Roots are bracketed before they are polished. A
-hop that began on the surface is followed by the mean of its gap velocity, g / tau, which keeps all digits.
-Source: W. Press et al., Numerical Recipes, sections 9.2 and 9.4.
+zero and returns within an interval is found at its lowest point. A hop that began on the surface is followed by the
+mean of its gap velocity, g / tau, which keeps all digits.
 """
 
 from __future__ import annotations
@@ -26,7 +25,6 @@ NOWHERE = -2
 PARTS = 4  # intervals of a piece
 PROBES = 4  # of contact forces
 SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
-ITERATIONS = 60
 
 
 def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
@@ -49,46 +47,26 @@ def landing(
     m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int, hop: bool
 ) -> float:
     """Where gap c falls to zero in (a, b]: positive at a, or on its way up, and not positive at b."""
-    tau = b
+    guess = b
     if hop and w.half[c] < 0.0:
-        tau = min(b, -w.rate[c] / w.half[c])
-    for _ in range(ITERATIONS):
+        guess = min(b, -w.rate[c] / w.half[c])
+    w.bracket.begin(a, b, True, guess)
+    while w.bracket.seek(2.0 * EPS * w.bracket.x):
         if hop:
-            f, slope = hop_at(m, plan, w, z, t, tau, c)
+            f, slope = hop_at(m, plan, w, z, t, w.bracket.x, c)
         else:
-            f, slope = gap_at(m, plan, w, z, t, tau, c)
-        if f > 0.0:
-            a = tau
-        else:
-            b = tau
-        new = tau - f / slope if slope < 0.0 else a
-        if not a < new < b:
-            new = 0.5 * (a + b)
-        if abs(new - tau) <= 2.0 * EPS * tau or b - a <= EPS * b:
-            return min(max(new, a), b)
-        tau = new
-    return tau
+            f, slope = gap_at(m, plan, w, z, t, w.bracket.x, c)
+        w.bracket.newton(f, slope)
+    return w.bracket.x
 
 
 def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
-    """Where the velocity of gap c passes zero upwards in (a, b): regula falsi after Illinois."""
-    f_a, f_b, side, tau = z.rate_from[c], z.rate_to[c], 0, a
-    for _ in range(ITERATIONS):
-        tau = (a * f_b - b * f_a) / (f_b - f_a)
-        if not a < tau < b:
-            tau = 0.5 * (a + b)
-        _g, f = gap_at(m, plan, w, z, t, tau, c)
-        if f == 0.0 or b - a <= 4.0 * EPS * b:
-            break
-        if f < 0.0:
-            a, f_a = tau, f
-            f_b = 0.5 * f_b if side < 0 else f_b
-            side = -1
-        else:
-            b, f_b = tau, f
-            f_a = 0.5 * f_a if side > 0 else f_a
-            side = 1
-    return tau
+    """Where the velocity of gap c passes zero upwards in (a, b)."""
+    w.bracket.span(a, z.rate_from[c], b, z.rate_to[c])
+    while w.bracket.seek(4.0 * EPS * w.bracket.b):
+        _g, f = gap_at(m, plan, w, z, t, w.bracket.x, c)
+        w.bracket.chord(f)
+    return w.bracket.x
 
 
 def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
@@ -159,25 +137,12 @@ def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
 
 
 def vanishing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
-    """Where the force of contact c vanishes in (a, b]: regula falsi after Illinois."""
+    """Where the force of contact c vanishes in (a, b]."""
     force_at(m, plan, w, z, t, a)
-    f_a, f_b, side, tau = w.p[c], z.rate_to[c], 0, b
-    if f_a <= 0.0:
+    if w.p[c] <= 0.0:
         return a
-    for _ in range(ITERATIONS):
-        tau = (a * f_b - b * f_a) / (f_b - f_a)
-        if not a < tau < b:
-            tau = 0.5 * (a + b)
-        force_at(m, plan, w, z, t, tau)
-        f = w.p[c]
-        if f == 0.0 or b - a <= 4.0 * EPS * (t + b):
-            break
-        if f > 0.0:
-            a, f_a = tau, f
-            f_b = 0.5 * f_b if side > 0 else f_b
-            side = 1
-        else:
-            b, f_b = tau, f
-            f_a = 0.5 * f_a if side < 0 else f_a
-            side = -1
-    return tau
+    w.bracket.span(a, w.p[c], b, z.rate_to[c])
+    while w.bracket.seek(4.0 * EPS * (t + w.bracket.b)):
+        force_at(m, plan, w, z, t, w.bracket.x)
+        w.bracket.chord(w.p[c])
+    return w.bracket.x

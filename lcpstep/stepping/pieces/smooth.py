@@ -164,7 +164,7 @@ def refactor(m: Model, w: Work, t: float) -> bool:
 
 def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
     """Gap accelerations at v' = 0 into w.bias."""
-    bias(m, t, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
+    bias(m, t, w.low, w.high, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
 
 
 def measure(m: Model, plan: Plan, w: Work, t: float) -> None:

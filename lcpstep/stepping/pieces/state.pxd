@@ -1,5 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport after, indices_after
 from lcpstep.stepping.pieces.joints cimport Joints
@@ -29,6 +30,7 @@ cdef class Work:
     cdef readonly bint joined
     cdef readonly Joints joints
     cdef Workspace lcp
+    cdef Bracket bracket
     cdef double* q
     cdef double* v
     cdef double* free

@@ -9,6 +9,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.bracket import Bracket
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, Indices, after, indices_after
 
@@ -131,6 +132,7 @@ class Work:
     M : (n_q, n_q)              factor of a mass matrix that changes
     problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
     joints          those of the scene, where `joined`
+    bracket         in which a root is sought
 
     The loop's numbers:
     sigma           time since the start of the step
@@ -171,7 +173,7 @@ class Work:
         self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_c + 1, dtype=np.intp)
-        self.lcp, self.pivots = Workspace(n_c), indices(self.places)
+        self.lcp, self.pivots, self.bracket = Workspace(n_c), indices(self.places), Bracket()
         self.place_vectors(doubles(self.numbers))
         self.place_numbers(after(doubles(self.numbers), len(VECTORS) * n_q))
         self.place_marks(indices(self.marks))

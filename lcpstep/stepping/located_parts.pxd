@@ -1,0 +1,46 @@
+cimport cython
+from lcpstep.arrays cimport doubles, indices
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport COLUMNS, Record
+from lcpstep.kernels.vectors cimport clear, copy, largest
+from lcpstep.pointers cimport after, inf, nan, whole
+from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
+from lcpstep.stepping.pieces.corners cimport find_corners
+from lcpstep.stepping.pieces.led cimport Led, copy_state
+from lcpstep.stepping.pieces.loop cimport Steps
+from lcpstep.stepping.pieces.smooth cimport invert
+from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.switches cimport COLLAPSE
+from lcpstep.stepping.step_control cimport Control, follow_on, stamp
+
+cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, OWN, ROWS
+
+
+cdef class Parts(Control):
+    cdef Steps way
+    cdef Model m
+    cdef Plan plan
+    cdef Work w, saved
+    cdef Record record
+    cdef object make, own_row, own_made, matrices
+    cdef double* row
+    cdef Py_ssize_t saved_row, saved_event, saved_time, n_numbers, n_marks, n_matrices
+    cdef double* A_inverse
+    cdef double* AG
+    cdef double* WA
+    cdef Py_ssize_t* made
+    cdef bint rough, means, alike, sized
+    cdef Led one, half, two
+    cdef double from_time, to_time, h, elapsed
+    @cython.locals(even=bint)
+    cdef void compare(self, double start, double end, bint entire, double until) noexcept nogil
+    cdef double ends(self) noexcept nogil
+    cdef Py_ssize_t part(
+        self, double start, double end, double last, bint even, double until, int halved
+    ) noexcept nogil
+    cdef void place(self, int level, double made_for) noexcept nogil
+    @cython.locals(just=bint)
+    cdef void carry_on(self, double start, bint anew, double close) noexcept nogil
+    cdef void in_time(self) noexcept nogil
+    cdef void led(self, Led to, Py_ssize_t code) noexcept nogil
+    cdef void loads(self, double* force, double* impulse) noexcept nogil

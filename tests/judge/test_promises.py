@@ -1,0 +1,96 @@
+"""The judge asks for no more than a method, or a law, can promise, and for all of that."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.judge.checks import check, finite, gain, given_by_the_law
+from benchmarks.judge.describe import Description
+from benchmarks.judge.physics import room
+from benchmarks.judge.runs import run
+from benchmarks.judge.variants import Variant
+from benchmarks.judge.vary import base, jams, same
+
+
+def kinds(findings):
+    return {x.kind for x in findings}
+
+
+@pytest.mark.parametrize(("speed", "excused"), [(1.0, False), (300.0, True)])
+def test_steps_may_break_down_only_where_the_wall_turns_within_one(speed, excused):
+    d = Description(
+        M=((1.0, 0.0), (0.0, 1.0)), q0=(0.0, -1.0), v0=(speed, 0.0), t_span=(0.0, 0.05), h=0.01, G=((0.0, 0.0),),
+        offset=(0.5,), bend=(-1.0,), round=(0.0,),
+    )  # fmt: skip
+    r = replace(run(d, "located-4"), status="NOT_FINITE")
+    assert ("not finite" in kinds(finite(d, r))) is not excused
+
+
+@pytest.mark.parametrize(("faster", "found"), [(1.0, set()), (1e5, {"other events: span in two parts"})])
+def test_impacts_slower_than_velocities_are_promised_need_no_partner(faster, found):
+    d = Description(
+        M=((0.943, 0.0), (0.0, 0.963)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.1944), h=0.0324,
+        G=((0.00141, -1.28), (-1.26, 0.573)), offset=(0.97, 0.432), restitution=0.36, K=((2.37, -3.0), (-3.0, 7.81)),
+        constant=(0.0, -9.45), frame=(-0.00118, -9.12e-05), omega=2.77, bend=(-0.97, -0.432), round=(1.0, 1.0),
+    )  # fmt: skip
+    r = run(d, "located-tolerance")
+    q, v = r.motion.at(0.0648)  # on its surface to rounding, and along it to within the tolerance
+    part = replace(d, q0=tuple(q), v0=tuple(v), t_span=(0.0648, 0.1944))
+    other = run(part, "located-tolerance")
+    log = other.motion.impacts.copy()
+    log.before[:] = faster * log.before
+    other = replace(other, motion=replace(other.motion, impacts=log))
+    assert 0.0 < np.max(np.abs(log.before)) < 1.0
+    assert kinds(same(base(d, r), other, Variant("span in two parts", part))) == found
+
+
+def test_energy_that_moreaus_law_gives_at_different_restitutions_is_no_anomaly():
+    d = Description(
+        M=((1.47, 0.0572, 0.18, 0.152), (0.0572, 0.345, 0.0875, 0.0737), (0.18, 0.0875, 3.43, 0.233),
+        (0.152, 0.0737, 0.233, 2.44)), q0=(0.0,) * 4, v0=(-0.228, 0.0399, 0.0166, -0.131), t_span=(0.0, 0.06832),
+        h=0.00976, G=((1.01, -1.04, 1.4, -0.312), (-0.573, -1.02, -1.84, -1.33), (0.512, 0.0203, -0.935, -0.469),
+        (-0.278, 0.223, -0.0135, 0.093), (1.47, 0.28, 0.245, 1.04), (-1.27, 1.08, 0.293, -1.39), (0.00846, 1.41,
+        -0.218, 0.189), (0.104, -1.6, 0.288, 0.668)), offset=(0.0,) * 8, restitution=(0.93, 0.0, 1.0, 0.64, 0.69,
+        0.034, 1.0, 0.56), K=((7.82, -4.07, 4.22, -2.3), (-4.07, 3.98, -10.6, 0.594), (4.22, -10.6, 86.1, 20.5),
+        (-2.3, 0.594, 20.5, 19.7)), constant=(0.25, -0.298, -0.00833, -1.06), general=True,
+    )  # fmt: skip
+    r = run(d, "moreau")
+    given = given_by_the_law(
+        d, r
+    )  # a contact leaves the obstacle, and is pressed back by the blow on another
+    assert 1e-3 < given < 2e-3
+    assert abs(gain(d, r)) < 1e-12 * given
+    assert "energy gained" not in kinds(check(d, r))
+    one = replace(d, restitution=0.5)
+    assert given_by_the_law(one, run(one, "moreau")) == 0.0
+    assert given_by_the_law(d, run(d, "located")) == 0.0
+
+
+@pytest.mark.parametrize(("width", "jammed"), [(0.0, True), (1e-3, False)])
+def test_impulses_may_be_wanting_only_where_walls_leave_no_room(width, jammed):
+    """A bead between two walls, or three in a row."""
+    for rows in (((1.0,), (-1.0,)), ((-1.0, 1.0), (1.0, 0.0), (0.0, -1.0))):
+        n = len(rows[0])
+        d = Description(
+            M=tuple(map(tuple, np.eye(n))), q0=(0.0,) * n, v0=(0.0,) * n, t_span=(0.0, 0.1), h=0.01, G=rows,
+            offset=(width, *(0.0,) * (len(rows) - 1)), restitution=0.5, constant=(1.0,) * n,
+        )  # fmt: skip
+        r = run(d, "event-driven")
+        assert not jams(d, r)  # it has ended well
+        assert jams(d, replace(r, status="LCP_FAILED")) is jammed
+    assert room(replace(d, G=rows[:2], offset=(0.0, 0.0), restitution=0.5), 0.0) == np.inf
+
+
+@pytest.mark.parametrize("method", ["event-driven", "event-driven-loose"])
+@pytest.mark.parametrize(("clearance", "known"), [(0.0, False), (0.01, True), (-0.01, True)])
+def test_a_motion_is_told_until_it_grazes(method, clearance, known):
+    """A body on a spring, let go at rest, comes back to that place after a period; a wall may stand just there."""
+    d = Description(
+        M=((1.0,),), q0=(-1.0,), v0=(0.0,), t_span=(0.0, 10.0), h=0.05, G=((1.0,),), offset=(1.0,), restitution=0.5,
+        K=((1.0,),),
+    )  # fmt: skip
+    if clearance:  # a wall on the other side, which is reached after half a period
+        d = replace(d, G=((-1.0,),), offset=(1.0 + clearance,))
+    found = base(d, run(d, method)).grazes
+    assert found == (np.inf if known else pytest.approx(2.0 * np.pi, abs=1e-4))

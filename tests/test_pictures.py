@@ -1,0 +1,104 @@
+"""What pictures say: names and units, nothing covered, and a copy in grey that still tells things apart."""
+
+import argparse
+import itertools
+import re
+
+import numpy as np
+import pytest
+
+from lagrangian import scenes
+from lcpstep import EventDriven, simulate
+from lcpstep.accuracy.work_precision import Level, Study
+from lcpstep.cli import own, parser
+from lcpstep.cli.common import DONE
+from lcpstep.plot import abs_cycle, looks, orbits
+from lcpstep.plot.motion import NAMED
+from lcpstep.plot.work_precision import work_precision
+from tests.commands import run
+
+APART = 0.12  # of the way from black to white: two greys that can be told apart
+
+
+def grey(colour):
+    """How light a colour is, 0 to 1, as a copy without colours has it."""
+    from matplotlib.colors import to_rgb
+
+    return float(np.dot(to_rgb(colour), (0.299, 0.587, 0.114)))
+
+
+def apart(colours):
+    return min(abs(a - b) for a, b in itertools.combinations(map(grey, colours), 2))
+
+
+def test_lines_that_are_named_differ_without_their_colours():
+    seen = {(look["ls"], look["lw"]) for look in map(looks.line, range(NAMED))}
+    assert len(seen) == NAMED == len({looks.mark(k) for k in range(NAMED)})
+
+
+def test_areas_differ_without_their_colours():
+    for n in (2, 3, 4):
+        assert apart([*looks.shades(n)]) > APART
+    assert apart(abs_cycle.COLOURS) > APART
+
+
+def test_units_stand_at_every_panel():
+    """Coordinates of several units: velocities have units of their own, which no label of the axis can give."""
+    _, velocity, impulse = simulate(scenes.slipping_wheel(t_end=0.1), EventDriven()).plot().axes
+    names = [x.get_text() for x in velocity.get_legend().get_texts()]
+    assert [name.partition(" [")[2] for name in names] == ["m/s]", "m/s]", "rad/s]"]
+    assert [x.get_text() for x in impulse.texts] == ["no impacts"]
+    styles = [line.get_linestyle() for line in velocity.get_lines()]
+    assert len(set(styles)) == 3
+
+
+def test_impulses_stand_on_a_line_over_the_whole_time():
+    *_, impulse = simulate(scenes.bouncing_ball(t_end=1.0), EventDriven()).plot().axes
+    assert not impulse.texts
+    lines = [x for x in impulse.get_lines() if x.get_linestyle() == "-" and list(x.get_ydata()) == [0.0, 0.0]]
+    assert [0, 1] in [list(line.get_xdata()) for line in lines]  # of the panel's width
+
+
+def test_names_of_modes_cover_no_curve():
+    from lcpstep.plot.figures import Figure
+
+    scene = scenes.stick_slip_oscillator(amplitude=0.1)
+    t = np.linspace(0.0, 2.0, 9)
+    figure = Figure(layout="constrained")
+    ax = figure.subplots()
+    orbits.modes_panel(ax, scene, t, np.zeros((9, 2)), np.array(["stick"] * 4 + ["slower"] * 5))
+    figure.draw_without_rendering()
+    assert ax.get_legend().get_window_extent().y0 >= ax.get_window_extent().y1
+    assert len({line.get_linestyle() for line in ax.get_lines()}) == 2
+
+
+def test_a_new_mechanism_rests_on_its_floor(folder, capsys):
+    """The first film that somebody makes: the bead's rim, and not its centre, meets the floor."""
+    assert run(capsys, "new", "swing")[0] == DONE
+    scene = own.made("swing.py", {})
+    touching = np.arccos(0.45 / 0.5)
+    assert abs(scene.gap(0.0, np.array([touching]), np.zeros(1))[0][0]) < 1e-12
+    floor, _, bead = scene.drawing(0.0, np.array([touching]))
+    assert floor.points[0][1] == pytest.approx(bead.centre[1] - bead.radius)
+    assert "--set swing=" not in (folder / "swing.py").read_text()
+
+
+def test_help_is_written_for_people():
+    """A sign of per cent stands once, after its number."""
+    (commands,) = (x for x in parser()._actions if isinstance(x, argparse._SubParsersAction))
+    for command in commands.choices.values():
+        assert not re.search(r"%%|%\(|[^0-9 ]%", command.format_help())
+
+
+def test_a_measure_without_a_finite_value_has_no_panel():
+    """Impacts that no other run has are infinitely late; on a logarithmic scale that is an empty panel."""
+    level = {"method": "m", "settings": "", "dial": "h", "status": "DONE", "seconds": 1.0}
+    levels = [
+        Level(value=h, errors={"sup_position": h, "impact_time": np.inf},
+              scatter={"sup_position": (h, h), "impact_time": (np.inf, np.inf)}, **level)
+        for h in (0.1, 0.01)
+    ]  # fmt: skip
+    question = {"scene": "ball", "measures": ["sup_position", "impact_time"]}
+    found = Study(question, "", {"impact_time": np.inf}, 1.0, "", levels=levels)
+    shown = work_precision(found).axes
+    assert [ax.get_ylabel() for ax in shown] == ["sup position", ""]
