@@ -101,7 +101,8 @@ def run_simulate(options: argparse.Namespace) -> int:
             run = simulate(scene, method, keep=options.every, progress=progress, error=options.error)
     except (SimulationError, SimulationInterrupted) as stopped:
         interrupt.answer()
-        _save(options.out, stopped.trajectory)
+        if options.out is not None:  # a long motion takes seconds to put together
+            _save(options.out, stopped.trajectory)
         raise
     _save(options.out, run)
     if options.picture:
