@@ -34,22 +34,29 @@ class Blow:
         self.x, self.v_after = before.x_end, after.x[walk.n :]
         contacts: Any = walk.scene.contacts
         self.friction, r = contacts.friction, np.asarray(contacts.restitution, dtype=float)
+        self.r_T, method = self.friction.tangential(r), walk.run.method
+        self.noise = SLACK * (method.atol + method.rtol * float(np.max(np.abs(self.v_after))))
         strikes = [e for e in events if e.kind == Kind.IMPACT]
         self.active = sorted({int(e.contact) for e in strikes})
-        if len(strikes) > len(self.active):
+        if len(strikes) > len(self.active) or self.late(strikes):
             raise LcpStepError(
                 f"several impacts follow one another at t = {self.t:g} s: no derivative is known"
             )
         # a closed contact keeps its place: only what strikes rebounds
         self.r = np.where(np.asarray(before.mode) == OPEN, r, 0.0)
-        self.r_T, method = self.friction.tangential(r), walk.run.method
-        self.noise = SLACK * (method.atol + method.rtol * float(np.max(np.abs(self.v_after))))
         self.sliding = self.directions()
         told, change = self.law(self.t, self.x), np.max(np.abs(self.v_after - self.x[self.n :]))
         if np.max(np.abs(told - self.v_after)) > LIKE * change + self.noise:
             raise LcpStepError(
                 f"the impact at t = {self.t:g} s is not one of Moreau's law with one set of contacts: no derivative"
             )
+
+    def late(self, strikes: Any) -> bool:
+        """Whether a contact strikes with another speed than it came with: an impact at the same instant gave it that."""
+        R, _, rate, _ = point.rows(self.s, self.t, self.x)
+        came, size = R @ self.x[self.n :] + rate, np.max(np.abs(self.v_after - self.x[self.n :]))
+        speeds = [(float(e.before), came[self.s.n_j + int(e.contact)]) for e in strikes]
+        return any(abs(told - had) > LIKE * size + self.noise for told, had in speeds)
 
     def directions(self) -> dict[int, float]:
         """Contact: direction of the friction impulse, for those that slide through the impact: u_T+ + r u_T- != 0."""
