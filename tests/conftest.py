@@ -1,10 +1,18 @@
-"""Tests of what is built are tests of its sources: refused where these have changed since."""
+"""Tests of what is built are tests of its sources: refused where these have changed since.
+
+Drawn cases are the same at every run, so that a change is judged by itself; `--hypothesis-profile=random` draws others.
+"""
 
 import importlib.machinery
 
 import pytest
+from hypothesis import settings
 
 from tests.uncompiled import BUILT
+
+settings.register_profile("random")
+settings.register_profile("repeated", derandomize=True)
+settings.load_profile("repeated")
 
 
 def pytest_configure(config):
