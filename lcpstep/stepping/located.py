@@ -1,4 +1,4 @@
-"""Time-stepping with every impulse at its own time within the step: its parameters; see `pieces` for a run."""
+"""Time-stepping with every impulse at its own time within the step: its parameters; see `pieces` for a run, `rubbing` with friction."""
 
 from __future__ import annotations
 
@@ -42,9 +42,8 @@ class Located:
     Raises
     ------
     ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
-    LcpStepError   when it runs: the scene has friction (with order "exact"), joints without friction
-        (with order 4, "exact", or a tolerance), or, with order "exact", not the linear motion under constant and
-        harmonic forces that it takes
+    LcpStepError   when it runs: with order "exact" the scene has friction or joints, or not the linear motion under
+        constant and harmonic forces that it takes
 
     Notes
     -----
@@ -52,7 +51,8 @@ class Located:
     chattering, sticking and release. Contacts that fire together obey Moreau's law for simultaneous impacts, all
     others are struck one after another. Linear systems take the trapezoidal rule and are stable for every h, others
     velocity Verlet, which needs h below 2 / (highest frequency). Scenes with joints (order 2, fixed steps) take
-    velocity Verlet too; every step ends on the joints.
+    velocity Verlet too; every step ends on the joints. With order 4 or a tolerance they are stepped as those with
+    friction are.
 
     With planar friction (`Coulomb`) steps are velocity Verlet's or, of order 4, those of Runge-Kutta's classical
     method, along the modes of the contacts, which may be beside joints (`lcpstep.stepping.rubbing`). Slips, sticks

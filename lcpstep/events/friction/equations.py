@@ -118,7 +118,7 @@ def measure_gaps(s: Rubbing, t: float, y: Doubles) -> None:
 
 
 def measure_velocities(s: Rubbing, v: Doubles) -> None:
-    """Velocities of all rows; those of contacts as far as modes know them are exactly zero."""
+    """Velocities R v + rate of all rows; `terms` of contacts grow to their rounding."""
     for i in range(s.n_r):
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
     for c in range(s.n_c):

@@ -41,7 +41,7 @@ class Rubbing(RungeKutta):
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
-    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  D, S : (n_r, n_r)  Delassus matrix, the same on the joints
+    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  W, S : (n_r, n_r)  Delassus matrix, the same on the joints
     rate, bias, gap, velocity : (n_r,)   of rows at the state last measured
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
@@ -58,6 +58,10 @@ class Rubbing(RungeKutta):
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
     jams                         how often it did;  rounds    problems of impacts at this instant
+    problem                      the complementarity problem at hand, of an impact or of forces
+    before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
+    account : (n_r,)             `impulse` before the end of chattering adds to it, see `owed`
+    guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch
     culprit                      contact or joint that a failure is about, or -1
 
     Parameters

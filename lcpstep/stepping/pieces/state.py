@@ -104,7 +104,8 @@ class Work:
     older, older_time    the last positive contact force, and when
     pushed          impulse since the step began that a tolerance looks at
     impulse         since the last kept state; those of the n_j joints follow
-    p               impulses of the event at hand
+    p               impulses of the event at hand, or forces of closed contacts, by contact; in
+                    `impulses.choose_connected` 1 for contacts still to be looked at
     b, z            of the complementarity problem at hand, and its solution
     residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
     before          gap velocity just before a corner
