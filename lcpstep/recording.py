@@ -148,7 +148,8 @@ class Recorder:
             t, mode, length, q, v, impulse = self._states.pop()
             n = len(t) - self._free
             self._states.append((t[:n], mode[:n], length[:n], q[:n], v[:n], impulse[:n]))
-        self._states.append(self.record.room_for(rows))
+        if rows > 0 or not self._states:
+            self._states.append(self.record.room_for(rows))
         self._free = rows
 
     def take(self) -> None:

@@ -23,6 +23,7 @@ from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, displaced, pl
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.pieces.state import Plan
 from lcpstep.stepping.step_run import StepRun
+from lcpstep.stepping.steps import number
 from lcpstep.trajectory import Counts, Status
 
 if TYPE_CHECKING:
@@ -41,7 +42,9 @@ class LocatedRun(StepRun):
         joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
-        recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, PORTION + len(kept.times) + 8)
+        steps = number(scene.t_span, method.h) // kept.every if kept.every > 0 else 0
+        room, columns = PORTION + len(kept.times) + 8, scene.n_c + scene.n_j
+        recorder = Recorder(scene.n_q, columns, kept, room, expected=steps + steps // 16 + 64)  # and events
         super().__init__(method, scene, kept, recorder, PORTION)
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
