@@ -16,7 +16,7 @@ def as_sources(monkeypatch):
         plain = uncompiled.kernels().periods
         monkeypatch.setattr(machine, "Machine", plain.Machine)
         monkeypatch.setattr(run, "Motion", plain.Motion)
-        monkeypatch.setattr(run.loop, "run", plain.go_on)
+        monkeypatch.setattr(run, "Switching", plain.Switching)
         for name in ("Follow", "Placing", "Tangent"):
             monkeypatch.setattr(modes, name, getattr(plain, name))
         monkeypatch.setattr(modes, "follow", plain.go_through)

@@ -1,0 +1,89 @@
+"""The loop over time that all runs from event to event share, and those by steps: what is due, then a motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+
+if not cython.compiled:
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+
+SLACK = 4  # rows that one round of the loop may need
+
+
+class Course:
+    """The way of a run through its span; every kind of motion has its own."""
+
+    def advance(self, goal: int) -> int:
+        """`go_on`, called from Python."""
+        with cython.nogil:
+            return self.go_on(goal)
+
+    def go_on(self, goal: int) -> int:
+        """Go on to the end of the span, or to step number `goal`; says why it returned."""
+        code = DONE
+        while code == DONE:
+            if self.due():
+                code = self.happen()
+            elif self.over() or self.steps() >= goal:
+                break
+            else:
+                code = self.refusal()
+                if code == DONE:
+                    code = self.move()
+        return code
+
+    def due(self) -> bool:
+        """Whether something is to be done before time goes on."""
+        return False
+
+    def happen(self) -> int:
+        """Do so; a status."""
+        return DONE
+
+    def over(self) -> bool:
+        """Whether the end of the span is reached."""
+        return False
+
+    def steps(self) -> int:
+        """Steps taken."""
+        return 0
+
+    def refusal(self) -> int:
+        """Why no step may be taken now, or DONE."""
+        return DONE
+
+    def move(self) -> int:
+        """A step, or a part of one up to an event; a status."""
+        return DONE
+
+
+class Events(Course):
+    """The same from event to event, of what has a record and a tally.
+
+    record, tally   what is kept, and counted
+    most_events     in the record, for the next round to begin
+    most_rows       the same
+
+    Parameters
+    ----------
+    record, tally : as above, or nothing where nothing is kept;  room : events that one round may note
+    """
+
+    def __init__(self, record: Any, tally: Any, room: int) -> None:
+        self.record, self.tally = record, tally
+        self.most_events, self.most_rows = record.event_capacity - room, record.row_capacity - SLACK
+
+    def steps(self) -> int:
+        """Steps taken."""
+        return self.tally.steps
+
+    def refusal(self) -> int:
+        """Whether buffers are full, or there were too many events."""
+        if self.record.event > self.most_events or self.record.row > self.most_rows:
+            return BUFFER_FULL
+        return TOO_MANY_EVENTS if self.tally.too_many() else DONE
