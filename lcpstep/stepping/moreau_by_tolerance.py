@@ -34,7 +34,7 @@ if not cython.compiled:
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
-    from lcpstep.stepping.theta_method.theta_loop import run
+    from lcpstep.stepping.theta_method.theta_loop import Steps
 
 ROWS = 4  # that a step may keep besides the times asked for
 SAVED = 9  # vectors of n_q numbers
@@ -43,7 +43,8 @@ SAVED = 9  # vectors of n_q numbers
 class Attempts(Control):
     """A run of `Moreau` by a tolerance.
 
-    m, plan, s, rows, record    as the loop has them; the matrices of the plan are those of the part at hand
+    way                         the loop, which takes the parts of a step
+    m, plan, s, rows, record    as it has them; the matrices of the plan are those of the part at hand
     times, n_times, next_time   states asked for, which are kept here and not by the loop
     restitution                 the scene's own, (n_c,)
     q, v, force, g, u, closed, impulse    the state (marks of what sticks follow `closed`) at the start of the step
@@ -58,17 +59,18 @@ class Attempts(Control):
 
     Parameters
     ----------
-    m, plan, s, rows, record    as above
+    way : Steps
     make : the plan of steps of a size
     span, h, tolerance, order    see `Control`
     """
 
     def __init__(
-        self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, make: Callable[[float], Plan],
-        span: tuple[float, float], h: float, tolerance: float, order: int,
+        self, way: Steps, make: Callable[[float], Plan], span: tuple[float, float], h: float, tolerance: float,
+        order: int,
     ) -> None:  # fmt: skip
         super().__init__(span, h, tolerance, order)
-        self.m, self.plan, self.s, self.rows, self.record, self.make = m, plan, s, rows, record, make
+        m, plan, s, rows, record = way.m, way.plan, way.s, way.rows, way.record
+        self.way, self.m, self.plan, self.s, self.rows, self.record, self.make = way, m, plan, s, rows, record, make
         self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
         self.switches, self.struck = Switches(s.n_c, rows.n_c + rows.n_t), False
         places = LEVELS + 2 if m.linear else 1
@@ -155,7 +157,7 @@ class Attempts(Control):
         self.before(slow)
         self.place(self.level if part == 0 else self.level + 1, h)
         k = self.s.steps
-        code = run(self.m, self.plan, self.s, self.rows, self.record, start, k, k + 1, False, False)
+        code = self.way.take(start, k, k + 1)
         if code != FINISHED:
             return code
         self.after_part(h, slow)
