@@ -9,9 +9,9 @@ import cython
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
+    pass
 
+DUE, AHEAD, ARRIVED = range(3)
 SLACK = 4  # rows that one round of the loop may need
 
 
@@ -25,33 +25,23 @@ class Course:
 
     def go_on(self, goal: int) -> int:
         """Go on to the end of the span, or to step number `goal`; says why it returned."""
-        code = DONE
+        code, stage = DONE, AHEAD
         while code == DONE:
-            if self.due():
-                code = self.happen()
-            elif self.over() or self.steps() >= goal:
+            stage = self.stage(goal)
+            if stage == ARRIVED:
                 break
-            else:
-                code = self.refusal()
-                if code == DONE:
-                    code = self.move()
+            code = self.happen() if stage == DUE else self.refusal()
+            if code == DONE and stage == AHEAD:
+                code = self.move()
         return code
 
-    def due(self) -> bool:
-        """Whether something is to be done before time goes on."""
-        return False
+    def stage(self, goal: int) -> int:
+        """DUE where something is to be done at this time, else AHEAD; ARRIVED at the end, or at step `goal`."""
+        return ARRIVED
 
     def happen(self) -> int:
-        """Do so; a status."""
+        """Do what is due; a status."""
         return DONE
-
-    def over(self) -> bool:
-        """Whether the end of the span is reached."""
-        return False
-
-    def steps(self) -> int:
-        """Steps taken."""
-        return 0
 
     def refusal(self) -> int:
         """Why no step may be taken now, or DONE."""
@@ -77,10 +67,6 @@ class Events(Course):
     def __init__(self, record: Any, tally: Any, room: int) -> None:
         self.record, self.tally = record, tally
         self.most_events, self.most_rows = record.event_capacity - room, record.row_capacity - SLACK
-
-    def steps(self) -> int:
-        """Steps taken."""
-        return self.tally.steps
 
     def refusal(self) -> int:
         """Whether buffers are full, or there were too many events."""

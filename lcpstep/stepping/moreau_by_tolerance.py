@@ -26,13 +26,10 @@ from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
     from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
-    from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.theta_loop import Steps
 
@@ -70,7 +67,15 @@ class Attempts(Control):
     ) -> None:  # fmt: skip
         super().__init__(span, h, tolerance, order)
         m, plan, s, rows, record = way.m, way.plan, way.s, way.rows, way.record
-        self.way, self.m, self.plan, self.s, self.rows, self.record, self.make = way, m, plan, s, rows, record, make
+        self.way, self.m, self.plan, self.s, self.rows, self.record, self.make = (
+            way,
+            m,
+            plan,
+            s,
+            rows,
+            record,
+            make,
+        )
         self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
         self.switches, self.struck = Switches(s.n_c, rows.n_c + rows.n_t), False
         places = LEVELS + 2 if m.linear else 1

@@ -1,6 +1,6 @@
 cimport cython
 from libc.math cimport ldexp
-from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.record cimport COLUMNS, TIME, Record
 from lcpstep.pointers cimport abs, inf, max, min
 
@@ -19,7 +19,7 @@ cdef class Control(Course):
     cdef void accept(self) noexcept nogil
     cdef Py_ssize_t ready(self) noexcept nogil
     cdef Py_ssize_t attempt(self) noexcept nogil
-    cdef Py_ssize_t steps(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t refusal(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
     cdef void begin_attempt(self) noexcept nogil

@@ -23,7 +23,7 @@ from lcpstep.stepping.adaptive import NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL,
 if not cython.compiled:
     from math import ldexp
 
-    from lcpstep.kernels.course import Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.record import COLUMNS, TIME, Record
     from lcpstep.pointers import abs, inf, max, min
 
@@ -86,9 +86,9 @@ class Control(Course):
         """Of a method: one step, and two halves of it; what was found into the fields, 0 or why it failed."""
         return REACHED
 
-    def steps(self) -> int:
-        """Attempts so far."""
-        return self.tried
+    def stage(self, goal: int) -> int:
+        """Whether a step is to be attempted."""
+        return AHEAD if self.tried < goal and not self.over() else ARRIVED
 
     def refusal(self) -> int:
         """Why no step can be attempted now, or REACHED."""

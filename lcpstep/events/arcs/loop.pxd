@@ -3,7 +3,7 @@ from libc.math cimport sqrt
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.arcs.motion cimport NOISE, Arc, belt_slip, bend_at, bends, look, pay, rebase, rise, set_out, state_at
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.course cimport Events
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT
@@ -12,9 +12,8 @@ cdef double STILL
 
 cdef class Course(Events):
     cdef Arc s
-    cdef bint due(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t happen(self) noexcept nogil
-    cdef bint over(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 
 

@@ -37,7 +37,7 @@ if not cython.compiled:
         state_at,
     )
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.course import Events
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.pointers import abs, inf, max, min
 
 STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
@@ -50,18 +50,16 @@ class Course(Events):
         super().__init__(s.record, s.tally, SLACK)
         self.s = s
 
-    def due(self) -> bool:
-        """Whether the motion has not begun."""
-        return not self.s.begun
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or goes on."""
+        if not self.s.begun:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The state at the start of the span; a status."""
         begin(self.s)
         return DONE
-
-    def over(self) -> bool:
-        """Whether the end of the span is reached."""
-        return self.s.now >= self.s.t_end
 
     def move(self) -> int:
         """One round; a status."""

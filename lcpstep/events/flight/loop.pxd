@@ -7,7 +7,7 @@ from lcpstep.events.flight.near cimport SHORT, along, hop_end, is_low, low_end, 
 from lcpstep.events.flight.rest cimport contact_impulse, first_release
 from lcpstep.events.flight.roots cimport first_contact, polish
 from lcpstep.kernels.clock cimport NUDGE
-from lcpstep.kernels.course cimport Events
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t DONE, NOT_FINITE, SLACK
@@ -16,9 +16,8 @@ cdef double CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, STRIDE, UNSEEN
 
 cdef class Course(Events):
     cdef Flight s
-    cdef bint due(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t happen(self) noexcept nogil
-    cdef bint over(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 
 

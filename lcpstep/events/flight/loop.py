@@ -27,7 +27,7 @@ if not cython.compiled:
     from lcpstep.events.flight.rest import contact_impulse, first_release
     from lcpstep.events.flight.roots import first_contact, polish
     from lcpstep.kernels.clock import NUDGE
-    from lcpstep.kernels.course import Events
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.pointers import abs, inf, max, min
 
 
@@ -38,18 +38,16 @@ class Course(Events):
         super().__init__(s.record, s.tally, SLACK)
         self.s = s
 
-    def due(self) -> bool:
-        """Whether the motion has not begun."""
-        return not self.s.begun
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or goes on."""
+        if not self.s.begun:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The state at the start of the span; a status."""
         self.s.begun = True
         return DONE if begin(self.s) else NOT_FINITE
-
-    def over(self) -> bool:
-        """Whether the end of the span is reached."""
-        return self.s.now >= self.s.t_end
 
     def move(self) -> int:
         """One round; a status."""

@@ -5,7 +5,7 @@ from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey, take_over, undecided
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.course cimport Events
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs, min
@@ -16,8 +16,7 @@ cdef double LOOK_AHEAD, FURTHER, NO_TIME
 
 cdef class Course(Events):
     cdef Rubbing s
-    cdef bint due(self) noexcept nogil
-    cdef bint over(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t happen(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 

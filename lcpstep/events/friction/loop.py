@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, obey, take_over, undecided
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.kernels.course import Events
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import abs, min
@@ -37,13 +37,11 @@ class Course(Events):
         super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
         self.s = s
 
-    def due(self) -> bool:
-        """Whether there is an event."""
-        return self.s.next != MOVE
-
-    def over(self) -> bool:
-        """Whether the end of the span is reached."""
-        return self.s.clock.t0 >= self.s.t_end
+    def stage(self, goal: int) -> int:
+        """Whether there is an event, or the motion goes on."""
+        if self.s.next != MOVE:
+            return DUE
+        return AHEAD if self.s.clock.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""

@@ -7,7 +7,7 @@ from lcpstep.events.general.parabolas cimport fly
 from lcpstep.events.general.state cimport BEGIN, ENTERED, JUMP, JUMPED, LOOKED, MOVE, Mechanism, OBEY, SETTLE
 from lcpstep.events.general.step cimport complete, step
 from lcpstep.events.general.switching cimport look_at_guards, switch
-from lcpstep.kernels.course cimport Events
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
@@ -18,8 +18,7 @@ cdef Py_ssize_t DONE, NOT_FINITE
 
 cdef class Course(Events):
     cdef Mechanism s
-    cdef bint due(self) noexcept nogil
-    cdef bint over(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t happen(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 

@@ -5,7 +5,7 @@ from lcpstep.events.hybrid.field cimport (
 from lcpstep.events.hybrid.locate cimport UNKNOWN, find, locate
 from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Course
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, min
 
@@ -15,10 +15,8 @@ cdef Py_ssize_t MAX_STALLED, NEVER_LEFT
 
 cdef class Switching(Course):
     cdef Motion s
-    cdef bint due(self) noexcept nogil
     cdef Py_ssize_t happen(self) noexcept nogil
-    cdef bint over(self) noexcept nogil
-    cdef Py_ssize_t steps(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t refusal(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 

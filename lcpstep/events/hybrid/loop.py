@@ -33,7 +33,7 @@ if not cython.compiled:
     from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
     from lcpstep.events.hybrid.state import Motion
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.course import Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, min
 
@@ -47,9 +47,11 @@ class Switching(Course):
     def __init__(self, s: Motion) -> None:
         self.s = s
 
-    def due(self) -> bool:
-        """Whether the motion has not begun, or a switch is due."""
-        return not self.s.begun or self.s.culprit >= 0
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or a switch is due, or it goes on."""
+        if not self.s.begun or self.s.culprit >= 0:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """Begin, or switch; a status."""
@@ -58,14 +60,6 @@ class Switching(Course):
         self.s.begun = True
         self.s.culprit = enter(self.s, -1, False)
         return DONE
-
-    def over(self) -> bool:
-        """Whether the end of the span is reached."""
-        return self.s.now >= self.s.t_end
-
-    def steps(self) -> int:
-        """Steps taken."""
-        return self.s.steps
 
     def refusal(self) -> int:
         """Whether there were as many switches as allowed, or buffers are full."""

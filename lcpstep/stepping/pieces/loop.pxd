@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.dynamics cimport external_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -32,7 +32,7 @@ cdef class Steps(Course):
     cdef Py_ssize_t found, first, last
     cdef Py_ssize_t start(self, double t) noexcept
     cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
-    cdef Py_ssize_t steps(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)
     cdef Py_ssize_t move(self) noexcept nogil
     cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last)

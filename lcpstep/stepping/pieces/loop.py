@@ -11,7 +11,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.course import Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -120,9 +120,9 @@ class Steps(Course):
         self.t0, self.first, self.last = t0, first, last
         return self.go_on(last)
 
-    def steps(self) -> int:
-        """Steps taken."""
-        return self.w.steps
+    def stage(self, goal: int) -> int:
+        """Whether there are steps to be taken."""
+        return AHEAD if self.w.steps < goal else ARRIVED
 
     def move(self) -> int:
         """A step, or the rest of it; says why no more can be taken."""

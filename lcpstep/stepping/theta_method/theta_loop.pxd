@@ -1,4 +1,4 @@
-from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle, total_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -25,7 +25,7 @@ cdef class Steps(Course):
     cpdef begin(self, double t, double side)
     cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last, bint solved)
     cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
-    cdef Py_ssize_t steps(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t refusal(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 

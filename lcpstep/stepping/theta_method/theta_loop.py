@@ -8,7 +8,7 @@ from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.kernels.course import Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -53,9 +53,9 @@ class Steps(Course):
         self.t0, self.first, self.last = t0, first, last
         return self.go_on(last)
 
-    def steps(self) -> int:
-        """Steps taken."""
-        return self.s.steps
+    def stage(self, goal: int) -> int:
+        """Whether there are steps to be taken."""
+        return AHEAD if self.s.steps < goal else ARRIVED
 
     def refusal(self) -> int:
         """Whether there is no room for events."""
