@@ -113,7 +113,7 @@ class Attempts(Control):
                     self.matrices[name][level] = made[name]
                 self.made[level] = 1
 
-    def ready(self) -> int:
+    def refusal(self) -> int:
         """Whether there is room for the states of a step, and whether its matrices are made."""
         if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
             return PAUSED

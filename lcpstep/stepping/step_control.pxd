@@ -17,7 +17,6 @@ cdef class Control(Course):
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil
     cdef void accept(self) noexcept nogil
-    cdef Py_ssize_t ready(self) noexcept nogil
     cdef Py_ssize_t attempt(self) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t refusal(self) noexcept nogil

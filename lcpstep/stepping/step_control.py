@@ -78,10 +78,6 @@ class Control(Course):
     def accept(self) -> None:
         """Of a method: the step that has been taken stands."""
 
-    def ready(self) -> int:
-        """Of a method: 0, or why no step can be attempted now, PAUSED or WANTED."""
-        return REACHED
-
     def attempt(self) -> int:
         """Of a method: one step, and two halves of it; what was found into the fields, 0 or why it failed."""
         return REACHED
@@ -91,8 +87,8 @@ class Control(Course):
         return AHEAD if self.tried < goal and not self.over() else ARRIVED
 
     def refusal(self) -> int:
-        """Why no step can be attempted now, or REACHED."""
-        return self.ready()
+        """Of a method: REACHED, or why no step can be attempted now, PAUSED or WANTED."""
+        return REACHED
 
     def move(self) -> int:
         """An attempt; REACHED where the run goes on, which it also does not where a callback has failed.
@@ -194,7 +190,7 @@ class Control(Course):
         return False
 
     def prepare(self) -> None:
-        """Of a method: make what `ready` has found wanting."""
+        """Of a method: make what `refusal` has found wanting."""
 
     @property
     def time(self) -> float:

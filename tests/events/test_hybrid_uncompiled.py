@@ -13,7 +13,7 @@ from tests import uncompiled
 @pytest.fixture
 def as_sources(monkeypatch):
     def change():
-        plain = uncompiled.kernels().periods
+        plain = uncompiled.kernels().mode_periods
         monkeypatch.setattr(machine, "Machine", plain.Machine)
         monkeypatch.setattr(run, "Motion", plain.Motion)
         monkeypatch.setattr(run, "Switching", plain.Switching)

@@ -26,7 +26,6 @@ cdef class Steps(Course):
     cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last, bint solved)
     cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
-    cdef Py_ssize_t refusal(self) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 
 

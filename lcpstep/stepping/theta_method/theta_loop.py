@@ -57,12 +57,10 @@ class Steps(Course):
         """Whether there are steps to be taken."""
         return AHEAD if self.s.steps < goal else ARRIVED
 
-    def refusal(self) -> int:
-        """Whether there is no room for events."""
-        return BUFFER_FULL if self.record.full(2 * self.s.n_c) else FINISHED
-
     def move(self) -> int:
         """A step, after those that nothing happens in; says why no more can be taken."""
+        if self.record.full(2 * self.s.n_c):
+            return BUFFER_FULL
         if self.single and self.s.closed[0] == 0 and not self.solved:
             end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
             coast(self.m, self.plan, self.s, self.record, self.t0, self.first, end)

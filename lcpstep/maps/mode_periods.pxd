@@ -3,7 +3,7 @@ from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.field cimport Machine, approaches, field, guard_gradient, scalar
 from lcpstep.events.hybrid.loop cimport Switching
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.events.hybrid.tangent cimport Tangent, walk
+from lcpstep.maps.saltation.switches cimport Tangent, walk
 from lcpstep.kernels.function cimport Functions
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, indices_after, max, whole

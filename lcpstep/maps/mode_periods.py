@@ -21,9 +21,9 @@ if not cython.compiled:
     from lcpstep.events.hybrid.field import Machine, approaches, field, guard_gradient, scalar
     from lcpstep.events.hybrid.loop import Switching
     from lcpstep.events.hybrid.state import Motion
-    from lcpstep.events.hybrid.tangent import Tangent, walk
     from lcpstep.kernels.function import Functions
     from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.maps.saltation.switches import Tangent, walk
     from lcpstep.pointers import Doubles, abs, after, indices_after, max, whole
 
 ON_SURFACE = 1e-9  # |H|, relative to the state, that is zero: the same as for a scene that starts sliding
