@@ -1,7 +1,7 @@
 """Derivative of a motion with modes by its initial state: variational flows and saltation matrices.
 
-The formulas, sliding included, stand in `lcpstep.events.hybrid.tangent`; here they walk along a finished run. For the
-stroboscopic map of a scene with a period see `lcpstep.analysis.variation.PeriodMap`, for returns to a switch
+The formulas, sliding included, stand in `lcpstep.maps.saltation.switches`; here they walk along a finished run. For
+the stroboscopic map of a scene with a period see `lcpstep.analysis.variation.PeriodMap`, for returns to a switch
 `lcpstep.maps.SwitchMap`.
 """
 
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid.machine import machine
-from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
+from lcpstep.maps.saltation.switches import Tangent
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Status
 

@@ -21,10 +21,10 @@ from lagrangian import Scene, checks
 from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
-from lcpstep.events.friction.tangent import Walk
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
+from lcpstep.maps.saltation.rubbing import Walk
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory

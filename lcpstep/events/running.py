@@ -23,7 +23,9 @@ TRIALS = 17  # of the callbacks within an interval that failed
 
 
 class EventRun(Run):
-    """One run from event to event."""
+    """One run from event to event; `course`: its kernel, see `kernels.course`."""
+
+    course: Any
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
         super().__init__(method, scene, kept, recorder, PORTION)
@@ -39,9 +41,9 @@ class EventRun(Run):
     def evaluations(self) -> int:
         """How often forces were evaluated."""
 
-    @abstractmethod
-    def keep_now(self) -> None:
-        """Write the current state into the recorder's buffers."""
+    def advance(self, goal: int) -> int:
+        """Call the kernel, up to step number `goal`; why it returned."""
+        return int(self.course.advance(goal))
 
     @property
     def done(self) -> int:
@@ -75,7 +77,7 @@ class EventRun(Run):
         record = self.recorder.record
         nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
         if len(self.kept.times) == 0 and nothing and not self.closed:
-            self.keep_now()
+            self.course.keep_now()
         self.closed = True
         self.recorder.take()
         return self.recorder.states()

@@ -34,6 +34,8 @@ cdef class RungeKutta:
     @cython.locals(truncated=bint, again=bint, good=bint, known=bint, error=double)
     cdef Py_ssize_t take_step(self, double t, double longest, double scan) noexcept nogil
     cdef bint step(self, double t, double h) noexcept nogil
+    cdef double meet(self, double t, double tau, double most, double far, Py_ssize_t tries) noexcept nogil
+    cdef double miss(self, double t, double tau) noexcept nogil
     cdef bint complete(self, double t, double h) noexcept nogil
     cdef bint stages(self, double t, double h, Py_ssize_t first, Py_ssize_t end) noexcept nogil
     cdef void combine(self, double h, Py_ssize_t stage) noexcept nogil

@@ -119,6 +119,29 @@ class RungeKutta:
         copy(self.y_new, self.y_stage, n)
         return self.rates(t + h, self.y_new, after(self.K, STAGES * n)) and finite(self.y_new, n)
 
+    def meet(self, t: float, tau: float, most: float, far: float, tries: int) -> float:
+        """The length of a step from t that ends at an event, which is near tau and no later than `most`.
+
+        The step is made again, longer by what `miss` says of its own end, until that is no better known, or farther
+        off than `far`, as where another one is met. What is returned is the length of the step made last.
+        """
+        self.step(t, tau)
+        for _ in range(tries):
+            longer = self.miss(t, tau)
+            new = min(max(tau + longer, 0.0), most)
+            if new == tau or not abs(longer) <= far:
+                break
+            tau = new
+            self.step(t, tau)
+        return tau
+
+    def miss(self, t: float, tau: float) -> float:
+        """How much longer the step just made from t should have been to end at the event; 0 where it does.
+
+        Whoever calls `meet` has its own.
+        """
+        return 0.0
+
     def complete(self, t: float, h: float) -> bool:
         """Dense output of the step that `step` has just made; False where it is not finite."""
         if not self.stages(t, h, STAGES + 1, ALL):

@@ -6,7 +6,7 @@ out (`cyclic`). With J the derivative of the motion up to just before the event,
 
     DP = (R_x - (R_x F- + R_t) H_x / (H_x F- + H_t)) J
 
-in the terms of `events.friction.tangent`. Sources as there.
+in the terms of `saltation.rubbing`. Sources as there.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
-from lcpstep.events.friction.tangent import Walk
 from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
+from lcpstep.maps.saltation.rubbing import Walk
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.flight.loop cimport run
+from lcpstep.events.flight.loop cimport Course
 from lcpstep.events.flight.motion cimport Flight
 from lcpstep.kernels.record cimport COLUMNS
 from lcpstep.maps.answers cimport Answers
@@ -13,6 +13,7 @@ cdef double ON_THE_SURFACE, KICK
 @cython.final
 cdef class Runs:
     cdef Flight s, aside
+    cdef Course course
     cdef Answers answers
     cdef readonly Py_ssize_t taken
     cdef Py_ssize_t run, code, period, age, power, kicked, noisy

@@ -18,7 +18,7 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.maps.task import INSIDE, UNREACHED, Task
 
 if not cython.compiled:
-    from lcpstep.events.flight.loop import run
+    from lcpstep.events.flight.loop import Course
     from lcpstep.events.flight.motion import Flight
     from lcpstep.kernels.record import COLUMNS
     from lcpstep.maps.answers import Answers
@@ -33,6 +33,7 @@ class Runs:
     """The runs of a task, one after the other; also where the kernel is, when it has returned before the end.
 
     s, aside        the flight under way, and one to ask
+    course          of the first
     answers         of the task
     taken           periods taken, of all runs
     run, begun      the run at hand, and whether it has begun; code: why the loop over events last returned
@@ -43,7 +44,7 @@ class Runs:
     """
 
     def __init__(self, s: Flight, aside: Flight, task: Task) -> None:
-        self.s, self.aside, self.answers = s, aside, Answers(task)
+        self.s, self.aside, self.answers, self.course = s, aside, Answers(task), Course(s)
         self.taken = self.run = self.code = self.period = self.age = self.power = self.kicked = self.noisy = 0
         self.begun = False
         self.old_q = self.old_v = self.length = self.speed = 0.0
@@ -107,7 +108,7 @@ def one_period(r: Runs, i: int, k: int) -> int:
     if tangent:
         begin_tangent(J)
     while code == BUFFER_FULL:
-        code = run(r.s, NO_LIMIT)
+        code = r.course.go_on(NO_LIMIT)
         if k >= 0:
             note_events(r, i, k)
         if tangent:

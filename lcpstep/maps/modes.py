@@ -1,7 +1,7 @@
 """Runs of a system with modes over many periods of its forcing, with derivatives: what `batch.periods` asks of it.
 
 Its events are switches: their times, and the rate of the guard just before and after each, as the gap velocity is
-that of a gap. Where sliding begins, `landed` says when. The kernel is `lcpstep.events.hybrid.periods`.
+that of a gap. Where sliding begins, `landed` says when. The kernel is `lcpstep.maps.mode_periods`.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.machine import machine
-from lcpstep.events.hybrid.periods import Follow, Placing, follow
 from lcpstep.events.hybrid.run import prepared
-from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.kernels.uncompiled import CalledBack
 from lcpstep.maps.follow import Task
+from lcpstep.maps.mode_periods import Follow, Placing, follow
+from lcpstep.maps.saltation.switches import Tangent
 from lcpstep.pace import Pace
 from lcpstep.trajectory import Status
 

@@ -23,10 +23,10 @@ from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.events.hybrid.machine import machine
-from lcpstep.events.hybrid.tangent import Tangent
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
 from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
+from lcpstep.maps.saltation.switches import Tangent
 from lcpstep.refusals import refused
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status

@@ -94,7 +94,7 @@ class Parts(Control):
                     self.matrices[i][level] = fields[MATRICES[i]]
                 self.made[level] = 1
 
-    def ready(self) -> int:
+    def refusal(self) -> int:
         """Whether there is room for the states of a step, and whether its matrices are made."""
         if self.record.row_capacity - self.record.row < self.record.n_times - self.record.next_time + ROWS:
             return PAUSED

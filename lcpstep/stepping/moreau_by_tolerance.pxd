@@ -8,13 +8,14 @@ from lcpstep.stepping.hidden_switches cimport Switches
 from lcpstep.stepping.step_control cimport LEAST_SHARE, Control, stamp
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
-from lcpstep.stepping.theta_method.theta_loop cimport run
+from lcpstep.stepping.theta_method.theta_loop cimport Steps
 
 cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, FINISHED, BUFFER_FULL, ROWS, SAVED
 cdef double LATE
 
 
 cdef class Attempts(Control):
+    cdef Steps way
     cdef Model m
     cdef Plan plan
     cdef State s

@@ -26,15 +26,12 @@ from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
     from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
-    from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
-    from lcpstep.stepping.theta_method.theta_loop import run
+    from lcpstep.stepping.theta_method.theta_loop import Steps
 
 ROWS = 4  # that a step may keep besides the times asked for
 SAVED = 9  # vectors of n_q numbers
@@ -43,7 +40,8 @@ SAVED = 9  # vectors of n_q numbers
 class Attempts(Control):
     """A run of `Moreau` by a tolerance.
 
-    m, plan, s, rows, record    as the loop has them; the matrices of the plan are those of the part at hand
+    way                         the loop, which takes the parts of a step
+    m, plan, s, rows, record    as it has them; the matrices of the plan are those of the part at hand
     times, n_times, next_time   states asked for, which are kept here and not by the loop
     restitution                 the scene's own, (n_c,)
     q, v, force, g, u, closed, impulse    the state (marks of what sticks follow `closed`) at the start of the step
@@ -58,17 +56,26 @@ class Attempts(Control):
 
     Parameters
     ----------
-    m, plan, s, rows, record    as above
+    way : Steps
     make : the plan of steps of a size
     span, h, tolerance, order    see `Control`
     """
 
     def __init__(
-        self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, make: Callable[[float], Plan],
-        span: tuple[float, float], h: float, tolerance: float, order: int,
+        self, way: Steps, make: Callable[[float], Plan], span: tuple[float, float], h: float, tolerance: float,
+        order: int,
     ) -> None:  # fmt: skip
         super().__init__(span, h, tolerance, order)
-        self.m, self.plan, self.s, self.rows, self.record, self.make = m, plan, s, rows, record, make
+        m, plan, s, rows, record = way.m, way.plan, way.s, way.rows, way.record
+        self.way, self.m, self.plan, self.s, self.rows, self.record, self.make = (
+            way,
+            m,
+            plan,
+            s,
+            rows,
+            record,
+            make,
+        )
         self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
         self.switches, self.struck = Switches(s.n_c, rows.n_c + rows.n_t), False
         places = LEVELS + 2 if m.linear else 1
@@ -106,7 +113,7 @@ class Attempts(Control):
                     self.matrices[name][level] = made[name]
                 self.made[level] = 1
 
-    def ready(self) -> int:
+    def refusal(self) -> int:
         """Whether there is room for the states of a step, and whether its matrices are made."""
         if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
             return PAUSED
@@ -155,7 +162,7 @@ class Attempts(Control):
         self.before(slow)
         self.place(self.level if part == 0 else self.level + 1, h)
         k = self.s.steps
-        code = run(self.m, self.plan, self.s, self.rows, self.record, start, k, k + 1, False, False)
+        code = self.way.take(start, k, k + 1)
         if code != FINISHED:
             return code
         self.after_part(h, slow)

@@ -54,32 +54,37 @@ class MoreauRun(StepRun):
         super().__init__(method, scene, kept, recorder, portion)
         size = largest(scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
-        self.plan = self.plan_for(self.stretches[0][0])
+        made, external = self.plan_for(self.stretches[0][0]), method.lcp != "lemke"
+        self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record, external)
 
     def begin(self) -> int:
         """The initial state; a code."""
         t = self.scene.t_span[0]
-        loop.begin_at(self.model, self.place, self.rows, self.recorder.record, t, start_side(self.scene, t))
+        self.loop.begin(t, start_side(self.scene, t))
         if self.method.tolerance is not None:
-            control = Attempts(
-                self.model, self.plan, self.place, self.rows, self.recorder.record, self.plan_for,
-                self.scene.t_span, self.method.h, self.method.tolerance, 2 if self.method.theta == 0.5 else 1,
-            )  # fmt: skip
-            self.controlled_by(control)
+            order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
+            span, h = self.scene.t_span, self.method.h
+            self.controlled_by(Attempts(self.loop, self.plan_for, span, h, tolerance, order))
         return Status.DONE
 
     def take(self, last: int) -> int:
         """Steps up to the one before `last`; why the kernel returned."""
-        external, solved, code = self.method.lcp != "lemke", False, NEED_LCP
+        solved, code = False, NEED_LCP
         while code == NEED_LCP:
-            code = loop.go(
-                self.model, self.plan, self.place, self.rows, self.recorder.record, self.t0, self.first, last,
-                external, solved,
-            )  # fmt: skip
+            code = self.loop.run(self.t0, self.first, last, solved)
             solved = code == NEED_LCP and self.solve_outside()
             if code == NEED_LCP and not solved:
                 return Status.LCP_FAILED
         return int(code)
+
+    @property
+    def plan(self) -> Plan:
+        """What steps of one size multiply with."""
+        return self.loop.plan
+
+    @plan.setter
+    def plan(self, p: Plan) -> None:
+        self.loop.plan = p
 
     def plan_for(self, h: float) -> Plan:
         """What steps of size h multiply with."""

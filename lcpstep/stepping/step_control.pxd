@@ -1,5 +1,6 @@
 cimport cython
 from libc.math cimport ldexp
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.record cimport COLUMNS, TIME, Record
 from lcpstep.pointers cimport abs, inf, max, min
 
@@ -7,8 +8,8 @@ cdef Py_ssize_t REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
 cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
 
 
-cdef class Control:
-    cdef public long long position, end, tried, until
+cdef class Control(Course):
+    cdef public long long position, end, tried
     cdef public int level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into
     cdef public double apart_q, apart_v, far_q, far_v, cut
@@ -16,9 +17,10 @@ cdef class Control:
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil
     cdef void accept(self) noexcept nogil
-    cdef Py_ssize_t ready(self) noexcept nogil
     cdef Py_ssize_t attempt(self) noexcept nogil
-    cdef Py_ssize_t steps(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t refusal(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
     cdef void begin_attempt(self) noexcept nogil
     cdef double step_size(self, int level) noexcept nogil
     @cython.locals(one=cython.longlong)
@@ -30,8 +32,7 @@ cdef class Control:
     cdef bint over(self) noexcept nogil
     cdef double resolved(self, double size) noexcept nogil
     cdef Py_ssize_t judge(self) noexcept nogil
-    cdef bint go_on(self, double time) noexcept nogil
-    cpdef Py_ssize_t advance(self)
+    cdef bint pass_by(self, double time) noexcept nogil
 
 
 cdef void stamp(Record r, Py_ssize_t row, Py_ssize_t event, double late, double t) noexcept nogil

@@ -23,6 +23,7 @@ from lcpstep.stepping.adaptive import NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL,
 if not cython.compiled:
     from math import ldexp
 
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.record import COLUMNS, TIME, Record
     from lcpstep.pointers import abs, inf, max, min
 
@@ -31,12 +32,12 @@ LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 
 
-class Control:
+class Control(Course):
     """Where the run is, and what it allows.
 
     position, level      start of the step, in finest steps; level of the step
     end, finest          of the span, in finest steps; finest level
-    tried, until         attempts so far, and their number at the next look at the outside world
+    tried                attempts so far
     start, stop, span    of time [s]
     h_max, tolerance     longest step [s]; error allowed over the span
     enough               share of the error allowed, below which twice the step is tried
@@ -60,7 +61,7 @@ class Control:
 
     def __init__(self, span: tuple[float, float], h: float, tolerance: float, order: int) -> None:
         start, end = span
-        self.position, self.tried, self.until = 0, 0, 0
+        self.position, self.tried = 0, 0
         self.h_max, self.end, self.finest, self.level = sizes(span, h)
         self.start, self.stop, self.span = start, end, end - start
         self.tolerance, self.enough = tolerance, PLENTY * 0.5**order
@@ -77,42 +78,38 @@ class Control:
     def accept(self) -> None:
         """Of a method: the step that has been taken stands."""
 
-    def ready(self) -> int:
-        """Of a method: 0, or why no step can be attempted now, PAUSED or WANTED."""
-        return REACHED
-
     def attempt(self) -> int:
         """Of a method: one step, and two halves of it; what was found into the fields, 0 or why it failed."""
         return REACHED
 
-    def steps(self) -> int:
-        """Steps until the end of the span, full buffers, or one that cannot be taken; says why it returned.
+    def stage(self, goal: int) -> int:
+        """Whether a step is to be attempted."""
+        return AHEAD if self.tried < goal and not self.over() else ARRIVED
 
-        It also returns where a run has failed: an interrupt that a callback heard is to be passed on.
+    def refusal(self) -> int:
+        """Of a method: REACHED, or why no step can be attempted now, PAUSED or WANTED."""
+        return REACHED
+
+    def move(self) -> int:
+        """An attempt; REACHED where the run goes on, which it also does not where a callback has failed.
+
+        An interrupt that a callback heard is to be passed on.
         """
-        while self.tried < self.until:
-            if self.over():
-                return REACHED
-            code = self.ready()
-            if code != REACHED:
-                return code
-            self.tried += 1
-            self.store()
-            self.begin_attempt()
-            code = self.attempt()
-            if self.full:
-                self.restore()
-                return PAUSED
-            verdict = self.judge()
-            if verdict == ACCEPTED:
-                self.accept()
-            else:
-                self.restore()
-            if verdict == GIVEN_UP:
-                return code if code > REACHED else TOO_SMALL  # or its events never fit into the buffers
-            if self.failed:
-                return WANTED
-        return PAUSED
+        self.tried += 1
+        self.store()
+        self.begin_attempt()
+        code = self.attempt()
+        if self.full:
+            self.restore()
+            return PAUSED
+        verdict = self.judge()
+        if verdict == ACCEPTED:
+            self.accept()
+        else:
+            self.restore()
+        if verdict == GIVEN_UP:
+            return code if code > REACHED else TOO_SMALL  # or its events never fit into the buffers
+        return WANTED if self.failed else REACHED
 
     def begin_attempt(self) -> None:
         """Nothing is known of it yet."""
@@ -172,16 +169,16 @@ class Control:
             if level >= self.finest:
                 return GIVEN_UP
             self.level = level + 1
-            self.go_on(0.0)
+            self.pass_by(0.0)
             return AGAIN
         self.size_q, self.size_v, self.last = size_q, size_v, inf
-        if self.go_on(self.cut):
+        if self.pass_by(self.cut):
             return ACCEPTED
         if level > 0 and self.position % self.length(level - 1) == 0 and error <= self.enough * allowed:
             self.level = level - 1
         return ACCEPTED
 
-    def go_on(self, time: float) -> bool:
+    def pass_by(self, time: float) -> bool:
         """Go on to a time since the base, at most to the next multiple of the step; whether it lies still ahead."""
         h = self.step_size(self.level)
         rounding = NOISE * (abs(self.now()) + h)
@@ -192,18 +189,18 @@ class Control:
         self.into = self.into - h if self.into - h > rounding else 0.0
         return False
 
-    def advance(self) -> int:
-        """`steps`, called from Python."""
-        with cython.nogil:
-            return self.steps()
-
     def prepare(self) -> None:
-        """Of a method: make what `ready` has found wanting."""
+        """Of a method: make what `refusal` has found wanting."""
 
     @property
     def time(self) -> float:
         """Time at which the step begins [s]."""
         return self.now()
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the end of the span is reached."""
+        return self.over()
 
     @property
     def step(self) -> float:

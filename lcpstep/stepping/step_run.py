@@ -79,13 +79,13 @@ class StepRun(Run):
 
     def attempt(self, goal: int) -> int:
         """The same of steps that the control chooses."""
-        self.control.until, code = goal, WANTED
+        code = WANTED
         while code == WANTED:
-            code = int(self.control.advance())
+            code = int(self.control.advance(goal))
             cause()  # an interrupt goes on its way
             if code == WANTED:
                 self.control.prepare()
-        self.arrived = code == REACHED
+        self.arrived = code == REACHED and self.control.arrived
         return code
 
     def empty(self) -> None:

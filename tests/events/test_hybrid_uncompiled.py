@@ -13,10 +13,10 @@ from tests import uncompiled
 @pytest.fixture
 def as_sources(monkeypatch):
     def change():
-        plain = uncompiled.kernels().periods
+        plain = uncompiled.kernels().mode_periods
         monkeypatch.setattr(machine, "Machine", plain.Machine)
         monkeypatch.setattr(run, "Motion", plain.Motion)
-        monkeypatch.setattr(run.loop, "run", plain.go_on)
+        monkeypatch.setattr(run, "Switching", plain.Switching)
         for name in ("Follow", "Placing", "Tangent"):
             monkeypatch.setattr(modes, name, getattr(plain, name))
         monkeypatch.setattr(modes, "follow", plain.go_through)

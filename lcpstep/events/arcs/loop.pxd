@@ -3,13 +3,20 @@ from libc.math cimport sqrt
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.arcs.motion cimport NOISE, Arc, belt_slip, bend_at, bends, look, pay, rebase, rise, set_out, state_at
 from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef Py_ssize_t BUFFER_FULL, CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT, TOO_MANY_EVENTS
+cdef Py_ssize_t CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT
 cdef double STILL
 
-cpdef Py_ssize_t advance(Arc s, Py_ssize_t goal) except? -1
-cdef Py_ssize_t run(Arc s, Py_ssize_t goal) noexcept nogil
+
+cdef class Course(Events):
+    cdef Arc s
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t happen(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
 @cython.locals(slides=bint)
 cdef void begin(Arc s) noexcept nogil
 cdef void note(Arc s, Py_ssize_t kind) noexcept nogil
@@ -24,6 +31,5 @@ cdef void turn(Arc s, double t) noexcept nogil
 cdef void take_back(Arc s) noexcept nogil
 cdef void keep(Arc s, double tau, double t) noexcept nogil
 cdef void keep_times(Arc s, double stop, bint last) noexcept nogil
-cpdef object keep_now(Arc s)
 cpdef object show(Arc s)
 cpdef object evaluate(Arc s, object kept, object coordinates, object times, object row, object q, object v)

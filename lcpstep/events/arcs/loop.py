@@ -17,7 +17,7 @@ import cython
 
 from lcpstep.events.flight.contact import SLACK
 from lcpstep.events.friction.codes import CLOSED, REVERSE, SLIP, STICK_TANGENT
-from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import DONE
 
 if not cython.compiled:
     from math import sqrt
@@ -37,28 +37,38 @@ if not cython.compiled:
         state_at,
     )
     from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.pointers import abs, inf, max, min
 
 STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
 
 
-def advance(s: Arc, goal: int) -> int:
-    """Go on from s.now to the end of the span, or to step number `goal`; called from Python."""
-    with cython.nogil:
-        return run(s, goal)
+class Course(Events):
+    """Arcs of one contact that stays closed; s : Arc."""
 
+    def __init__(self, s: Arc) -> None:
+        super().__init__(s.record, s.tally, SLACK)
+        self.s = s
 
-def run(s: Arc, goal: int) -> int:
-    """Go on from s.now to the end of the span, or to step number `goal`; says why it returned."""
-    if not s.begun:
-        begin(s)
-    while s.now < s.t_end and s.tally.steps < goal:
-        if s.record.full(SLACK) or s.record.row + SLACK > s.record.row_capacity:
-            return BUFFER_FULL
-        if s.tally.too_many():
-            return TOO_MANY_EVENTS
-        step(s)
-    return DONE
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or goes on."""
+        if not self.s.begun:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """The state at the start of the span; a status."""
+        begin(self.s)
+        return DONE
+
+    def move(self) -> int:
+        """One round; a status."""
+        step(self.s)
+        return DONE
+
+    def keep_now(self) -> None:
+        """Keep the state at the time reached; called from Python."""
+        keep(self.s, self.s.now - self.s.t0, self.s.now)
 
 
 def begin(s: Arc) -> None:
@@ -222,11 +232,6 @@ def keep_times(s: Arc, stop: float, last: bool) -> None:
         t = s.record.times[s.record.next_time]
         keep(s, t - s.t0, t)
         s.record.next_time += 1
-
-
-def keep_now(s: Arc) -> None:
-    """Keep the state at the time reached; called from Python."""
-    keep(s, s.now - s.t0, s.now)
 
 
 def show(s: Arc) -> None:

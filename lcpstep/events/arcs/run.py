@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events.arcs.line import Line, line_of
-from lcpstep.events.arcs.loop import advance, evaluate, keep_now, show
+from lcpstep.events.arcs.loop import Course, evaluate, show
 from lcpstep.events.arcs.motion import Arc
 from lcpstep.events.flight.contact import SLACK
 from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
@@ -39,6 +39,7 @@ class ArcRun(EventRun):
         stride = longest_step(scene, line) if kept.every > 0 else math.inf
         record = self.recorder.record
         self.arc = Arc(line, scene.t_span, stride, method.rtol, method.atol, record, self.tally)
+        self.course = Course(self.arc)
 
     @property
     def now(self) -> float:
@@ -64,14 +65,6 @@ class ArcRun(EventRun):
     def begin(self) -> int:
         """The contact sticks or slides from the start; a code."""
         return self.advance(0)
-
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
-        return int(advance(self.arc, goal))
-
-    def keep_now(self) -> None:
-        """Write the current state into the recorder's buffers."""
-        keep_now(self.arc)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the arcs that start there."""

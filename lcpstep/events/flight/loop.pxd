@@ -7,13 +7,21 @@ from lcpstep.events.flight.near cimport SHORT, along, hop_end, is_low, low_end, 
 from lcpstep.events.flight.rest cimport contact_impulse, first_release
 from lcpstep.events.flight.roots cimport first_contact, polish
 from lcpstep.kernels.clock cimport NUDGE
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef Py_ssize_t BUFFER_FULL, DONE, NOT_FINITE, SLACK, TOO_MANY_EVENTS
+cdef Py_ssize_t DONE, NOT_FINITE, SLACK
 cdef double CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, STRIDE, UNSEEN
 
-cpdef Py_ssize_t advance(Flight s, Py_ssize_t goal) except? -1
-cdef Py_ssize_t run(Flight s, Py_ssize_t goal) noexcept nogil
+
+cdef class Course(Events):
+    cdef Flight s
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t happen(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
+cdef bint go_further(Flight s) noexcept nogil
 cdef bint finite(double g, double u, double alpha) noexcept nogil
 cdef bint begin(Flight s) noexcept nogil
 @cython.locals(is_hop=bint)

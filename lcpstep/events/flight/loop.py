@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, SLACK, STRIDE, UNSEEN
-from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.flight.clear import WORTH, clear_until, suspect
@@ -27,32 +27,45 @@ if not cython.compiled:
     from lcpstep.events.flight.rest import contact_impulse, first_release
     from lcpstep.events.flight.roots import first_contact, polish
     from lcpstep.kernels.clock import NUDGE
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.pointers import abs, inf, max, min
 
 
-def advance(s: Flight, goal: int) -> int:
-    """Go on from s.now to the end of the span, or to step number `goal`; called from Python."""
-    with cython.nogil:
-        return run(s, goal)
+class Course(Events):
+    """Flights and rest of one degree of freedom; s : Flight."""
+
+    def __init__(self, s: Flight) -> None:
+        super().__init__(s.record, s.tally, SLACK)
+        self.s = s
+
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or goes on."""
+        if not self.s.begun:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """The state at the start of the span; a status."""
+        self.s.begun = True
+        return DONE if begin(self.s) else NOT_FINITE
+
+    def move(self) -> int:
+        """One round; a status."""
+        return DONE if go_further(self.s) else NOT_FINITE
+
+    def keep_now(self) -> None:
+        """Keep the state last asked for, at the time reached; called from Python."""
+        keep(self.s, self.s.now)
 
 
-def run(s: Flight, goal: int) -> int:
-    """Go on from s.now to the end of the span, or to step number `goal`; says why it returned."""
-    if s.record.row == 0 and s.tally.steps == 0 and not begin(s):
-        return NOT_FINITE
-    while s.now < s.t_end and s.tally.steps < goal:
-        if s.record.full(SLACK) or s.record.row + SLACK > s.record.row_capacity:
-            return BUFFER_FULL
-        if s.tally.too_many():
-            return TOO_MANY_EVENTS
-        if s.now >= s.high:
-            turn_corner(s)
-        if s.mode == CLOSED and s.alpha > 0.0:
-            release(s, s.alpha)
-        s.tally.steps += 1
-        if not (rest(s) if s.mode == CLOSED else fly(s)):
-            return NOT_FINITE
-    return DONE
+def go_further(s: Flight) -> bool:
+    """One round; False where the motion is not finite."""
+    if s.now >= s.high:
+        turn_corner(s)
+    if s.mode == CLOSED and s.alpha > 0.0:
+        release(s, s.alpha)
+    s.tally.steps += 1
+    return rest(s) if s.mode == CLOSED else fly(s)
 
 
 def finite(g: float, u: float, alpha: float) -> bool:

@@ -39,7 +39,8 @@ class Flight(Clock):
         bounds the part of the gap acceleration that comes from frame and obstacle
     size, rate      how large the positions are of which the gap is the difference, and the velocities of what moves
         by itself
-    now, mode       the time reached; whether the contact is FREE or CLOSED
+    now, begun      the time reached; whether the state there is known to be free, closed or struck
+    mode            whether the contact is FREE or CLOSED
     g, u, alpha     gap, its velocity and acceleration there
     impulse : (n_c,)    since the last kept state
     hold            no release before it
@@ -100,7 +101,14 @@ class Flight(Clock):
         self.low, self.high = inf, -inf
         self.now, self.t_end, self.mode, self.hold = t, t_end, FREE, -inf
         self.g = self.u = self.alpha = self.impulse[0] = 0.0
-        self.on_surface, self.g0, self.u0, self.alpha0, self.peak = False, 0.0, 0.0, 0.0, 0.0
+        self.begun, self.on_surface, self.g0, self.u0, self.alpha0, self.peak = (
+            False,
+            False,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        )
         self.z0 = self.dz0 = self.q0 = self.v0 = 0.0
         self.y_tau = self.w_tau = self.a_tau = self.c1 = self.c2 = self.c3 = 0.0
         self.tau = nan

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events.flight.contact import SLACK, STRIDE
-from lcpstep.events.flight.keep import evaluate, keep_now
-from lcpstep.events.flight.loop import advance
+from lcpstep.events.flight.keep import evaluate
+from lcpstep.events.flight.loop import Course
 from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import Oscillator, oscillator_of
 from lcpstep.events.flight.reach import reach
@@ -62,6 +62,7 @@ class ClosedForm(EventRun):
         self.model, self.oscillator = m, o
         self.given = bounds(scene, m, o, method)
         self.flight = flight_of(scene, m, o, self.given, self.recorder.record, self.tally)
+        self.course = Course(self.flight)
 
     @property
     def now(self) -> float:
@@ -83,14 +84,6 @@ class ClosedForm(EventRun):
     def evaluations(self) -> int:
         """Forces are not evaluated: their motion is known."""
         return 0
-
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
-        return advance(self.flight, goal)
-
-    def keep_now(self) -> None:
-        """Write the current state into the recorder's buffers."""
-        keep_now(self.flight)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the flights that start there."""

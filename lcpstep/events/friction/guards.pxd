@@ -9,7 +9,7 @@ from lcpstep.kernels.vectors cimport copy, finite, largest, product
 from lcpstep.pointers cimport abs, after, max, min
 
 cdef Py_ssize_t OPEN, SLIDES, STICKS, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
-cdef double RESOLVED, OFF
+cdef double RESOLVED, FAR, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(opened=bint)
@@ -23,5 +23,6 @@ cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil
-cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
+cdef double locate(Rubbing s, double h, double longest) noexcept nogil
+cdef double missed(Rubbing s, double t, double tau) noexcept nogil
 cdef bint finish_step(Rubbing s, double tau) noexcept nogil

@@ -26,6 +26,7 @@ SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
 REFINEMENTS = 6  # of an event's time by repeated steps
+FAR = 1e-3  # of a step: it is not this event that is met
 UNKNOWN = -2  # in place of a guard: one is not finite
 OFF = 1.0  # value of a guard that a contact does not have
 
@@ -171,22 +172,19 @@ def arm(s: Rubbing) -> None:
                 s.armed[g] = 1
 
 
-def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
-    """Time from now at which guard g acts: secants on steps of that length, of which the last one is left."""
-    t0 = s.clock.t0
+def locate(s: Rubbing, h: float, longest: float) -> float:
+    """Time from now at which the guard found acts; a step of that length is the last one made."""
     tau = min(s.found * h, longest)
-    if tau <= 0.0:
+    return s.meet(s.clock.t0, tau, longest, FAR * h, REFINEMENTS) if tau > 0.0 else 0.0
+
+
+def missed(s: Rubbing, t: float, tau: float) -> float:
+    """How much longer the step just made should have been for the guard found to be zero at its end."""
+    g = s.guard
+    if s.slope >= 0.0 or s.armed[g] == 0 or not look(s, t + tau, s.y_new):
         return 0.0
-    s.step(t0, tau)
-    for _ in range(REFINEMENTS):
-        if not look(s, t0 + tau, s.y_new):
-            break
-        change = -s.value[g] / s.slope if s.slope < 0.0 and s.armed[g] == 1 else 0.0
-        if abs(change) <= 2.0 * RESOLUTION * (abs(t0) + tau) or abs(change) > 1e-3 * h:
-            break
-        tau = min(max(tau + change, 0.0), longest)
-        s.step(t0, tau)
-    return tau
+    longer = -s.value[g] / s.slope
+    return longer if abs(longer) > 2.0 * RESOLUTION * (abs(t) + tau) else 0.0
 
 
 def finish_step(s: Rubbing, tau: float) -> bool:

@@ -1,22 +1,33 @@
+cimport cython
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.guards cimport begin_guards
 from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still, touching
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey, take_over, undecided
 from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs, min
 
-cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN, BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS, SLACK
+cdef Py_ssize_t BEGIN, DECIDE, JUMP, MOVE, OPEN, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 cdef double LOOK_AHEAD, FURTHER, NO_TIME
 
-cdef Py_ssize_t released(Rubbing s, Record record, Tally tally, Py_ssize_t goal) noexcept
-cdef void put_back(Rubbing s, Record record) noexcept nogil
-cdef Py_ssize_t go_on(Rubbing s, Record record, Tally tally, Py_ssize_t goal) noexcept nogil
+
+cdef class Course(Events):
+    cdef Rubbing s
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t happen(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
+@cython.locals(settles=bint)
+cdef Py_ssize_t occur(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t yielding(Rubbing s, Record record, Tally tally, Py_ssize_t code) noexcept nogil
 cdef Py_ssize_t begin(Rubbing s) noexcept nogil
 cdef Py_ssize_t turn_corner(Rubbing s) noexcept nogil
 cdef Py_ssize_t settle(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t go_further(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t progress(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t look_on(Rubbing s, double t) noexcept nogil
 cdef Py_ssize_t follow(Rubbing s, Record record, Tally tally) noexcept nogil

@@ -8,12 +8,10 @@ modes that follow (`modes`). Source: F. Pfeiffer, C. Glocker, Multibody Dynamics
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 
-from lcpstep.events.friction.codes import BEGIN, DECIDE, JUMP, MOVE, OBEY, OPEN
-from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
+from lcpstep.events.friction.codes import BEGIN, DECIDE, JUMP, MOVE, OPEN
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
@@ -22,66 +20,68 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, obey, take_over, undecided
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import abs, min
 
-SLACK = 4  # rows that one round may need
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
 NO_TIME = 2.0**-50  # of the interval looked at: stretches of motion this short take no time
 
 
-def run(s: Any, record: Any, tally: Any, goal: Any) -> int:
-    """`go_on`, called from Python."""
-    return released(s, record, tally, goal)
+class Course(Events):
+    """A motion with friction; s : Rubbing."""
+
+    def __init__(self, s: Rubbing, record: Record, tally: Tally) -> None:
+        super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
+        self.s = s
+
+    def stage(self, goal: int) -> int:
+        """Whether there is an event, or the motion goes on."""
+        if self.s.next != MOVE:
+            return DUE
+        return AHEAD if self.s.clock.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """The event, or what follows from it; a status."""
+        return yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
+
+    def move(self) -> int:
+        """A step of the motion, or what precedes it; a status."""
+        return yielding(self.s, self.record, self.tally, go_further(self.s, self.record, self.tally))
+
+    def keep_now(self) -> None:
+        """Keep the state at the base time, called from Python."""
+        keep(self.s, self.record, self.s.clock.t0, self.s.y)
 
 
-def released(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
-    """`go_on`, without the interpreter's lock."""
-    with cython.nogil:
-        return go_on(s, record, tally, goal)
+def occur(s: Rubbing, record: Record, tally: Tally) -> int:
+    """What comes next, at one time; a status."""
+    if s.next == BEGIN:
+        return begin(s)
+    if s.next == JUMP:
+        code = jump(s, record, tally, s.clock.t0)
+        if code == DONE:
+            s.next = DECIDE
+        return code
+    settles, s.next = s.next == DECIDE, MOVE
+    return settle(s, record, tally) if settles else follow(s, record, tally)
 
 
-def keep_state(s: Any, record: Any) -> None:
-    """Keep the state at the base time, called from Python."""
-    put_back(s, record)
-
-
-def put_back(s: Rubbing, record: Record) -> None:
-    """Keep the state at the base time."""
-    keep(s, record, s.clock.t0, s.y)
-
-
-def go_on(s: Rubbing, record: Record, tally: Tally, goal: int) -> int:
-    """Go on from the base time to the end of the span, or to step number `goal`; says why it returned."""
-    code = DONE
-    while code == DONE and (s.next != MOVE or (s.clock.t0 < s.t_end and tally.steps < goal)):
-        if s.next == BEGIN:
-            code = begin(s)
-        elif s.next == JUMP:
-            code = jump(s, record, tally, s.clock.t0)
-            if code == DONE:
-                s.next = DECIDE
-        elif s.next == DECIDE:
-            s.next = MOVE
-            code = settle(s, record, tally)
-        elif s.next == OBEY:
-            s.next = MOVE
-            code = follow(s, record, tally)
-        elif record.row == 0 and record.n_times == 0:
-            keep(s, record, s.clock.t0, s.y)
-        elif 2 * record.event > record.event_capacity or record.row + SLACK > record.row_capacity:
-            code = BUFFER_FULL
-        elif tally.too_many():
-            code = TOO_MANY_EVENTS
-        elif s.clock.t0 >= s.clock.high:
-            code = turn_corner(s)
-        else:
-            code = progress(s, record, tally)
-        if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
-            code = jam(s, record, tally, s.clock.t0)
+def yielding(s: Rubbing, record: Record, tally: Tally, code: int) -> int:
+    """The same status, but for a contact that jams where that ends in an impact."""
+    if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
+        return jam(s, record, tally, s.clock.t0)
     return code
+
+
+def go_further(s: Rubbing, record: Record, tally: Tally) -> int:
+    """A step of the motion, or what precedes it; a status."""
+    if record.row == 0 and record.n_times == 0:
+        keep(s, record, s.clock.t0, s.y)
+        return DONE
+    return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s, record, tally)
 
 
 def progress(s: Rubbing, record: Record, tally: Tally) -> int:

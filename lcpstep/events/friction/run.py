@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events import running
-from lcpstep.events.friction.loop import keep_state, run
+from lcpstep.events.friction.loop import Course
 from lcpstep.events.friction.smooth import Smooth
 from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.events.general.run import FIRST_STEP, MOST_ROWS, Moved, quadrature
@@ -62,6 +62,7 @@ class FrictionRun(running.EventRun):
         columns = 2 * scene.n_c + scene.n_j
         recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
         super().__init__(method, scene, kept, recorder)
+        self.course = Course(self.system, recorder.record, self.tally)
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
@@ -87,14 +88,6 @@ class FrictionRun(running.EventRun):
     def evaluations(self) -> int:
         """How often forces were evaluated."""
         return int(self.system.evaluations)
-
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
-        return int(run(self.system, self.recorder.record, self.tally, goal))
-
-    def keep_now(self) -> None:
-        """Write the current state into the recorder's buffers."""
-        keep_state(self.system, self.recorder.record)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""

@@ -45,7 +45,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
-    tau = locate(s, g, h, border - t0)
+    tau = locate(s, h, border - t0)
     if tau > 0.0 and not finish_step(s, tau):
         return NOT_FINITE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)

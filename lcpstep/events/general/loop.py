@@ -9,11 +9,9 @@ modes of their own.
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 
-from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
+from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.general.equations import measure
@@ -22,6 +20,7 @@ if not cython.compiled:
     from lcpstep.events.general.motion import rounding_of_gap, speed_tolerance, touching
     from lcpstep.events.general.parabolas import fly
     from lcpstep.events.general.state import (
+        BEGIN,
         ENTERED,
         JUMP,
         JUMPED,
@@ -29,80 +28,81 @@ if not cython.compiled:
         MOVE,
         OBEY,
         SETTLE,
-        SWITCH,
         Mechanism,
     )
     from lcpstep.events.general.step import complete, step
     from lcpstep.events.general.switching import look_at_guards, switch
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs
 
-SLACK = 4  # rows that one round may need
+
+class Course(Events):
+    """A motion with contacts and joints; s : Mechanism."""
+
+    def __init__(self, s: Mechanism, record: Record, tally: Tally) -> None:
+        super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
+        self.s = s
+
+    def stage(self, goal: int) -> int:
+        """Whether there is an event, or the motion goes on."""
+        if self.s.next != MOVE:
+            return DUE
+        return AHEAD if self.s.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """The event, or what follows from it; a status."""
+        return occur(self.s, self.record, self.tally)
+
+    def move(self) -> int:
+        """A step of the motion, or what precedes it; a status."""
+        return go_further(self.s, self.record, self.tally)
+
+    def keep_now(self) -> None:
+        """Keep the state at the base time, called from Python."""
+        copy(self.s.q, self.s.q0, 2 * self.s.n_q)
+        keep(self.s, self.record, self.s.t0)
 
 
-def run(s: Any, record: Any, tally: Any, goal: Any) -> int:
-    """`go_on`, called from Python."""
-    return released(s, record, tally, goal)
-
-
-def released(s: Mechanism, record: Record, tally: Tally, goal: int) -> int:
-    """`go_on`, without the interpreter's lock."""
-    with cython.nogil:
-        return go_on(s, record, tally, goal)
-
-
-def keep_state(s: Any, record: Any) -> None:
-    """Keep the state at the base time, called from Python."""
-    put_back(s, record)
-
-
-def put_back(s: Mechanism, record: Record) -> None:
-    """Keep the state at the base time."""
-    copy(s.q, s.q0, 2 * s.n_q)
-    keep(s, record, s.t0)
-
-
-def go_on(s: Mechanism, record: Record, tally: Tally, goal: int) -> int:
-    """Go on from t0 to the end of the span, or to step number `goal`; says why it returned."""
+def occur(s: Mechanism, record: Record, tally: Tally) -> int:
+    """What comes next, at one time; a status."""
     code = DONE
-    if record.row == 0 and tally.steps == 0 and s.next == MOVE:
+    if s.next == BEGIN:
         s.next = JUMP
-        if not begin(s):
-            return NOT_FINITE
-    while code == DONE and (s.next != MOVE or (s.t0 < s.t_end and tally.steps < goal)):
-        if s.next == JUMP:
-            s.next = SETTLE
-            code = jump(s, record, tally)
-            s.guards = ENTERED if s.guards == ENTERED else JUMPED
-        elif s.next == SETTLE:
-            s.next = MOVE
-            code = settle(s, record, tally)
-        elif s.next == OBEY:
-            s.next = MOVE
-            obey(s, record, tally)
-        elif s.next == SWITCH:
-            s.next = JUMP
-            code = switch(s, tally)
-        elif s.watched and s.guards != LOOKED:
-            look_at_guards(s)
-        elif record.row == 0 and record.n_times == 0:
-            keep(s, record, s.t0)
-        elif 2 * record.event > record.event_capacity or record.row + SLACK > record.row_capacity:
-            code = BUFFER_FULL
-        elif tally.too_many():
-            code = TOO_MANY_EVENTS
-        elif s.t0 >= s.high:
-            s.find_corners(s.t0)
-            s.next = SETTLE
-        elif s.constant:
-            fly(s, record, tally)
-        else:
-            code = step(s)
-            if code == DONE:
-                code = complete(s, record, tally)
+        code = DONE if begin(s) else NOT_FINITE
+    elif s.next == JUMP:
+        s.next = SETTLE
+        code = jump(s, record, tally)
+        s.guards = ENTERED if s.guards == ENTERED else JUMPED
+    elif s.next == SETTLE:
+        s.next = MOVE
+        code = settle(s, record, tally)
+    elif s.next == OBEY:
+        s.next = MOVE
+        obey(s, record, tally)
+    else:
+        s.next = JUMP
+        code = switch(s, tally)
     return code
+
+
+def go_further(s: Mechanism, record: Record, tally: Tally) -> int:
+    """A step of the motion, or what precedes it; a status."""
+    if s.watched and s.guards != LOOKED:
+        look_at_guards(s)
+    elif record.row == 0 and record.n_times == 0:
+        keep(s, record, s.t0)
+    elif s.t0 >= s.high:
+        s.find_corners(s.t0)
+        s.next = SETTLE
+    elif s.constant:
+        fly(s, record, tally)
+    else:
+        code = step(s)
+        return complete(s, record, tally) if code == DONE else code
+    return DONE
 
 
 def begin(s: Mechanism) -> bool:

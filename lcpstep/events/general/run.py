@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.events import running
 from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
-from lcpstep.events.general.loop import keep_state, run
+from lcpstep.events.general.loop import Course
 from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
 from lcpstep.events.scan import scan_interval
@@ -73,6 +73,7 @@ class General(running.EventRun):
         columns = scene.n_c + scene.n_j
         recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
         super().__init__(method, scene, kept, recorder)
+        self.course = Course(self.system, recorder.record, self.tally)
 
     @property
     def now(self) -> float:
@@ -94,14 +95,6 @@ class General(running.EventRun):
     def evaluations(self) -> int:
         """How often forces were evaluated."""
         return int(self.system.smooth.evaluations)
-
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
-        return int(run(self.system, self.recorder.record, self.tally, goal))
-
-    def keep_now(self) -> None:
-        """Write the current state into the recorder's buffers."""
-        keep_state(self.system, self.recorder.record)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""

@@ -8,6 +8,8 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.held import right_hand_side
+    from lcpstep.events.general.step import missed
+    from lcpstep.events.general.switching import SWITCHES
     from lcpstep.events.hybrid.state import Motion
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.pointers import Doubles
@@ -22,6 +24,10 @@ class Smooth(RungeKutta):
         """Dy = (v, v'); False where it is not finite or the rows have become dependent."""
         return right_hand_side(self.mechanism, t, y, dy)
 
+    def miss(self, t: float, tau: float) -> float:
+        """By the gap of the contact that meets its surface."""
+        return missed(self.mechanism, tau)
+
 
 class Watched(Motion):
     """The same of a system with modes, whose guards are watched along it."""
@@ -31,3 +37,9 @@ class Watched(Motion):
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v') in the mode at hand; as above."""
         return right_hand_side(self.mechanism, t, y, dy)
+
+    def miss(self, t: float, tau: float) -> float:
+        """By the guard that acts, or as above."""
+        if self.mechanism.event_kind == SWITCHES:
+            return Motion.miss(self, t, tau)
+        return missed(self.mechanism, tau)

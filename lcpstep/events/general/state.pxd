@@ -7,7 +7,7 @@ from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport after, indices_after, inf
 
-cdef Py_ssize_t ROWS, CONTACTS, MARKS, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
+cdef Py_ssize_t ROWS, CONTACTS, MARKS, BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
 cdef double NOISE
 
 

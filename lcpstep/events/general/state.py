@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.pointers import after, indices_after, inf
 
 ROWS, CONTACTS, MARKS = 5, 14, 6  # numbers per row, per contact besides, and marks of a contact
-MOVE, JUMP, SETTLE, OBEY, SWITCH = range(5)  # what comes next
+BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
 NOISE = 64 * RESOLUTION
 
@@ -132,7 +132,7 @@ class Mechanism(Clock):
     length            duration of the step at hand
     found, seen_to    event within it, looked for up to here; which contact and what it does
     bare              whether the acceleration is that without contacts
-    next              what comes next: MOVE, JUMP, SETTLE, OBEY or SWITCH
+    next              what comes next: BEGIN, MOVE, JUMP, SETTLE, OBEY or SWITCH
     watch, watched    of a system with modes: `smooth` again, which watches its guards; whether there is one
     guards            LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
     slope             of the guard found within the step
@@ -182,7 +182,7 @@ class Mechanism(Clock):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, MOVE
+        self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, BEGIN
         self.watched = isinstance(smooth, Motion)
         self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
         self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0

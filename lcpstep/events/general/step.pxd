@@ -12,18 +12,19 @@ from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, min
+from lcpstep.pointers cimport abs, inf, min
 
 cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, MOST_PARTS, REFINEMENTS
 cdef Py_ssize_t LOOKS
-cdef double LOOK_AHEAD, BALANCED, FURTHER
+cdef double FAR, LOOK_AHEAD, BALANCED, FURTHER
 
 cdef Py_ssize_t step(Mechanism s) noexcept nogil
 cdef Py_ssize_t scan(Mechanism s, double h) noexcept nogil
 cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t complete_to_guard(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef void make_dense(Mechanism s, double tau) noexcept nogil
-cdef double shorten(Mechanism s, Py_ssize_t c, double tau, Py_ssize_t kind) noexcept nogil
+cdef double shorten(Mechanism s, double tau) noexcept nogil
+cdef double missed(Mechanism s, double tau) noexcept nogil
 @cython.locals(solved=bint, found=bint, balanced=bint)
 cdef bint look_ahead(Mechanism s, Py_ssize_t c, double tau, double end) noexcept nogil
 @cython.locals(solved=bint)

@@ -31,10 +31,10 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, min
+    from lcpstep.pointers import abs, inf, min
 
 PARTS, MOST_PARTS = 4, 4096  # scan intervals of a step, and where gaps turn faster than the motion
-REFINEMENTS = 3  # of an event's time by repeated steps
+REFINEMENTS, FAR = 3, 1e-3  # of an event's time by repeated steps: how many, and of that time how far at most
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 BALANCED = 1e-4  # the same where the multiplier has been no more than this share of what it will be
 LOOKS, FURTHER = 2, 10.0  # how often, and by how much further each time, unless they tell
@@ -89,7 +89,7 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
     if kind == OPENS and not look_ahead(s, c, tau, end):
         return NO_FORCES
     if tau > 0.0:
-        tau = shorten(s, c, tau, kind)
+        tau = shorten(s, tau)
     if kind == LANDS:
         u = speed_at(s, c, tau)
     take_over(s, record, tally, min(s.after(tau), border), tau)
@@ -128,23 +128,20 @@ def make_dense(s: Mechanism, tau: float) -> None:
         s.length = tau
 
 
-def shorten(s: Mechanism, c: int, tau: float, kind: int) -> float:
-    """Repeat the step up to the event, corrected so that its own end, and not the dense output, meets the surface.
-
-    The last repetition is not corrected any more: what is returned is the length of the step whose end is the state.
-    """
-    s.smooth.step(s.t0, tau)
-    for _ in range(REFINEMENTS if kind == MEETS else 0):
-        make_dense(s, tau)
-        observe(s, tau)
-        g, u = s.contact.gap[c], s.contact.speed[c]
-        correction = -g / u if u < 0.0 else 0.0
-        if abs(correction) <= 2.0 * RESOLUTION * (abs(s.t0) + tau) or abs(correction) > 1e-3 * tau:
-            break
-        tau += correction
-        s.smooth.step(s.t0, tau)
+def shorten(s: Mechanism, tau: float) -> float:
+    """Repeat the step up to the event, so that its own end, and not the dense output, meets the surface."""
+    tau = s.smooth.meet(s.t0, tau, inf, FAR * tau, REFINEMENTS if s.event_kind == MEETS else 0)
     make_dense(s, tau)
     return tau
+
+
+def missed(s: Mechanism, tau: float) -> float:
+    """How much longer the step just made should have been for its own end to lie on the surface that is met."""
+    make_dense(s, tau)
+    observe(s, tau)
+    g, u = s.contact.gap[s.event_contact], s.contact.speed[s.event_contact]
+    longer = -g / u if u < 0.0 else 0.0
+    return longer if abs(longer) > 2.0 * RESOLUTION * (abs(s.t0) + tau) else 0.0
 
 
 def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:

@@ -7,7 +7,7 @@ from lcpstep.kernels.vectors cimport finite, largest
 from lcpstep.pointers cimport abs, after, max, min, nan
 
 cdef Py_ssize_t SAMPLES, UNKNOWN, PARTS, REFINEMENTS
-cdef double RESOLVED, JUMP
+cdef double FAR, RESOLVED, JUMP
 
 @cython.locals(fine=bint, known=bint, fits=bint, armed=bint)
 cdef (Py_ssize_t, double, double, double) find(Motion s, double h, double share) noexcept nogil

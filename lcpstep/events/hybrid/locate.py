@@ -21,6 +21,7 @@ UNKNOWN = -2  # in place of a guard
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value
 REFINEMENTS = 8  # of an event's time by repeated steps
+FAR = 0.01  # of a step: the secants have lost the guard
 JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
 
@@ -100,18 +101,8 @@ def first_action(s: Motion, k: int) -> tuple[float, bool]:
 def locate(s: Motion, k: int, h: float, at: float, slope: float) -> float:
     """Time from now at which guard k acts: secants on steps of that length, of which the last one is left."""
     t, most = s.now, s.t_end - s.now
-    tau, rate, change, before = min(at * h, most), slope / h, 0.0, nan
-    s.step(t, tau)
-    for _ in range(REFINEMENTS):
-        g = guard(s.m, s.mode, k, t + tau, s.y_new) - s.event_at
-        if g * before < 0.0 or abs(g) < 0.5 * abs(before):  # the slope that the last change has met
-            rate = (g - before) / change
-        change, before = (-g / rate if rate > 0.0 else 0.0), g
-        new = min(max(tau + change, 0.0), most)
-        if abs(new - tau) <= RESOLUTION * tau or abs(change) > 0.01 * h:
-            break
-        change, tau = new - tau, new
-        s.step(t, tau)
+    s.culprit, s.rate, s.missed = k, slope / h, nan
+    tau = s.meet(t, min(at * h, most), most, FAR * h, REFINEMENTS)
     if abs(guard(s.m, s.mode, k, t + tau, s.y_new) - s.event_at) > JUMP * slope:
         tau = min(bisect(s, k, h, at), most)
         s.step(t, tau)

@@ -5,14 +5,22 @@ from lcpstep.events.hybrid.field cimport (
 from lcpstep.events.hybrid.locate cimport UNKNOWN, find, locate
 from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Course
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t BUFFER_FULL, DONE, ENDLESS_SWITCHING, NOT_FINITE, NOT_TRANSVERSAL, STEP_TOO_SMALL, TOO_MANY_EVENTS
 cdef Py_ssize_t MAX_STALLED, NEVER_LEFT
 
-cpdef Py_ssize_t run(Motion s, Py_ssize_t goal)
-cdef Py_ssize_t go_on(Motion s, Py_ssize_t goal) noexcept nogil
+
+cdef class Switching(Course):
+    cdef Motion s
+    cdef Py_ssize_t happen(self) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t refusal(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
 cdef Py_ssize_t advance(Motion s) noexcept nogil
 cdef Py_ssize_t settle(Motion s, Py_ssize_t k) noexcept nogil
 cdef Py_ssize_t switch(Motion s, Py_ssize_t k) noexcept nogil

@@ -33,6 +33,7 @@ if not cython.compiled:
     from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
     from lcpstep.events.hybrid.state import Motion
     from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, min
 
@@ -40,32 +41,35 @@ MAX_STALLED = 100  # switches at one instant
 NEVER_LEFT = 10  # how many of them a switch counts for by a guard whose band was not left
 
 
-def run(s: Motion, goal: int) -> int:
-    """Go on to the end of the span, or to step number `goal`; a status, or BUFFER_FULL."""
-    with cython.nogil:
-        return go_on(s, goal)
+class Switching(Course):
+    """A motion from mode to mode; s : Motion."""
 
+    def __init__(self, s: Motion) -> None:
+        self.s = s
 
-def go_on(s: Motion, goal: int) -> int:
-    """The same from within a kernel."""
-    if not s.begun:
-        s.begun = True
-        s.culprit = enter(s, -1, False)
-    while s.now < s.t_end and s.steps < goal:
-        if s.culprit >= 0:  # a switch is due
-            code = settle(s, s.culprit)
-            if code != DONE:
-                return code
-        if s.events >= s.max_events:
+    def stage(self, goal: int) -> int:
+        """Whether the motion is to begin, or a switch is due, or it goes on."""
+        if not self.s.begun or self.s.culprit >= 0:
+            return DUE
+        return AHEAD if self.s.now < self.s.t_end and self.s.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """Begin, or switch; a status."""
+        if self.s.begun:
+            return settle(self.s, self.s.culprit)
+        self.s.begun = True
+        self.s.culprit = enter(self.s, -1, False)
+        return DONE
+
+    def refusal(self) -> int:
+        """Whether there were as many switches as allowed, or buffers are full."""
+        if self.s.events >= self.s.max_events:
             return TOO_MANY_EVENTS
-        if s.row_capacity > 0 and s.row + 1 >= s.row_capacity:
-            return BUFFER_FULL
-        code = advance(s)
-        if code != DONE:
-            return code
-    if s.now >= s.t_end and s.culprit >= 0:
-        return settle(s, s.culprit)
-    return DONE
+        return BUFFER_FULL if 0 < self.s.row_capacity <= self.s.row + 1 else DONE
+
+    def move(self) -> int:
+        """A step, up to the first guard that acts; a status."""
+        return advance(self.s)
 
 
 def advance(s: Motion) -> int:

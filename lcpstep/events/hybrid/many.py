@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.events.hybrid import loop
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.run import prepared
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.pace import Pace
@@ -52,7 +52,7 @@ class Follower:
         self.scene = replace(scene, t_span=(0.0, duration), exact=None)
         self.names = scene.system.names
         self.motion = prepared(self.scene, method, 0, SWITCHES)
-        self.motion.max_events = switches
+        self.motion.max_events, self.course = switches, Switching(self.motion)
 
     def __call__(self, x0: ArrayLike, mode: str) -> End:
         """The end of the run from x0 (n_x,) in a mode."""
@@ -61,7 +61,7 @@ class Follower:
         s.next_step = FIRST_STEP * s.longest
         pace, logs, code, n = Pace(PORTION, s.n), [], BUFFER_FULL, s.n
         while code == BUFFER_FULL or (code == Status.DONE and s.now < s.t_end):
-            code = loop.run(s, pace.goal(s.steps))
+            code = self.course.advance(pace.goal(s.steps))
             logs.append(s.take()[2])
         log = np.concatenate(logs)
         return End(

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene
 from lcpstep.errors import LcpStepError
-from lcpstep.events.hybrid import loop
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
+from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
@@ -50,12 +50,13 @@ class HybridRun(Portions):
     def __init__(self, method: Any, scene: HybridScene, kept: Kept) -> None:
         super().__init__(method, scene, kept, Pace(PORTION, scene.system.n_x))
         self.motion = prepared(scene, method, ROWS, SWITCHES)
+        self.course = Switching(self.motion)
         _check_start(scene, self.motion.m)
         self.parts: list[tuple[Array, Array, Array]] = []
 
     def advance(self, goal: int) -> int:
         """Call the kernel, for `done` to become `goal` at most; why it returned."""
-        return int(loop.run(self.motion, goal))
+        return int(self.course.advance(goal))
 
     @property
     def done(self) -> int:

@@ -1,10 +1,11 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.field cimport Machine, field
+from lcpstep.events.hybrid.field cimport Machine, field, guard
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
+from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport after, inf
+from lcpstep.pointers cimport abs, after, inf
 
 cdef Py_ssize_t TIME, LENGTH, ROW_MODE, LEAD, SWITCH_LEAD
 cdef double FIRST_STEP
@@ -17,7 +18,7 @@ cdef class Motion(RungeKutta):
     cdef public double t_end, longest, now, last_switch
     cdef public Py_ssize_t max_events, mode, culprit, steps, events, stalled, row, switches
     cdef bint begun, was_armed
-    cdef double event_at
+    cdef double event_at, rate, missed, tried
     cdef Py_ssize_t row_capacity, log_capacity
     cdef Py_ssize_t* armed
     cdef double* band
@@ -27,5 +28,6 @@ cdef class Motion(RungeKutta):
     cdef double* log
     cdef void start_from(self, double t, Py_ssize_t mode) noexcept nogil
     cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
+    cdef double miss(self, double t, double tau) noexcept nogil
     cdef void keep(self, double h) noexcept nogil
     cdef void note(self, Py_ssize_t target, Py_ssize_t guard, double* moved) noexcept nogil

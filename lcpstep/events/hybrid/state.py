@@ -11,11 +11,12 @@ from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TI
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.events.hybrid.field import Machine, field
+    from lcpstep.events.hybrid.field import Machine, field, guard
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.vectors import copy, finite
-    from lcpstep.pointers import Doubles, after, inf
+    from lcpstep.pointers import Doubles, abs, after, inf
 
 FIRST_STEP = 0.1  # of the longest
 
@@ -29,6 +30,7 @@ class Motion(RungeKutta):
     steps, events, stalled       taken; switches, those at one instant
     last_switch                  time of it
     event_at, was_armed          of the event found: the value of its guard, whether that was below its band before
+    rate, missed, tried          slope of that guard; its value, less `event_at`, after the step last tried; its size
     armed, band : (guards,)      whether each has been below its band since the mode began; how well it is known
     states : (samples, n)        of a step
     row, switches                rows and lines of the log written
@@ -66,6 +68,7 @@ class Motion(RungeKutta):
         self.begin(FIRST_STEP * self.longest)
         self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
         self.event_at, self.was_armed = 0.0, False
+        self.rate = self.missed = self.tried = 0.0
         self.steps, self.events, self.stalled, self.row, self.switches = 0, 0, 0, 0, 0
 
     def start(self, t: float, x: Any, mode: int) -> None:
@@ -92,6 +95,15 @@ class Motion(RungeKutta):
         """The field of the mode."""
         field(self.m, self.mode, t, y, dy)
         return finite(dy, self.n)
+
+    def miss(self, t: float, tau: float) -> float:
+        """By a secant of the guard that acts, with the slope that the last change has met where it did."""
+        g, before = guard(self.m, self.mode, self.culprit, t + tau, self.y_new) - self.event_at, self.missed
+        if g * before < 0.0 or abs(g) < 0.5 * abs(before):
+            self.rate = (g - before) / (tau - self.tried)
+        self.missed, self.tried = g, tau
+        longer = -g / self.rate if self.rate > 0.0 else 0.0
+        return longer if abs(longer) > RESOLUTION * tau else 0.0
 
     def keep(self, h: float) -> None:
         """One row: the state, the step that follows and its dense output."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -76,13 +77,14 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     return FINISHED
 
 
-class Steps:
+class Steps(Course):
     """The loop over steps, and over the pieces of motion in a step; how a piece begins and goes on is an order's own.
 
     tau      how long the piece at hand is,
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
+    t0, first, last   time at which a step begins, its number, and that of the step to stop before
 
     Parameters
     ----------
@@ -93,6 +95,7 @@ class Steps:
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
         self.tau, self.found = 0.0, NOBODY
+        self.t0, self.first, self.last = 0.0, 0, 0
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
@@ -114,26 +117,31 @@ class Steps:
 
     def take(self, t0: float, first: int, last: int) -> int:
         """Steps w.steps .. last - 1, step `first` beginning at t0; says why it returned."""
-        while self.w.steps < last:
-            if not self.w.under_way:
-                if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
-                    if self.w.pausing:
-                        end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, last)
-                    else:
-                        end = self.record.untimed_until(self.plan.h, t0, first, last)
-                    glide(self.m, self.plan, self.w, self.record, t0, first, end)
-                    if self.w.steps >= last:
-                        return FINISHED
-                begin_step(self.m, self.plan, self.w)
-            t = t0 + self.plan.h * (self.w.steps - first)
-            code = self.step(t)
-            if code != FINISHED:
-                return code
-            t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
-            code = end_step(self.plan, self.w, self.record, t_next)
-            if code != FINISHED:
-                return code
-        return FINISHED
+        self.t0, self.first, self.last = t0, first, last
+        return self.go_on(last)
+
+    def stage(self, goal: int) -> int:
+        """Whether there are steps to be taken."""
+        return AHEAD if self.w.steps < goal else ARRIVED
+
+    def move(self) -> int:
+        """A step, or the rest of it; says why no more can be taken."""
+        t0, first = self.t0, self.first
+        if not self.w.under_way:
+            if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
+                if self.w.pausing:
+                    end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, self.last)
+                else:
+                    end = self.record.untimed_until(self.plan.h, t0, first, self.last)
+                glide(self.m, self.plan, self.w, self.record, t0, first, end)
+                if self.w.steps >= self.last:
+                    return FINISHED
+            begin_step(self.m, self.plan, self.w)
+        code = self.step(t0 + self.plan.h * (self.w.steps - first))
+        if code != FINISHED:
+            return code
+        t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
+        return end_step(self.plan, self.w, self.record, t_next)
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""

@@ -9,7 +9,7 @@ from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.rubbing.strides cimport Strides
 
-cdef Py_ssize_t OPEN, SLIDES, SECANTS
+cdef Py_ssize_t OPEN, SLIDES
 cdef double NOWHERE
 
 cdef bint note_base(Strides s, double t) noexcept nogil

@@ -23,7 +23,6 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.rubbing.strides import Strides
 
-SECANTS = 60
 NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
 
 
@@ -166,27 +165,22 @@ def elevate(s: Strides) -> None:
 
 def locate(s: Strides, g: int, h: float) -> float:
     """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE."""
-    t0, tau = s.clock.t0, s.found * h
+    t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < 0.0
     if tau <= 0.0:
         return 0.0
-    low, high = 0.0, h
-    crossed, slope = s.end_value[g] < 0.0, s.slope
-    before, value_before = h, s.end_value[g]
-    for _ in range(SECANTS):
+    s.scan.bracket.begin(0.0, h, True, tau)
+    while s.scan.bracket.seek(2.0 * RESOLUTION * (abs(t0) + tau)):
+        tau = s.scan.bracket.x  # the step of that length is the motion taken, whatever is found of it
         if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
             return NOWHERE
         value = s.value[g]
-        if value > 0.0:
-            low = tau
-        else:
-            high, crossed = tau, True
-        if before != tau and value != value_before and before != h:
-            slope = (value - value_before) / (tau - before)
-        new = tau - value / slope if slope < 0.0 else 0.5 * (low + high)
-        if not low <= new <= high:
-            new = 0.5 * (low + high) if crossed else h
-        before, value_before = tau, value
-        if value == 0.0 or abs(new - tau) <= 2.0 * RESOLUTION * (abs(t0) + tau):
-            return tau if crossed or value <= s.band[g] else NOWHERE
-        tau = new
-    return tau if crossed else NOWHERE
+        crossed = crossed or value <= 0.0
+        if s.scan.bracket.looks > 1 and value != s.scan.bracket.value:
+            slope = (value - s.scan.bracket.value) / (tau - s.scan.bracket.seen)
+        s.scan.bracket.newton(value, min(slope, 0.0))  # where it rises: bisection
+        if not crossed and tau + s.scan.bracket.step >= h:  # what has come so near turns back before the end
+            tau = h
+            if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
+                return NOWHERE
+            break
+    return tau if crossed or s.value[g] <= s.band[g] else NOWHERE

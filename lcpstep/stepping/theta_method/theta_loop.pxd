@@ -1,4 +1,4 @@
-cimport cython
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle, total_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -12,11 +12,26 @@ from lcpstep.stepping.theta_method.theta_step cimport take_step
 cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
 cdef double LATE
 
+
+cdef class Steps(Course):
+    cdef public Plan plan
+    cdef readonly Model m
+    cdef readonly State s
+    cdef readonly Rows rows
+    cdef readonly Record record
+    cdef bint external, solved, single
+    cdef double t0
+    cdef Py_ssize_t first, last
+    cpdef begin(self, double t, double side)
+    cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last, bint solved)
+    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
 cdef void begin(Model m, State s, Rows c, Record record, double t, double side) noexcept nogil
-@cython.locals(single=bint)
-cdef Py_ssize_t run(
-    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external,
-    bint solved,
+cdef Py_ssize_t end_step(
+    Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, Py_ssize_t events
 ) noexcept nogil
 cdef void coast(
     Model m, Plan plan, State s, Record record, double t0, Py_ssize_t first, Py_ssize_t last
@@ -24,9 +39,4 @@ cdef void coast(
 cdef void advance(Model m, State s, Rows c, double t) noexcept nogil
 cdef void measure(Model m, State s, Rows c, double t) noexcept nogil
 cdef void keep_times(double h, State s, Record record, double t, double t_next) noexcept nogil
-cpdef Py_ssize_t go(
-    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external,
-    bint solved,
-)
-cpdef begin_at(Model m, State s, Rows c, Record record, double t, double side)
 cpdef prepare(Model m, Plan plan, State s, Rows c, double t)

@@ -8,6 +8,7 @@ from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 
 if not cython.compiled:
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -19,8 +20,67 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.theta_step import take_step
 
 
+class Steps(Course):
+    """The loop over steps.
+
+    external   the contacts' problems are handed out (NEED_LCP)
+    solved     one of them has been solved
+    t0, first, last   time at which a step begins, its number, and that of the step to stop before
+
+    Parameters
+    ----------
+    m : Model;  plan : Plan;  s : State;  rows : Rows;  record : Record;  external : bool
+    """
+
+    def __init__(self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, external: bool) -> None:
+        self.m, self.plan, self.s, self.rows, self.record, self.external = m, plan, s, rows, record, external
+        self.solved, self.t0, self.first, self.last = False, 0.0, 0, 0
+        single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
+        self.single = single and rows.n == 1 and not rows.projected
+
+    def begin(self, t: float, side: float) -> None:
+        """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
+        begin(self.m, self.s, self.rows, self.record, t, side)
+
+    def run(self, t0: float, first: int, last: int, solved: bool) -> int:
+        """`take`, called from Python; `solved`: the problem at hand is."""
+        self.solved = solved
+        with cython.nogil:
+            return self.take(t0, first, last)
+
+    def take(self, t0: float, first: int, last: int) -> int:
+        """Steps s.steps .. last - 1, step `first` beginning at t0; says why it returned."""
+        self.t0, self.first, self.last = t0, first, last
+        return self.go_on(last)
+
+    def stage(self, goal: int) -> int:
+        """Whether there are steps to be taken."""
+        return AHEAD if self.s.steps < goal else ARRIVED
+
+    def move(self) -> int:
+        """A step, after those that nothing happens in; says why no more can be taken."""
+        if self.record.full(2 * self.s.n_c):
+            return BUFFER_FULL
+        if self.single and self.s.closed[0] == 0 and not self.solved:
+            end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
+            coast(self.m, self.plan, self.s, self.record, self.t0, self.first, end)
+            if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
+                return NOT_FINITE
+            if self.s.steps >= self.last:
+                return FINISHED
+        k, events = self.s.steps - self.first, self.record.event
+        t, t_next = self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1)
+        code = take_step(
+            self.m, self.plan, self.s, self.rows, self.record, t, t_next, self.external, self.solved
+        )
+        if code != FINISHED:
+            return code
+        self.solved = False
+        return end_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next, events)
+
+
 def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
-    """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
+    """`Steps.begin` as a kernel."""
     if m.linear:
         external_force(m, side, s.q, s.v, s.force)
     else:
@@ -34,45 +94,17 @@ def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) ->
         record.next_time = 1
 
 
-def run(
-    m: Model,
-    plan: Plan,
-    s: State,
-    c: Rows,
-    record: Record,
-    t0: float,
-    first: int,
-    last: int,
-    external: bool,
-    solved: bool,
+def end_step(
+    m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, t_next: float, events: int
 ) -> int:
-    """Steps s.steps .. last - 1, step `first` beginning at t0; says why it returned.
-
-    `external`, `solved`: see `take_step`.
-    """
-    single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1 and c.n == 1 and not c.projected
-    while s.steps < last:
-        if record.full(2 * s.n_c):
-            return BUFFER_FULL
-        if single and s.closed[0] == 0 and not solved:
-            coast(m, plan, s, record, t0, first, record.untimed_until(plan.h, t0, first, last))
-            if not (finite(s.g, 1) and finite(s.u, 1)):
-                return NOT_FINITE
-            if s.steps >= last:
-                return FINISHED
-        t, t_next = t0 + plan.h * (s.steps - first), t0 + plan.h * (s.steps + 1 - first)
-        events = record.event
-        code = take_step(m, plan, s, c, record, t, t_next, external, solved)
-        if code != FINISHED:
-            return code
-        solved = False
-        if record.next_time < record.n_times:
-            keep_times(plan.h, s, record, t, t_next)
-        advance(m, s, c, t_next)
-        if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
-            return NOT_FINITE
-        if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
-            record.keep(t_next, 0.0, s.q, s.v, s.impulse)
+    """What is kept where a step ends that began after so many events; whether the run goes on."""
+    if record.next_time < record.n_times:
+        keep_times(plan.h, s, record, t, t_next)
+    advance(m, s, c, t_next)
+    if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
+        return NOT_FINITE
+    if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
+        record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
 
 
@@ -143,28 +175,6 @@ def keep_times(h: float, s: State, record: Record, t: float, t_next: float) -> N
             s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
         record.keep(at, 0.0, s.q_between, s.v_between, s.impulse)
         record.next_time += 1
-
-
-def go(
-    m: Model,
-    plan: Plan,
-    s: State,
-    c: Rows,
-    record: Record,
-    t0: float,
-    first: int,
-    last: int,
-    external: bool,
-    solved: bool,
-) -> int:
-    """`run`, called from Python."""
-    with cython.nogil:
-        return run(m, plan, s, c, record, t0, first, last, external, solved)
-
-
-def begin_at(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
-    """`begin`, called from Python."""
-    begin(m, s, c, record, t, side)
 
 
 def prepare(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:

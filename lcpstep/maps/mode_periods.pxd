@@ -1,9 +1,9 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.field cimport Machine, approaches, field, guard_gradient, scalar
-from lcpstep.events.hybrid.loop cimport go_on
+from lcpstep.events.hybrid.loop cimport Switching
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.events.hybrid.tangent cimport Tangent, walk
+from lcpstep.maps.saltation.switches cimport Tangent, walk
 from lcpstep.kernels.function cimport Functions
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, indices_after, max, whole
@@ -27,6 +27,7 @@ cdef class Placing:
 cdef class Follow:
     cdef object kept_arrays, numbers
     cdef readonly Motion s
+    cdef Switching course
     cdef readonly Tangent tangent
     cdef Placing placing
     cdef bint under_way, tangents_wanted

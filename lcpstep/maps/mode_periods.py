@@ -19,11 +19,11 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.field import Machine, approaches, field, guard_gradient, scalar
-    from lcpstep.events.hybrid.loop import go_on
+    from lcpstep.events.hybrid.loop import Switching
     from lcpstep.events.hybrid.state import Motion
-    from lcpstep.events.hybrid.tangent import Tangent, walk
     from lcpstep.kernels.function import Functions
     from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.maps.saltation.switches import Tangent, walk
     from lcpstep.pointers import Doubles, abs, after, indices_after, max, whole
 
 ON_SURFACE = 1e-9  # |H|, relative to the state, that is zero: the same as for a scene that starts sliding
@@ -71,7 +71,7 @@ class Placing:
 class Follow:
     """What to follow, how far, where the answers go, and where the kernel is; m runs, `kept` periods of each.
 
-    s, tangent      the motion, and its derivative
+    s, tangent      the motion, and its derivative;  course: of the motion
     taken           periods, of all runs together
     run, period     at hand
     under_way       whether a period has begun and not ended
@@ -94,7 +94,7 @@ class Follow:
     ) -> None:  # fmt: skip
         n, own = motion.n, {name: np.ascontiguousarray(x) for name, x in arrays.items()}
         self.kept_arrays, self.s, self.tangent, self.n = own, motion, tangent, n
-        self.placing, self.numbers = placing, np.zeros((3, n))
+        self.course, self.placing, self.numbers = Switching(motion), placing, np.zeros((3, n))
         self.x, self.rate = doubles(self.numbers), after(doubles(self.numbers), n)
         self.g_x = after(self.x, 2 * n)
         self.t_start, self.t_end, self.drop, self.periods = t_start, t_end, drop, periods
@@ -170,7 +170,7 @@ def one_period(f: Follow) -> int:
         if f.mode == UNKNOWN:
             return NOT_FINITE
         f.s.start_from(f.t_start, f.mode)
-    code = go_on(f.s, NO_LIMIT)
+    code = f.course.go_on(NO_LIMIT)
     f.under_way = code == BUFFER_FULL
     return code
 

@@ -24,12 +24,12 @@ from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
 from lcpstep.events.friction import point
-from lcpstep.events.friction.blow import Blow
 from lcpstep.events.friction.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
-from lcpstep.events.friction.finished import closed_at_once, with_friction
-from lcpstep.events.friction.lost import lost
 from lcpstep.events.friction.run import start
 from lcpstep.events.friction.smooth import Smooth
+from lcpstep.maps.saltation.blow import Blow
+from lcpstep.maps.saltation.finished import closed_at_once, with_friction
+from lcpstep.maps.saltation.lost import lost
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Kind, Status, Trajectory
 

@@ -1,0 +1,20 @@
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
+
+cdef Py_ssize_t BUFFER_FULL, DONE, TOO_MANY_EVENTS, DUE, AHEAD, ARRIVED, SLACK
+
+
+cdef class Course:
+    cpdef Py_ssize_t advance(self, Py_ssize_t goal)
+    cdef Py_ssize_t go_on(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
+    cdef Py_ssize_t happen(self) noexcept nogil
+    cdef Py_ssize_t refusal(self) noexcept nogil
+    cdef Py_ssize_t move(self) noexcept nogil
+
+
+cdef class Events(Course):
+    cdef Record record
+    cdef Tally tally
+    cdef Py_ssize_t most_events, most_rows
+    cdef Py_ssize_t refusal(self) noexcept nogil

@@ -1,0 +1,75 @@
+"""The loop over time that all runs from event to event share, and those by steps: what is due, then a motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
+
+if not cython.compiled:
+    pass
+
+DUE, AHEAD, ARRIVED = range(3)
+SLACK = 4  # rows that one round of the loop may need
+
+
+class Course:
+    """The way of a run through its span; every kind of motion has its own."""
+
+    def advance(self, goal: int) -> int:
+        """`go_on`, called from Python."""
+        with cython.nogil:
+            return self.go_on(goal)
+
+    def go_on(self, goal: int) -> int:
+        """Go on to the end of the span, or to step number `goal`; says why it returned."""
+        code, stage = DONE, AHEAD
+        while code == DONE:
+            stage = self.stage(goal)
+            if stage == ARRIVED:
+                break
+            code = self.happen() if stage == DUE else self.refusal()
+            if code == DONE and stage == AHEAD:
+                code = self.move()
+        return code
+
+    def stage(self, goal: int) -> int:
+        """DUE where something is to be done at this time, else AHEAD; ARRIVED at the end, or at step `goal`."""
+        return ARRIVED
+
+    def happen(self) -> int:
+        """Do what is due; a status."""
+        return DONE
+
+    def refusal(self) -> int:
+        """Why no step may be taken now, or DONE."""
+        return DONE
+
+    def move(self) -> int:
+        """A step, or a part of one up to an event; a status."""
+        return DONE
+
+
+class Events(Course):
+    """The same from event to event, of what has a record and a tally.
+
+    record, tally   what is kept, and counted
+    most_events     in the record, for the next round to begin
+    most_rows       the same
+
+    Parameters
+    ----------
+    record, tally : as above, or nothing where nothing is kept;  room : events that one round may note
+    """
+
+    def __init__(self, record: Any, tally: Any, room: int) -> None:
+        self.record, self.tally = record, tally
+        self.most_events, self.most_rows = record.event_capacity - room, record.row_capacity - SLACK
+
+    def refusal(self) -> int:
+        """Whether buffers are full, or there were too many events."""
+        if self.record.event > self.most_events or self.record.row > self.most_rows:
+            return BUFFER_FULL
+        return TOO_MANY_EVENTS if self.tally.too_many() else DONE
