@@ -153,4 +153,26 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven-loose",),
     ),
+    # The wall's force on one bead drove it, by its rounding, against two that nothing presses together
+    "beads at rest that touch with no force, beside one that is pressed": (
+        Description(
+            M=((2.67, 0.0, 0.0), (0.0, 2.06, 0.0), (0.0, 0.0, 1.09)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+            t_span=(0.0, 0.07259), h=0.000305, G=((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0), (1.0, 0.0, 0.0)), offset=(0.0,
+            0.0, 0.0), restitution=(1.0, 0.64, 0.0), K=((94000.0, 17400.0, -39700.0), (17400.0, 54200.0, -6310.0),
+            (-39700.0, -6310.0, 18000.0)), C=((21.8, 3.94, -9.01), (3.94, 12.6, -1.43), (-9.01, -1.43, 4.25)),
+            constant=(-26.2, 0.0, 0.0), family="beads",
+        ),
+        ("located-4-tolerance",),
+    ),
+    # A force was found to pull where it was not yet found to open its contact, at every thousandth of a step
+    "forces that begin at zero and come out of rounding": (
+        Description(
+            M=((2.4, 0.0, 0.0), (0.0, 2.61, 0.0), (0.0, 0.0, 0.732)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+            t_span=(0.0, 0.0157798), h=0.00365, G=((0.402, -0.496, 0.769), (0.288, 0.753, 0.592), (-0.57, -0.0907,
+            0.817)), offset=(0.0, 0.0, 0.0), C=((0.602, 0.0, 0.0), (0.0, 0.654, 0.0), (0.0, 0.0, 0.184)),
+            constant=(0.622, 0.424, 0.07749999999999968), cosine=(-0.622, -0.424, -0.0775), force_omega=12.8,
+            family="wedge",
+        ),
+        ("located-4-tolerance",),
+    ),
 }  # fmt: skip
