@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.judge.checks import check, finite, gain, given_by_the_law
+from benchmarks.judge import checks
+from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
 from benchmarks.judge.physics import room
 from benchmarks.judge.runs import run
@@ -25,6 +26,29 @@ def test_steps_may_break_down_only_where_the_wall_turns_within_one(speed, excuse
     )  # fmt: skip
     r = replace(run(d, "located-4"), status="NOT_FINITE")
     assert ("not finite" in kinds(finite(d, r))) is not excused
+
+
+CLOSING = Description(
+    M=((0.512, 0.0, 0.0), (0.0, 2.28, 0.0), (0.0, 0.0, 1.75)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+    t_span=(0.0, 2.0), h=0.0698, G=((0.0, 0.0, 0.0),), offset=(0.2003334021718558,), K=((0.0192, -0.0467,
+    -0.00065), (-0.0467, 0.211, -0.117), (-0.00065, -0.117, 0.148)), C=((0.00466, -0.00606, -8.43e-05), (-0.00606,
+    0.0371, -0.0152), (-8.43e-05, -0.0152, 0.0265)), constant=(0.0, 0.0, -17.2), force_omega=0.405,
+    amplitude=(0.212,), phase=(0.493,), omega=0.948, bend=(-0.429,), round=(0.0,), general=True, spread=0.131,
+    pendulum=0.191, b=(-1.12, 0.38, -1.02), family="curved",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("time", "excused"), [(0.6, False), (0.8, True)])
+def test_steps_that_break_down_may_lie_in_a_wall_only_from_there_on(time, excused, monkeypatch):
+    """A bowl that shrinks to nothing about a body, at 0.785 s: it turns about in less than a step from 0.727 s on."""
+    r = run(CLOSING, "located-4")
+    assert r.status == "NOT_FINITE"
+    q = np.where((r.motion.t > time)[:, None], 3.0, 0.3) * r.motion.q
+    deep = replace(r, motion=replace(r.motion, q=q))
+    finer = {"located-4": deep, "event-driven": run(CLOSING, "event-driven")}
+    monkeypatch.setattr(checks, "run", lambda d, name, factor=1.0: finer[name])
+    assert depth(CLOSING, deep) > 0.1
+    assert ("penetration" in kinds(penetration(CLOSING, deep))) is not excused
 
 
 @pytest.mark.parametrize(("faster", "found"), [(1.0, set()), (1e5, {"other events: span in two parts"})])
