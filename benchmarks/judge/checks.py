@@ -33,7 +33,7 @@ def finite(d: Description, r: Run) -> Iterator[Finding]:
 
 
 def breaks_down(d: Description, r: Run) -> float:
-    """When an explicit method goes through a bend in less than a step, which it says by NOT_FINITE; infinite if never.
+    """When an explicit method goes through a bend in less than a step, which it says by NOT_FINITE; or never (inf).
 
     Held at a speed v on an obstacle of curvature k / |G|, a body turns at w = k v / |G|, and explicit Runge-Kutta
     methods of order p <= 4 are unbounded at w h > 2.8: no order helps where the normal turns by so much in a step.

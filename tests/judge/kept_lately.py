@@ -175,4 +175,14 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4-tolerance",),
     ),
+    # Rates that a long step had arrived with served ever shorter ones, whose errors then no longer fell
+    "a light mass on a rod that the heavy one lets go through a dead point": (
+        Description(
+            M=((7.75e-05, 0.0), (0.0, 4850.0)), q0=(-0.107, -1.88), v0=(-3.661173851452783, 0.20837532026885522),
+            t_span=(0.0, 0.073), h=0.0146, G=((1.33, -1.78), (2.03, -0.126)), offset=(-2.41309,
+            0.004629999999999995), restitution=0.68, C=((4.02e-05, 0.0), (0.0, 2520.0)), constant=(0.0, -47600.0),
+            J=((0.0, 0.0),), joint_offset=(-1.7729244999999998,), joint_bend=(1.0,), family="jointed",
+        ),
+        ("located-tolerance",),
+    ),
 }  # fmt: skip
