@@ -41,7 +41,7 @@ NEAR = 3.0  # errors of a guard: from where on it may have acted
 def pace(s: Strides, t: float, longest: float) -> int:
     """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status.
 
-    The rates that the step before has arrived with are as good as it was long: before a shorter one they are made anew.
+    Rates that the step before has arrived with are as good as it was long: for a shorter one they are made anew.
     """
     h, before, longer = min(s.next_step, longest), inf, inf
     truncated = h < s.next_step
