@@ -185,4 +185,16 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-tolerance",),
     ),
+    # Let go by rounding, it came back at the end of the step with the step's error for a speed, and bounced
+    "a contact that the forces at the start press with nothing to rounding": (
+        Description(
+            M=((0.62, 0.0285, 0.0154), (0.0285, 1.65, 0.0252), (0.0154, 0.0252, 0.483)), q0=(-1.04, 0.366, 0.949),
+            v0=(0.0, 0.0, 0.0), t_span=(0.0, 0.7524), h=0.0114, G=((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            offset=(-0.366, -0.949), restitution=(1.0, 0.28), K=((0.273, -0.273, 0.0), (-0.273, 0.546, -0.273),
+            (0.0, -0.273, 0.273)), constant=(-0.6697104380137033, -9.874546513874265, -1.68175216231999),
+            cosine=(1.31, 12.2, 2.76), sine=(-3.29, 25.5, -3.65), force_omega=0.428, general=True, spread=0.309,
+            pendulum=4.24, b=(0.663, 1.36, 0.595), family="chain",
+        ),
+        ("located",),
+    ),
 }  # fmt: skip

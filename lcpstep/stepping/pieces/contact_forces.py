@@ -182,7 +182,7 @@ def zero_rounding(plan: Plan, w: Work) -> None:
 
 
 def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) -> bool:
-    """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
+    """Gap velocities of closed contacts back to zero, with the normals at the end of the piece that began at t.
 
     A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
     forces over the piece do: damping answers them.
@@ -218,5 +218,5 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0
-                release(m, plan, w, record, c, t - tau + tau * share, u)
+                release(m, plan, w, record, c, t + tau * share, u)
     return True
