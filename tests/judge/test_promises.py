@@ -1,6 +1,7 @@
 """The judge asks for no more than a method, or a law, can promise, and for all of that."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,9 +9,9 @@ import pytest
 from benchmarks.judge import checks
 from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
-from benchmarks.judge.physics import room
+from benchmarks.judge.physics import rates, room
 from benchmarks.judge.runs import run
-from benchmarks.judge.variants import Variant
+from benchmarks.judge.variants import Variant, rest
 from benchmarks.judge.vary import base, jams, same
 
 
@@ -118,3 +119,20 @@ def test_a_motion_is_told_until_it_grazes(method, clearance, known):
         d = replace(d, G=((-1.0,),), offset=(1.0 + clearance,))
     found = base(d, run(d, method)).grazes
     assert found == (np.inf if known else pytest.approx(2.0 * np.pi, abs=1e-4))
+
+
+@pytest.mark.parametrize(("speed", "rests"), [(-1e-6, True), (-1e-2, False)])
+def test_a_second_part_begins_at_rest_where_a_tolerance_tells_no_speed(speed, rests):
+    """Two beads on each other and on an elastic table that goes up."""
+    d = Description(
+        M=((1.0, 0.0), (0.0, 3.0)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.2), h=0.1,
+        G=((1.0, 0.0), (-1.0, 1.0)), offset=(0.0, 0.0), restitution=1.0, constant=(-9.81, -30.0),
+        amplitude=(0.1, 0.0), phase=(0.0, 0.0), omega=1.0,
+    )  # fmt: skip
+    q, v = np.full(2, 0.1 * np.sin(0.1)), 0.1 * np.cos(0.1) + np.array([speed, 0.5 * speed])
+    motion = SimpleNamespace(q=q[None], v=v[None], at=lambda t: (q, v))
+    second = rest(d, np.random.default_rng(1), motion, 1e-4).scene
+    still = np.max(np.abs(rates(second, 0.1, q, np.array(second.v0)))) < 1e-15
+    assert second.t_span == (0.1, 0.2)
+    assert bool(still) is rests
+    assert rest(d, np.random.default_rng(1), motion).scene.v0 == tuple(v)
