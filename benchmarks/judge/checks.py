@@ -18,6 +18,7 @@ from lcpstep.trajectory import Kind
 CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
 TURNS, SECONDS = 10**6, 0.06  # of a loop in Python: what it takes where the bounds are meant for
 ROUNDING = 1e-9  # of the size of what is compared
+SWINGS = 500  # states of which it is asked how fast joints let them swing
 EXACT = ("event-driven", "located-exact")
 
 
@@ -39,16 +40,34 @@ def breaks_down(d: Description, r: Run) -> float:
     methods of order p <= 4 are unbounded at w h > 2.8: no order helps where the normal turns by so much in a step.
     How fast the motion is the reference says; w h > 1 is asked, for the speed rises while it turns.
     """
-    if not d.curved or r.tolerance > 0.0:
+    if not (d.curved or any(d.joint_bend)) or r.tolerance > 0.0:
         return np.inf
     reference = run(d, REFERENCE)
     if not reference.usable:
         return np.inf
-    m = reference.motion
+    return min(turns(d, reference.motion), swings(d, reference.motion))
+
+
+def turns(d: Description, m: Any) -> float:
+    """When a contact that is pressed turns by more than a radian in a step."""
+    if not d.curved:
+        return np.inf
     rows = np.linalg.norm(physics.jacobians(d, m.q), axis=-1)
-    turns = np.abs(d.row("bend", d.contacts)) * np.linalg.norm(m.v, axis=-1)[:, None] * d.h
+    by = np.abs(d.row("bend", d.contacts)) * np.linalg.norm(m.v, axis=-1)[:, None] * d.h
     rests = (m.impulse > 0.0).astype(bool)
-    return float(np.min(m.t[np.any(rests & (turns > rows), axis=1)], initial=np.inf))
+    return float(np.min(m.t[np.any(rests & (by > rows), axis=1)], initial=np.inf))
+
+
+def swings(d: Description, m: Any) -> float:
+    """When what joints carry swings by more than a radian in a step, as a light body on which a heavy one hangs."""
+    if not any(d.joint_bend):
+        return np.inf
+    long = np.flatnonzero(np.diff(m.t) > 0.0)
+    for k in long[:: 1 + len(long) // SWINGS]:
+        forces = m.joint_impulse[k + 1] / (m.t[k + 1] - m.t[k])
+        if physics.swinging(d, m.q[k], forces) * d.h > 1.0:
+            return float(m.t[k])
+    return np.inf
 
 
 def reaches_the_end(d: Description, r: Run) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ import pytest
 from benchmarks.judge import checks
 from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
-from benchmarks.judge.physics import rates, room
+from benchmarks.judge.physics import rates, room, swinging
 from benchmarks.judge.runs import run
 from benchmarks.judge.variants import Variant, rest
 from benchmarks.judge.vary import base, jams, same
@@ -25,6 +25,18 @@ def test_steps_may_break_down_only_where_the_wall_turns_within_one(speed, excuse
         M=((1.0, 0.0), (0.0, 1.0)), q0=(0.0, -1.0), v0=(speed, 0.0), t_span=(0.0, 0.05), h=0.01, G=((0.0, 0.0),),
         offset=(0.5,), bend=(-1.0,), round=(0.0,),
     )  # fmt: skip
+    r = replace(run(d, "located-4"), status="NOT_FINITE")
+    assert ("not finite" in kinds(finite(d, r))) is not excused
+
+
+@pytest.mark.parametrize(("light", "excused"), [(1.0, False), (1e-4, True)])
+def test_steps_may_break_down_only_where_what_joints_carry_swings_within_one(light, excused):
+    """A weight of 9.81 N that hangs on a rod of 1 m swings with the square root of 9.81 / mass along its arc."""
+    d = Description(
+        M=((light, 0.0), (0.0, 1.0)), q0=(0.0, -1.0), v0=(0.0, 0.0), t_span=(0.0, 0.05), h=0.01,
+        constant=(0.0, -9.81), J=((0.0, 0.0),), joint_offset=(-0.5,), joint_bend=(1.0,),
+    )  # fmt: skip
+    assert swinging(d, np.array(d.q0), np.array([-9.81])) == pytest.approx(np.sqrt(9.81 / light))
     r = replace(run(d, "located-4"), status="NOT_FINITE")
     assert ("not finite" in kinds(finite(d, r))) is not excused
 
