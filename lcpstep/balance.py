@@ -5,7 +5,9 @@
 W is the work of the forces along the step (`kernels/surplus.py`); obstacles and joints that stand still do none.
 Where steps resolve the motion the left side is below a hundredth of the right one; where they do not, as where a
 mass turns with the place by radians in a step, energy comes or goes whatever the forces are, and nothing else tells.
-Steps by a tolerance are not asked, nor linear systems: steps take those implicitly, or `resolution` judges them.
+Steps by a tolerance are not asked, nor those that take the forces of a linear system implicitly. Explicit steps of
+order four grow without bound where damping takes more than 2.8 of a velocity in a step; along the motion that force
+does not change, so that the frequencies of `resolution` do not tell it.
 Source of the rule: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section IV.1.
 """
 
@@ -15,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lagrangian import LinearContacts, LinearJoints, System
+from lagrangian import LinearContacts, LinearJoints, LinearSystem, System
 from lcpstep.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -29,8 +31,8 @@ ROUNDING = 1e-12  # of the coordinates, in a step: no motion
 
 
 def unbalanced(run: Trajectory, m: Model, h: float) -> str:
-    """How much energy steps h of a general system, of that model, lose or gain, in words; "" where they do not."""
-    if not isinstance(run.scene.system, System) or _driven(run.scene.joints):
+    """How much energy steps h, of that model, lose or gain, in words; "" where they do not."""
+    if not isinstance(run.scene.system, (System, LinearSystem)) or _driven(run.scene.joints):
         return ""
     gained, turned_over = _surplus(run, m, h, LOOKS)
     if not abs(gained) > SHARE * turned_over:

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearContacts, Scene, System, scenes
-from lcpstep import Located, Moreau, simulate
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.trajectory import Status
 from tests.uncompiled import both_ways
 
@@ -87,6 +87,32 @@ def test_what_has_a_source_is_no_doubt(name, method):
     p, q0, v0, contacts = EXPLAINED[name]
     m = simulate(Scene(System(1, unit(1), spring), q0, v0, (0.0, 5.0), contacts, p=p), method)
     assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+@pytest.mark.parametrize(
+    "name", ["an oscillator, near the bound of Verlet", "damping", "a ball that bounces"]
+)
+@pytest.mark.parametrize("method", METHODS)
+def test_what_has_a_source_is_no_doubt_of_a_linear_system(name, method):
+    (k, c, f), q0, v0, contacts = EXPLAINED[name]
+    m = simulate(Scene(LinearSystem(1.0, C=c, K=k, force=[f]), q0, v0, (0.0, 5.0), contacts), method)
+    assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+@pytest.mark.parametrize(("damping", "told"), [(2.0, False), (3.0, True)])
+def test_damping_that_explicit_steps_make_grow_is_told(damping, told):
+    """Order four takes c h from v to R v, R = 1 - c h + (c h)^2/2 - (c h)^3/6 + (c h)^4/24: 1.4 where c h = 3."""
+    scene = Scene(
+        LinearSystem(np.eye(2), C=np.diag([0.0, 10.0 * damping]), K=np.eye(2)),
+        [1.0, 0.3],
+        [0.0, 0.5],
+        (0.0, 3.0),
+    )
+    true = simulate(scene, EventDriven())
+    m = simulate(scene, Located(0.1, 4))
+    assert (m.status, "gain energy that no force accounts for" in m.doubt) == (Status.DONE, told)
+    assert bool(np.max(np.abs(m.q[-1] - true.q[-1])) > 100.0) is told
+    assert simulate(scene, Located(0.1, 2)).doubt == ""  # the trapezoidal rule
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -1,7 +1,8 @@
 """Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`.
 
 Every anomaly is printed with the lines that reproduce it, and at the end tables; exit status 1 if there is any in a
-run that does not say itself, by its `doubt`, that it is wrong.
+run that does not say itself, by its `doubt`, that it is wrong. After an interrupt (Ctrl-C) the tables are those of
+what was judged so far, and a line says how to go on.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from benchmarks.judge.pool import CPU_LIMIT, Answer, Court, answers
 from benchmarks.judge.report import Tally, report
 from benchmarks.judge.runs import WAYS, Finding, lines, silent
 from benchmarks.judge.shapes import FAMILIES
+
+INTERRUPTED = 130  # as shells say it
 
 
 def options() -> argparse.ArgumentParser:
@@ -75,21 +78,37 @@ def show(answer: Answer, finding: Finding, given: argparse.Namespace) -> None:
     print(lines(d, finding.method), end="\n\n", flush=True)
 
 
+def judge(given: argparse.Namespace, tally: Tally) -> int:
+    """Judge the scenes asked for, and show what is found; the number of the first that is not judged in the end."""
+    shown, done = Counter[tuple[str, str]](), set[int]()
+    end = given.first + given.scenes
+    verdicts = answers(scenes(given), given.method, given.workers, given.limit, given.share)
+    try:
+        for answer in verdicts:
+            tally.add(answer)
+            done.add(answer.index)
+            for finding in answer.findings:
+                key = finding.method, finding.kind
+                shown[key] += 1
+                if shown[key] <= given.shown and (given.kind or "") in finding.kind:
+                    show(answer, finding, given)
+    except KeyboardInterrupt:
+        verdicts.close()
+        return next((k for k, _ in scenes(given) if k not in done), end)
+    return end
+
+
 def main() -> int:
-    """Exit status 1 if anything was found."""
-    given = options().parse_args()
-    tally, shown = Tally(), Counter[tuple[str, str]]()
-    for answer in answers(scenes(given), given.method, given.workers, given.limit, given.share):
-        tally.add(answer)
-        for finding in answer.findings:
-            key = finding.method, finding.kind
-            shown[key] += 1
-            if shown[key] <= given.shown and (given.kind or "") in finding.kind:
-                show(answer, finding, given)
+    """Exit status 1 if anything was found; what was judged up to an interrupt is told, and how to go on."""
+    given, tally = options().parse_args(), Tally()
+    reached, end = judge(given, tally), given.first + given.scenes
     print(report(tally))
     if given.report:
         with open(given.report, "w", encoding="utf-8") as file:
             file.write(report(tally) + "\n")
+    if reached < end:
+        print(f"Interrupted. To go on: --first {reached} --scenes {end - reached}", flush=True)
+        return INTERRUPTED
     return 1 if any(silent(kind) for _, kind in tally.found) else 0
 
 

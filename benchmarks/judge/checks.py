@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from lcpstep.trajectory import Kind
 CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
 TURNS, SECONDS = 10**6, 0.06  # of a loop in Python: what it takes where the bounds are meant for
 ROUNDING = 1e-9  # of the size of what is compared
+SWINGS = 500  # states of which it is asked how fast joints let them swing
 EXACT = ("event-driven", "located-exact")
 
 
@@ -27,27 +29,45 @@ def finite(d: Description, r: Run) -> Iterator[Finding]:
         bad = ~np.isfinite(getattr(m, name))
         if np.any(bad):
             yield Finding(r.method, "not finite", f"{name} in {int(np.sum(bad))} entries, status {r.status}")
-    if r.status == "NOT_FINITE" and not breaks_down(d, r):
+    if r.status == "NOT_FINITE" and breaks_down(d, r) == np.inf:
         yield Finding(r.method, "not finite", r.text)
 
 
-def breaks_down(d: Description, r: Run) -> bool:
-    """Whether an explicit method goes through a bend in less than a step, which it says by NOT_FINITE.
+def breaks_down(d: Description, r: Run) -> float:
+    """When an explicit method goes through a bend in less than a step, which it says by NOT_FINITE; or never (inf).
 
     Held at a speed v on an obstacle of curvature k / |G|, a body turns at w = k v / |G|, and explicit Runge-Kutta
     methods of order p <= 4 are unbounded at w h > 2.8: no order helps where the normal turns by so much in a step.
     How fast the motion is the reference says; w h > 1 is asked, for the speed rises while it turns.
     """
-    if not d.curved or r.tolerance > 0.0:
-        return False
+    if not (d.curved or any(d.joint_bend)) or r.tolerance > 0.0:
+        return np.inf
     reference = run(d, REFERENCE)
     if not reference.usable:
-        return False
-    m = reference.motion
+        return np.inf
+    return min(turns(d, reference.motion), swings(d, reference.motion))
+
+
+def turns(d: Description, m: Any) -> float:
+    """When a contact that is pressed turns by more than a radian in a step."""
+    if not d.curved:
+        return np.inf
     rows = np.linalg.norm(physics.jacobians(d, m.q), axis=-1)
-    turns = np.abs(d.row("bend", d.contacts)) * np.linalg.norm(m.v, axis=-1)[:, None] * d.h
+    by = np.abs(d.row("bend", d.contacts)) * np.linalg.norm(m.v, axis=-1)[:, None] * d.h
     rests = (m.impulse > 0.0).astype(bool)
-    return bool(np.any(rests & (turns > rows)))
+    return float(np.min(m.t[np.any(rests & (by > rows), axis=1)], initial=np.inf))
+
+
+def swings(d: Description, m: Any) -> float:
+    """When what joints carry swings by more than a radian in a step, as a light body on which a heavy one hangs."""
+    if not any(d.joint_bend):
+        return np.inf
+    long = np.flatnonzero(np.diff(m.t) > 0.0)
+    for k in long[:: 1 + len(long) // SWINGS]:
+        forces = m.joint_impulse[k + 1] / (m.t[k + 1] - m.t[k])
+        if physics.swinging(d, m.q[k], forces) * d.h > 1.0:
+            return float(m.t[k])
+    return np.inf
 
 
 def reaches_the_end(d: Description, r: Run) -> Iterator[Finding]:
@@ -148,9 +168,14 @@ def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
 
 
 def penetration(d: Description, r: Run) -> Iterator[Finding]:
-    """Nothing lies within an obstacle, but for what the order of the method explains."""
+    """Nothing lies within an obstacle, but for what the order of the method explains.
+
+    Of a run that says NOT_FINITE the states are asked up to where it breaks down: those after grow to what it says.
+    """
     if not d.contacts:
         return
+    until = breaks_down(d, r) if r.status == "NOT_FINITE" else np.inf
+    r = up_to(r, until)
     deep, sizes = depth(d, r), r.scales(d)
     rounding = ROUNDING * sizes.length + 1e3 * EPS * float(np.max(sizes.place))
     if deep <= rounding + 10.0 * r.tolerance * (1.0 + sizes.travel):
@@ -161,12 +186,22 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
         return
     if r.method == "moreau" and r.status == "DONE" and within_a_step(d, r, rounding):
         return
-    finer = run(d, r.method, 0.25)
+    finer = up_to(run(d, r.method, 0.25), until)
     if finer.usable and deep > 1e-3 * sizes.length and depth(d, finer) > 0.7 * deep:
-        finest = run(d, r.method, 0.0625)
+        finest = up_to(run(d, r.method, 0.0625), until)
         if finest.usable and depth(d, finest) > 0.7 * deep:
             text = f"{words}, {depth(d, finer):.3g} and {depth(d, finest):.3g} with a quarter and a 16th of the step"
             yield Finding(r.method, "penetration", text)
+
+
+def up_to(r: Run, until: float) -> Run:
+    """A run without its states after a time."""
+    if until == np.inf or not r.usable:
+        return r
+    there = r.motion.t <= until
+    return replace(
+        r, motion=replace(r.motion, **{k: getattr(r.motion, k)[there] for k in ("t", "q", "v", "impulse")})
+    )
 
 
 def within_a_step(d: Description, r: Run, rounding: float) -> bool:

@@ -48,6 +48,25 @@ def jacobians(d: Description, q: Any) -> Any:
     return rows + (d.row("bend", d.contacts) * _bent(d, q)[1])[..., None] * q[..., None, :]
 
 
+def joint_rows(d: Description, q: Any) -> Any:
+    """J (..., joints, n)."""
+    return np.array(d.J) + d.row("joint_bend", len(d.J))[:, None] * q[..., None, :]
+
+
+def swinging(d: Description, q: Any, forces: Any) -> float:
+    """Frequency, or rate of growth, of what round joints carry, at a place and forces of the joints [rad/s].
+
+    Along its tangents N a joint (bend/2) |q|^2 pulls back with force x bend: w^2 = |sum force bend| / (N^T M N).
+    """
+    rows = joint_rows(d, q)
+    _, sizes, turned = np.linalg.svd(rows)
+    N = turned[int(np.sum(sizes > 0.0)) :].T
+    if not N.size:
+        return 0.0
+    least = float(np.linalg.eigvalsh(N.T @ masses(d, q) @ N)[0])
+    return float(np.sqrt(abs(forces @ d.row("joint_bend", len(d.J))) / least))
+
+
 def rates(d: Description, t: Any, q: Any, v: Any) -> Any:
     """Gap velocities (..., contacts)."""
     return np.einsum("...ij,...j->...i", jacobians(d, q), v) - obstacles(d, t, 1)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import multiprocessing
 import signal
 import traceback
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any, NamedTuple
 
@@ -36,6 +36,7 @@ class Answer(NamedTuple):
 def _work(pipe: Any, limit: float, share: float) -> None:
     """A worker: scenes in; names of methods at work and verdicts out."""
     Clock.limit = limit
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C at a terminal is meant for who started the workers
     while True:
         task = pipe.recv()
         if task is None:
@@ -80,7 +81,7 @@ def answers(
     workers: int,
     limit: float = CPU_LIMIT,
     share: float = SHARE,
-) -> Iterator[Answer]:
+) -> Generator[Answer, None, None]:
     """Verdicts on scenes, in the order in which they are ready."""
     scenes = iter(scenes)
     warm(methods)

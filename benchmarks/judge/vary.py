@@ -89,7 +89,7 @@ def varied(d: Description, r: Run, rng: Any, how_many: int) -> Iterator[Finding]
             yield from kept(b, rng)
             continue
         try:
-            v = rest(d, rng, r.motion) if name == "rest" else VARIANTS[str(name)](d, rng)
+            v = rest(d, rng, r.motion, promised(r)) if name == "rest" else VARIANTS[str(name)](d, rng)
             other = run(v.scene, r.method)
         except ValueError:  # a state that rounding has put within an obstacle is no start
             continue
@@ -165,8 +165,7 @@ def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
     sizes = b.run.scales(b.d)
     fast = max(fast, 1e-6 * sizes.reach / sizes.time)
     end = min(b.told, b.grazes, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
-    known = 1.0 + float(np.max(np.abs(b.run.motion.v), initial=0.0))
-    slow = np.maximum(STRONG * fast, 10.0 * b.run.tolerance * known * np.sum(np.abs(rows), axis=-1))
+    slow = np.maximum(STRONG * fast, promised(b.run) * np.sum(np.abs(rows), axis=-1))
     for i, j in ((0, 1), (1, 0)):
         strong = (np.abs(logs[i].before) > slow[contacts[i]]) & (times[i] < end) & (times[i] > start)
         for t, c, u in zip(times[i][strong], contacts[i][strong], logs[i].before[strong], strict=True):
@@ -177,6 +176,11 @@ def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
                 text = f"impact of contact {c} at t = {t:.9g} with {u:.3g} has no partner; {v.scene!r}"
                 yield Finding(b.run.method, f"other events: {v.name}", text)
                 return
+
+
+def promised(r: Run) -> float:
+    """Errors of velocities that a tolerance allows."""
+    return 10.0 * r.tolerance * (1.0 + float(np.max(np.abs(r.motion.v), initial=0.0)))
 
 
 def _allowed(b: Base, t: float) -> float:

@@ -153,4 +153,65 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven-loose",),
     ),
+    # The wall's force on one bead drove it, by its rounding, against two that nothing presses together
+    "beads at rest that touch with no force, beside one that is pressed": (
+        Description(
+            M=((2.67, 0.0, 0.0), (0.0, 2.06, 0.0), (0.0, 0.0, 1.09)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+            t_span=(0.0, 0.07259), h=0.000305, G=((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0), (1.0, 0.0, 0.0)), offset=(0.0,
+            0.0, 0.0), restitution=(1.0, 0.64, 0.0), K=((94000.0, 17400.0, -39700.0), (17400.0, 54200.0, -6310.0),
+            (-39700.0, -6310.0, 18000.0)), C=((21.8, 3.94, -9.01), (3.94, 12.6, -1.43), (-9.01, -1.43, 4.25)),
+            constant=(-26.2, 0.0, 0.0), family="beads",
+        ),
+        ("located-4-tolerance",),
+    ),
+    # A force was found to pull where it was not yet found to open its contact, at every thousandth of a step
+    "forces that begin at zero and come out of rounding": (
+        Description(
+            M=((2.4, 0.0, 0.0), (0.0, 2.61, 0.0), (0.0, 0.0, 0.732)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+            t_span=(0.0, 0.0157798), h=0.00365, G=((0.402, -0.496, 0.769), (0.288, 0.753, 0.592), (-0.57, -0.0907,
+            0.817)), offset=(0.0, 0.0, 0.0), C=((0.602, 0.0, 0.0), (0.0, 0.654, 0.0), (0.0, 0.0, 0.184)),
+            constant=(0.622, 0.424, 0.07749999999999968), cosine=(-0.622, -0.424, -0.0775), force_omega=12.8,
+            family="wedge",
+        ),
+        ("located-4-tolerance",),
+    ),
+    # Rates that a long step had arrived with served ever shorter ones, whose errors then no longer fell
+    "a light mass on a rod that the heavy one lets go through a dead point": (
+        Description(
+            M=((7.75e-05, 0.0), (0.0, 4850.0)), q0=(-0.107, -1.88), v0=(-3.661173851452783, 0.20837532026885522),
+            t_span=(0.0, 0.073), h=0.0146, G=((1.33, -1.78), (2.03, -0.126)), offset=(-2.41309,
+            0.004629999999999995), restitution=0.68, C=((4.02e-05, 0.0), (0.0, 2520.0)), constant=(0.0, -47600.0),
+            J=((0.0, 0.0),), joint_offset=(-1.7729244999999998,), joint_bend=(1.0,), family="jointed",
+        ),
+        ("located-tolerance",),
+    ),
+    # Let go by rounding, it came back at the end of the step with the step's error for a speed, and bounced
+    "a contact that the forces at the start press with nothing to rounding": (
+        Description(
+            M=((0.62, 0.0285, 0.0154), (0.0285, 1.65, 0.0252), (0.0154, 0.0252, 0.483)), q0=(-1.04, 0.366, 0.949),
+            v0=(0.0, 0.0, 0.0), t_span=(0.0, 0.7524), h=0.0114, G=((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+            offset=(-0.366, -0.949), restitution=(1.0, 0.28), K=((0.273, -0.273, 0.0), (-0.273, 0.546, -0.273),
+            (0.0, -0.273, 0.273)), constant=(-0.6697104380137033, -9.874546513874265, -1.68175216231999),
+            cosine=(1.31, 12.2, 2.76), sine=(-3.29, 25.5, -3.65), force_omega=0.428, general=True, spread=0.309,
+            pendulum=4.24, b=(0.663, 1.36, 0.595), family="chain",
+        ),
+        ("located",),
+    ),
+    # A speed that the tolerance leaves open made it hop for ever
+    "a span in two parts, an elastic contact at rest where the second begins": (
+        Description(
+            M=((9.3e-05, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 18700.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 454.0, 0.0, 0.0,
+            0.0), (0.0, 0.0, 0.0, 5.34e-05, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 1350.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0,
+            1440.0)), q0=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), v0=(-6.83, 2.16, -6.85, -2.52, 0.434, 2.66), t_span=(0.0,
+            1.47186), h=0.0231, G=((-1.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, -1.0, 1.0, 0.0, 0.0, 0.0), (0.0, 0.0,
+            -1.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, -1.0, 1.0, 0.0), (0.0, 0.0, 0.0, 0.0, -1.0, 1.0), (1.0, 0.0, 0.0,
+            0.0, 0.0, 0.0), (-0.0, -0.0, -0.0, -0.0, -0.0, -1.0)), offset=(0.17301405849905094, 0.17301405849905094,
+            -0.08650702924952547, 0.0, 0.0, 0.0, 0.0), restitution=(0.0, 1.0, 0.45, 1.0, 0.66, 0.99, 0.62),
+            C=((3.22e-06, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 649.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 15.7, 0.0, 0.0,
+            0.0), (0.0, 0.0, 0.0, 1.85e-06, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 46.6, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0,
+            49.9)), constant=(0.0, 0.0, -4450.0, 0.0, 0.0, 0.0), amplitude=(0.175, 0.175, -0.0875, -0.0875, -0.0875,
+            0.0, 0.0), phase=(1.42, 1.42, 1.42, 0.0, 0.0, 0.0, 1.42), omega=0.706, family="beads",
+        ),
+        ("located-tolerance",),
+    ),
 }  # fmt: skip

@@ -1,15 +1,17 @@
 """The judge asks for no more than a method, or a law, can promise, and for all of that."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from benchmarks.judge.checks import check, finite, gain, given_by_the_law
+from benchmarks.judge import checks
+from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
-from benchmarks.judge.physics import room
+from benchmarks.judge.physics import rates, room, swinging
 from benchmarks.judge.runs import run
-from benchmarks.judge.variants import Variant
+from benchmarks.judge.variants import Variant, rest
 from benchmarks.judge.vary import base, jams, same
 
 
@@ -25,6 +27,41 @@ def test_steps_may_break_down_only_where_the_wall_turns_within_one(speed, excuse
     )  # fmt: skip
     r = replace(run(d, "located-4"), status="NOT_FINITE")
     assert ("not finite" in kinds(finite(d, r))) is not excused
+
+
+@pytest.mark.parametrize(("light", "excused"), [(1.0, False), (1e-4, True)])
+def test_steps_may_break_down_only_where_what_joints_carry_swings_within_one(light, excused):
+    """A weight of 9.81 N that hangs on a rod of 1 m swings with the square root of 9.81 / mass along its arc."""
+    d = Description(
+        M=((light, 0.0), (0.0, 1.0)), q0=(0.0, -1.0), v0=(0.0, 0.0), t_span=(0.0, 0.05), h=0.01,
+        constant=(0.0, -9.81), J=((0.0, 0.0),), joint_offset=(-0.5,), joint_bend=(1.0,),
+    )  # fmt: skip
+    assert swinging(d, np.array(d.q0), np.array([-9.81])) == pytest.approx(np.sqrt(9.81 / light))
+    r = replace(run(d, "located-4"), status="NOT_FINITE")
+    assert ("not finite" in kinds(finite(d, r))) is not excused
+
+
+CLOSING = Description(
+    M=((0.512, 0.0, 0.0), (0.0, 2.28, 0.0), (0.0, 0.0, 1.75)), q0=(0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0),
+    t_span=(0.0, 2.0), h=0.0698, G=((0.0, 0.0, 0.0),), offset=(0.2003334021718558,), K=((0.0192, -0.0467,
+    -0.00065), (-0.0467, 0.211, -0.117), (-0.00065, -0.117, 0.148)), C=((0.00466, -0.00606, -8.43e-05), (-0.00606,
+    0.0371, -0.0152), (-8.43e-05, -0.0152, 0.0265)), constant=(0.0, 0.0, -17.2), force_omega=0.405,
+    amplitude=(0.212,), phase=(0.493,), omega=0.948, bend=(-0.429,), round=(0.0,), general=True, spread=0.131,
+    pendulum=0.191, b=(-1.12, 0.38, -1.02), family="curved",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("time", "excused"), [(0.6, False), (0.8, True)])
+def test_steps_that_break_down_may_lie_in_a_wall_only_from_there_on(time, excused, monkeypatch):
+    """A bowl that shrinks to nothing about a body, at 0.785 s: it turns about in less than a step from 0.727 s on."""
+    r = run(CLOSING, "located-4")
+    assert r.status == "NOT_FINITE"
+    q = np.where((r.motion.t > time)[:, None], 3.0, 0.3) * r.motion.q
+    deep = replace(r, motion=replace(r.motion, q=q))
+    finer = {"located-4": deep, "event-driven": run(CLOSING, "event-driven")}
+    monkeypatch.setattr(checks, "run", lambda d, name, factor=1.0: finer[name])
+    assert depth(CLOSING, deep) > 0.1
+    assert ("penetration" in kinds(penetration(CLOSING, deep))) is not excused
 
 
 @pytest.mark.parametrize(("faster", "found"), [(1.0, set()), (1e5, {"other events: span in two parts"})])
@@ -94,3 +131,20 @@ def test_a_motion_is_told_until_it_grazes(method, clearance, known):
         d = replace(d, G=((-1.0,),), offset=(1.0 + clearance,))
     found = base(d, run(d, method)).grazes
     assert found == (np.inf if known else pytest.approx(2.0 * np.pi, abs=1e-4))
+
+
+@pytest.mark.parametrize(("speed", "rests"), [(-1e-6, True), (-1e-2, False)])
+def test_a_second_part_begins_at_rest_where_a_tolerance_tells_no_speed(speed, rests):
+    """Two beads on each other and on an elastic table that goes up."""
+    d = Description(
+        M=((1.0, 0.0), (0.0, 3.0)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 0.2), h=0.1,
+        G=((1.0, 0.0), (-1.0, 1.0)), offset=(0.0, 0.0), restitution=1.0, constant=(-9.81, -30.0),
+        amplitude=(0.1, 0.0), phase=(0.0, 0.0), omega=1.0,
+    )  # fmt: skip
+    q, v = np.full(2, 0.1 * np.sin(0.1)), 0.1 * np.cos(0.1) + np.array([speed, 0.5 * speed])
+    motion = SimpleNamespace(q=q[None], v=v[None], at=lambda t: (q, v))
+    second = rest(d, np.random.default_rng(1), motion, 1e-4).scene
+    still = np.max(np.abs(rates(second, 0.1, q, np.array(second.v0)))) < 1e-15
+    assert second.t_span == (0.1, 0.2)
+    assert bool(still) is rests
+    assert rest(d, np.random.default_rng(1), motion).scene.v0 == tuple(v)

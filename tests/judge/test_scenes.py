@@ -4,6 +4,8 @@ What is still open is listed by class, so that nothing new comes in beside it; t
 docs/accuracy.md says how often each happens.
 """
 
+from dataclasses import replace
+
 import pytest
 
 from benchmarks.judge.case import judged
@@ -11,6 +13,7 @@ from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
 from benchmarks.judge.runs import WAYS, run, silent
 from lcpstep import Status
+from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
 from tests.judge.open import OPEN
@@ -34,6 +37,18 @@ def test_a_force_that_begins_at_zero_lets_go_once():
     motion = run(KEPT["touched at the very beginning of a step"][0], "located-4-tolerance").motion
     assert motion.status == Status.DONE
     assert len(motion.impacts) < 10
+
+
+def test_a_contact_that_opens_at_the_start_does_not_open_before_it():
+    """Far from time zero a step's end less its length is not its beginning."""
+    d = LATELY["a contact that the forces at the start press with nothing to rounding"][0]
+    later = replace(
+        d, t_span=(64.0, 64.7524), cosine=(1.7083070670967344, -27.44298454261806, 1.0650492749796037),
+        sine=(3.1019166598262036, -6.780309682722908, 4.450367405267279),
+    )  # fmt: skip
+    log = run(later, "located").motion.impacts
+    assert list(log.kind) == [Kind.RELEASE]
+    assert log.time[0] == 64.0
 
 
 def judge(numbers, seed, methods, share):

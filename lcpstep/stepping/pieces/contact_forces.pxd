@@ -1,8 +1,8 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
 from lcpstep.stepping.pieces.jointed cimport answer_force
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
@@ -16,6 +16,7 @@ cdef Py_ssize_t answered(Plan plan, Work w, Py_ssize_t place) noexcept nogil
 cdef Py_ssize_t choose_resting(Work w) noexcept nogil
 cdef double leaving(Model m, Work w, double* W, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil
 cdef bint pulls(Model m, Work w, Py_ssize_t c) noexcept nogil
+cdef double jerked(Work w, double* W, Py_ssize_t c) noexcept nogil
 @cython.locals(more=bint)
 cdef double largest_connected(Work w, Py_ssize_t c) noexcept nogil
 cdef void zero_rounding(Plan plan, Work w) noexcept nogil

@@ -14,8 +14,8 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, max
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
     from lcpstep.stepping.pieces.jointed import answer_force
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -31,6 +31,7 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
     """
     n = w.n_q
     copy(w.a, w.free, w.n_q)
+    clear(w.p, w.n_c)
     n_k = choose_resting(w)
     if n_k == 0:
         return True
@@ -46,6 +47,7 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
         w.a_try[i] = abs(w.free[i])
     for k in range(n_k):
         c, force = w.chosen[k], w.z[k]
+        w.p[c] = force
         if force > 0.0:
             for i in range(n):
                 w.a[i] += MG[c * w.n_q + i] * force
@@ -105,16 +107,21 @@ def choose_resting(w: Work) -> int:
 
 
 def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
-    """Acceleration with which the k-th chosen contact, which carries no force, opens; 0 if it is but rounding."""
+    """Acceleration with which the k-th chosen contact, which carries no force, opens; 0 if it is but rounding.
+
+    Of a closed one that is known to pull by more than rounding its sign is enough: else it might be asked for ever.
+    """
     c = w.chosen[k]
     alpha, size = w.b[k], 0.0
     for j in range(n_k):
         d = w.chosen[j]
         alpha += W[c * w.n_c + d] * w.z[j]
         size += abs(W[c * w.n_c + d] * w.z[j])
-    if alpha <= ROUNDING * (size + abs(w.b[k])):
+    if w.status[c] == CLOSED and w.grounded[c] == LEFT:
+        return max(alpha, 0.0)
+    if alpha <= ROUNDING * (size + abs(w.b[k])) or alpha <= ROUNDING * (size + acceleration_terms(m, w, c)):
         return 0.0
-    return alpha if alpha > ROUNDING * (size + acceleration_terms(m, w, c)) else 0.0
+    return alpha if alpha > jerked(w, W, c) else 0.0
 
 
 def pulls(m: Model, w: Work, c: int) -> bool:
@@ -122,13 +129,25 @@ def pulls(m: Model, w: Work, c: int) -> bool:
 
     It may balance but the rounding of the next force, as in a row of bodies of which the last alone is pressed.
     """
-    if -w.p[c] <= ROUNDING * largest_connected(w, c):
+    alpha, size = -w.W[c * w.n_c + c] * w.p[c], 0.0
+    if alpha <= jerked(w, w.W, c):
         return False
-    size = 0.0
     for d in range(w.n_c):
         if w.status[d] == CLOSED:
             size += abs(w.W[c * w.n_c + d] * w.p[d])
-    return -w.W[c * w.n_c + c] * w.p[c] > ROUNDING * (size + acceleration_terms(m, w, c))
+    return alpha > ROUNDING * (size + acceleration_terms(m, w, c))
+
+
+def jerked(w: Work, W: Doubles, c: int) -> float:
+    """Acceleration of gap c by the rounding of the forces in w.p, each of which rounds those next to it in a chain.
+
+    Those on the contact itself it need not bear: it opens.
+    """
+    felt = 0.0
+    for d in range(w.n_c):
+        if d != c and w.status[d] == CLOSED:
+            felt += abs(W[c * w.n_c + d])
+    return ROUNDING * min(felt, W[c * w.n_c + c]) * largest_connected(w, c) if felt > 0.0 else 0.0
 
 
 def largest_connected(w: Work, c: int) -> float:
@@ -163,7 +182,7 @@ def zero_rounding(plan: Plan, w: Work) -> None:
 
 
 def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) -> bool:
-    """Gap velocities of closed contacts back to zero, with the normals at the end of the piece.
+    """Gap velocities of closed contacts back to zero, with the normals at the end of the piece that began at t.
 
     A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
     forces over the piece do: damping answers them.
@@ -199,5 +218,5 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0
-                release(m, plan, w, record, c, t - tau + tau * share, u)
+                release(m, plan, w, record, c, t + tau * share, u)
     return True

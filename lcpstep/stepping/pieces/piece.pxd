@@ -15,6 +15,7 @@ from lcpstep.stepping.pieces.smooth cimport (
     ON_THE_SURFACE, accelerate, advance, gap_bias, measure, put_on_surface, refactor, respond,
 )
 from lcpstep.stepping.pieces.state cimport Plan, Work
+from lcpstep.stepping.pieces.switches cimport stick
 from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t POLISHING
@@ -39,4 +40,5 @@ cdef double between(
 ) noexcept nogil
 @cython.locals(wanted=bint)
 cdef Py_ssize_t move(Model m, Plan plan, Work w, Record record, double t, double tau, bint to_end) noexcept nogil
+cdef void take_back(Plan plan, Work w, Record record, double t) noexcept nogil
 cdef bint penetrates(Plan plan, Work w) noexcept nogil

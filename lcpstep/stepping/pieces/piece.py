@@ -40,6 +40,7 @@ if not cython.compiled:
         respond,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import stick
     from lcpstep.stepping.pieces.times import within
 
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
@@ -217,10 +218,12 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
     elif wanted:
         remember(w)
     if tau > 0.0:
-        for c in range(w.n_c):
-            w.grounded[c] = 0
         if not advance(m, plan, w, within(plan, w, now), tau):
             return NOT_FINITE
+        if not (plan.plain or plan.trapezoidal):
+            take_back(plan, w, record, now + tau)
+        for c in range(w.n_c):
+            w.grounded[c] = 0
     w.sigma = w.end if to_end else w.sigma + tau
     if to_end and plan.trapezoidal and not plan.steady:
         copy(w.force, w.next_force, w.n_q)
@@ -233,7 +236,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
                 if not refactor(m, w, now + tau):
                     return NOT_FINITE
                 respond(m, w)
-            if not land(m, plan, w, record, now + tau, tau):
+            if not land(m, plan, w, record, now, tau):
                 return LCP_FAILED
             if penetrates(plan, w):
                 put_on_surface(m, plan, w, now + tau)
@@ -243,6 +246,16 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
     if w.joined:
         share_out(w, record, first_row, now, tau)
     return FINISHED
+
+
+def take_back(plan: Plan, w: Work, record: Record, t: float) -> None:
+    """Contacts let go at the base, that have not risen when their velocity points back, have never left.
+
+    The acceleration of the base lets them go; of what it grows to within the piece it tells nothing.
+    """
+    for c in range(w.n_c):
+        if w.grounded[c] == LEFT and w.status[c] == OPEN and w.gap[c] <= plan.slack and w.rate[c] < 0.0:
+            stick(w, record, c, t)
 
 
 def penetrates(plan: Plan, w: Work) -> bool:

@@ -3,7 +3,7 @@ from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport product
-from lcpstep.stepping.pieces.codes cimport GROUND, LEFT, OPEN, WHOLE
+from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, LEFT, OPEN, WHOLE
 from lcpstep.stepping.pieces.contact_forces cimport hold
 from lcpstep.stepping.pieces.keep cimport keep
 from lcpstep.stepping.pieces.polynomial cimport Polynomial, acceleration, biases

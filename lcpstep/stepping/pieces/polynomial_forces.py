@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles
-    from lcpstep.stepping.pieces.codes import GROUND, LEFT, OPEN, WHOLE
+    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
     from lcpstep.stepping.pieces.contact_forces import hold
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
@@ -65,9 +65,14 @@ def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: 
     w.touching = True
     for c in range(w.n_c):
         w.older[c] = 0.0
-        if w.grounded[c] == LEFT:
+        if w.grounded[c] == LEFT and w.status[c] == OPEN:
             w.grounded[c] = GROUND
-    return decide(m, plan, w, record, later, q, v, t)
+    if not decide(m, plan, w, record, later, q, v, t):
+        return False
+    for c in range(w.n_c):
+        if w.grounded[c] == LEFT and w.status[c] == CLOSED:
+            w.grounded[c] = GROUND
+    return True
 
 
 def decide(

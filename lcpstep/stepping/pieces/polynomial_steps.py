@@ -128,7 +128,7 @@ def too_short(plan: Plan, w: Work, now: float) -> bool:
 def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> None:
     """The force of closed contact c has vanished: it opens, or where others are closed they decide together."""
     if w.closed_now > 1:
-        w.ahead = UNDECIDED
+        w.ahead, w.grounded[c] = UNDECIDED, LEFT
         idle(w)
         return
     release(m, plan, w, record, c, t, 0.0)

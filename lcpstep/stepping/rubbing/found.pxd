@@ -13,6 +13,7 @@ cdef Py_ssize_t OPEN, SLIDES
 cdef double NOWHERE
 
 cdef bint note_base(Strides s, double t) noexcept nogil
+cdef bint measure_base(Strides s, double t) noexcept nogil
 cdef void widen_bands(Strides s) noexcept nogil
 @cython.locals(size=double)
 cdef double pushed(Strides s, Py_ssize_t i) noexcept nogil

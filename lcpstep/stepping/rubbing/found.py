@@ -28,15 +28,20 @@ NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was
 
 def note_base(s: Strides, t: float) -> bool:
     """Rates, forces and guards at the base state; False where one is not finite, or rows cannot be held."""
+    if not measure_base(s, t):
+        return False
+    widen_bands(s)
+    return True
+
+
+def measure_base(s: Strides, t: float) -> bool:
+    """The same, with the bands of the guards as they are."""
     if not s.rates(t, s.y, s.K):
         return False
     s.evaluations += 1
     list_multipliers(s)
     copy(s.leaving, s.multiplier, s.n_r)
-    if not note(s, t, s.y, s.K, s.begin_value, s.begin_slope):
-        return False
-    widen_bands(s)
-    return True
+    return note(s, t, s.y, s.K, s.begin_value, s.begin_slope)
 
 
 def widen_bands(s: Strides) -> None:

@@ -4,13 +4,13 @@ from lcpstep.events.friction.state cimport GUARDS
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, distance, largest
 from lcpstep.pointers cimport abs, inf, max, min
-from lcpstep.stepping.rubbing.found cimport curve, is_motion, note_arrival, note_middle, read_guards
+from lcpstep.stepping.rubbing.found cimport curve, is_motion, measure_base, note_arrival, note_middle, read_guards
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
-cdef double ROUNDING, SAFETY, LEAST, MOST, LEAST_SHARE, FLAT, NEAR
+cdef double ROUNDING, SAFETY, LEAST, MOST, LEAST_SHARE, STEEP, NEAR
 
-@cython.locals(truncated=bint, error=double, share=double, allowed=double)
+@cython.locals(truncated=bint, longer=double, error=double, share=double, allowed=double)
 cdef Py_ssize_t pace(Strides s, double t, double longest) noexcept nogil
 cdef Py_ssize_t why(Strides s, double error) noexcept nogil
 cdef double change(Strides s, double allowed, double error) noexcept nogil

@@ -21,19 +21,29 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, distance, largest
     from lcpstep.pointers import abs, inf, max, min
-    from lcpstep.stepping.rubbing.found import curve, is_motion, note_arrival, note_middle, read_guards
+    from lcpstep.stepping.rubbing.found import (
+        curve,
+        is_motion,
+        measure_base,
+        note_arrival,
+        note_middle,
+        read_guards,
+    )
     from lcpstep.stepping.rubbing.strides import Strides
 
 ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
 LEAST_SHARE = 1e-3  # of the tolerance, in steps within which a force jumps
-FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
+STEEP = 1.585  # an error that falls by no more than this power of the step, a third at half of it, comes from a jump
 NEAR = 3.0  # errors of a guard: from where on it may have acted
 
 
 def pace(s: Strides, t: float, longest: float) -> int:
-    """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status."""
-    h, before = min(s.next_step, longest), inf
+    """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status.
+
+    Rates that the step before has arrived with are as good as it was long: for a shorter one they are made anew.
+    """
+    h, before, longer = min(s.next_step, longest), inf, inf
     truncated = h < s.next_step
     while True:
         s.culprit = -1
@@ -41,13 +51,16 @@ def pace(s: Strides, t: float, longest: float) -> int:
         if halves(s, t, h) and s.step(t, h) and note_arrival(s, t, h):
             error = weigh(s, h)
         share = h / s.span
-        if FLAT * error > before and error < inf:
+        if error < inf and error > before * pow(h / longer, STEEP):
             share = max(share, LEAST_SHARE)
         allowed = share * s.tolerance
         if error <= allowed:
             break
         if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDING:
             return why(s, error)
+        if longer == inf and not measure_base(s, t):
+            return why(s, inf)
+        longer = h
         h *= 0.5 if before == inf else change(s, allowed, error)
         before, truncated = error, False
     s.next_step = max(h * max(change(s, allowed, error), 1.0), s.next_step if truncated else 0.0)
