@@ -13,7 +13,8 @@ from lcpstep.audit.curved import Curved
 from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
-from lcpstep.audit.sums import missed
+from lcpstep.audit.missed import missed
+from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
 from lcpstep.events.flight.contact import CLOSED
@@ -57,7 +58,15 @@ class Pieces:
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
         self.certain = isinstance(run.dense, Moved) and run.dense.constant
-        gone = drift(run, self.m, run.dense.jumps, self.cuts) if isinstance(run.dense, Bent) else None
+        t = np.ascontiguousarray(self.t)
+        names = "time", "contact", "kind", "after"
+        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        if mode is not None:
+            self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
+        else:
+            self.closed = closed_from_the_start(run, t)
+            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
+        gone = self.added_up()
         if gone is not None:
             error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
@@ -65,14 +74,6 @@ class Pieces:
             self.problem: Any = Curved(self.scene, self.m, self.motion, error, gone)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error, gone)
-        names = "time", "contact", "kind", "after"
-        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
-        t = np.ascontiguousarray(self.t)
-        if mode is not None:
-            self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
-        else:
-            self.closed = closed_from_the_start(run, t)
-            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
         some = slice(None, None, max(1, len(run.t) // LOOKS))
         when, q, v = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
         self.largest = float(np.max(np.abs(extremes(self.m, when, q, v))))
@@ -84,6 +85,15 @@ class Pieces:
         if np.any(self.closed):
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
+
+    def added_up(self) -> Array | None:
+        """What the steps have added up, (m, n_q), of methods that choose none by their error; see `drift`, `missed`."""
+        run, dense = self.run, self.run.dense
+        if isinstance(dense, Bent):
+            return drift(run, self.m, dense.jumps, self.cuts)
+        if getattr(run.method, "order", "exact") == "exact":
+            return None
+        return missed(run, self.m, self.motion, self.closed, self.cuts)
 
     def to_event(self, w: Windows) -> Array:
         """How far windows reach from the nearest event of their contact, in whichever piece it lies [s]."""
@@ -139,7 +149,7 @@ def between(run: Trajectory, jumps: Mask) -> Array:
     """How far the parabolas between kept states may be from the motion, (m, n_q)."""
     out = np.zeros((len(run.t) - 1, run.q.shape[1]))
     t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
-    missed(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
+    between_states(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
     return out
 
 
