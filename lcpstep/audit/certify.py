@@ -49,14 +49,16 @@ def audit(run: Trajectory) -> Audit:
     if run.scene.n_c == 0 or len(run.t) < 2:
         return Audit(1.0, 0, 0, ())
     p, tally = Pieces(run), Tally()
+    clear, whole = look(p), run.scene.n_c * (p.t[-1] - p.t[0])
+    if clear.all():
+        return Audit(1.0, (count := counted(p, tally)[0]), count, ())
     h = np.diff(p.t)
-    clear = look(p)
-    tally.certified = float(np.sum(np.where(clear, h[:, None], 0.0)))
-    k, c = np.nonzero(~clear & (h > 0.0)[:, None])
+    k, c = np.nonzero(~clear)
+    tally.certified = whole - float(np.sum(h[k]))
+    k, c = k[h[k] > 0.0], c[h[k] > 0.0]
     for first in range(0, len(k), PORTION):
         part = slice(first, first + PORTION)
         examine(p, divided(p, k[part], c[part]), tally)
-    whole = run.scene.n_c * (p.t[-1] - p.t[0])
     flights, bad = counted(p, tally)
     windows = tuple(sorted(reported(tally), key=lambda x: (x.start, x.contact)))
     missed = tuple(sorted(set(tally.found), key=lambda x: (x.time, x.contact, x.start)))
@@ -197,7 +199,8 @@ def counted(p: Pieces, tally: Tally) -> tuple[int, int]:
     fresh = p.touched[:-1].copy()
     fresh[1:] |= p.closed[:-1]
     fresh[0] = True
-    fresh &= ~p.closed & (np.diff(p.t) > 0.0)[:, None]
+    fresh &= (p.t[1:] > p.t[:-1])[:, None]
+    fresh &= ~p.closed
     count = int(np.count_nonzero(fresh))
     if not (tally.windows or tally.found):
         return count, 0

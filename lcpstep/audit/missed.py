@@ -52,6 +52,9 @@ def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: A
     jump = jumped(run, t)
     place, speed = by_motion(run, motion, f, h, jump)
     place[held], speed[held] = by_rest(off[held], h[held])
+    parted = np.searchsorted(cuts, t[:-1], side="right") < np.searchsorted(cuts, t[1:], side="left")
+    for x in (place, speed):  # a corner within: its parts are steps of their own, as those beside it
+        x[parted] = largest_beside(np.abs(np.where(parted[:, None], 0.0, x)))[parted]
     within = 0.125 * (h * h)[:, None] * np.max(np.abs(off), axis=1)
     place, speed, within = (np.abs(np.nan_to_num(x, posinf=0.0, neginf=0.0)) for x in (place, speed, within))
     gone, marks = np.zeros(place.shape), jump.view(np.uint8)
@@ -84,6 +87,14 @@ def by_motion(run: Trajectory, motion: Polynomials, f: Array, h: Array, jump: Ma
     place = (motion.B[:, -1] - motion.B[:, 0]) - h * (v[:-1] + h * moved)
     speed = np.where(jump[1:, None], 0.0, (v[1:] - v[:-1]) - h * turned)
     return place, speed
+
+
+def largest_beside(x: Array) -> Array:
+    """The larger one of both neighbours, (m, n_q)."""
+    out = np.zeros(x.shape)
+    out[1:] = x[:-1]
+    out[:-1] = np.maximum(out[:-1], x[1:])
+    return out
 
 
 def by_rest(off: Array, h: Array) -> tuple[Array, Array]:

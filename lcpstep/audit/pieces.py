@@ -53,7 +53,7 @@ class Pieces:
 
     def __init__(self, run: Trajectory) -> None:
         self.run, self.scene = run, run.scene
-        self.m = model(self.scene)
+        self.m = getattr(run.dense, "model", None) or model(self.scene)
         found = turns(self.scene)
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
@@ -62,7 +62,7 @@ class Pieces:
         names = "time", "contact", "kind", "after"
         time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
         if mode is not None:
-            self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
+            self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
             self.closed = closed_from_the_start(run, t)
             close(t, time, contact, kind, rate, self.closed.view(np.uint8))
@@ -82,7 +82,7 @@ class Pieces:
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
         touched, unknown = (x.view(np.uint8) for x in (self.touched, self.unknown))
         mark(t, time, contact, kind, touched, unknown)
-        if np.any(self.closed):
+        if self.closed.any():
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
 
