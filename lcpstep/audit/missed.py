@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 NODES = 0.5 + 0.5 * np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
 WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+SAFETY = 2.0  # what is told of the errors found: motions may part a little, and nodes see no more than they see
 ROUNDING = 4e-14  # of the positions: what their second differences over a step, times h^2, may be off by
 JUMPS = float(Kind.IMPACT), float(Kind.ACCUMULATION), float(Kind.JAM)
 
@@ -61,7 +62,7 @@ def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: A
     first, second, size = np.zeros(gone.shape), np.zeros(gone.shape), np.zeros(run.scene.n_q)
     changes(t, np.ascontiguousarray(run.v), marks, np.ascontiguousarray(cuts), first, second, size)
     add_up(t, marks, place, speed, frequency(run, m, size, second), gone)
-    return gone + within
+    return SAFETY * (gone + within)
 
 
 class Nodes:
