@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Contacts
 from lcpstep.audit import motion
+from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
@@ -17,6 +18,7 @@ from lcpstep.audit.missed import missed
 from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
+from lcpstep.events.arcs.run import Arcs
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
@@ -48,7 +50,9 @@ class Pieces:
     touched   (m + 1, n_c)   at which times a contact is at zero by what the run says
     scale     of times: the period, or the span
     largest   of all gaps, of some of the states
-    certain   whether the forces of closed contacts are constant, so that the run has judged them for good
+    certain   whether the forces of closed contacts are constant, so that the run has judged them for good, or their
+        sticking and sliding has ended by bounds
+    cones     guards of closed contacts with friction, or None
     """
 
     def __init__(self, run: Trajectory) -> None:
@@ -57,7 +61,7 @@ class Pieces:
         found = turns(self.scene)
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
-        self.certain = isinstance(run.dense, Moved) and run.dense.constant
+        self.certain = isinstance(run.dense, Arcs) or (isinstance(run.dense, Moved) and run.dense.constant)
         t = np.ascontiguousarray(self.t)
         names = "time", "contact", "kind", "after"
         time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
@@ -66,6 +70,8 @@ class Pieces:
         else:
             self.closed = closed_from_the_start(run, t)
             close(t, time, contact, kind, rate, self.closed.view(np.uint8))
+        known = by_tolerance(run.method) and not self.certain and self.closed.any() and is_known(self.scene)
+        self.cones = Cones(self.scene, self.motion, run.v, self.closed, error) if known else None
         gone = self.added_up()
         if gone is not None:
             error = (error[0] + gone, error[1])
