@@ -8,6 +8,7 @@ run has missed.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,7 @@ LEAST = 20_000  # windows that any portion may become
 CLOSER = 10  # halvings of the window of an event that is to be taken
 UNKNOWN = "an impact lies between two kept states, so that the motion between them is not known"
 NARROW = "the gap is as small as the error of the motion"
+EDGE = "a force of a closed contact, or how fast it slides, is as near to its limit as its error"
 FORCE = "the force of a closed contact is looked at by the run alone"
 TOO_MANY = "bounds are too wide, and windows would be too many"
 
@@ -49,14 +51,16 @@ def audit(run: Trajectory) -> Audit:
     if run.scene.n_c == 0 or len(run.t) < 2:
         return Audit(1.0, 0, 0, ())
     p, tally = Pieces(run), Tally()
+    clear, whole = look(p), run.scene.n_c * (p.t[-1] - p.t[0])
+    if clear.all():
+        return Audit(1.0, (count := counted(p, tally)[0]), count, ())
     h = np.diff(p.t)
-    clear = look(p)
-    tally.certified = float(np.sum(np.where(clear, h[:, None], 0.0)))
-    k, c = np.nonzero(~clear & (h > 0.0)[:, None])
+    k, c = np.nonzero(~clear)
+    tally.certified = whole - float(np.sum(h[k]))
+    k, c = k[h[k] > 0.0], c[h[k] > 0.0]
     for first in range(0, len(k), PORTION):
         part = slice(first, first + PORTION)
         examine(p, divided(p, k[part], c[part]), tally)
-    whole = run.scene.n_c * (p.t[-1] - p.t[0])
     flights, bad = counted(p, tally)
     windows = tuple(sorted(reported(tally), key=lambda x: (x.start, x.contact)))
     missed = tuple(sorted(set(tally.found), key=lambda x: (x.time, x.contact, x.start)))
@@ -108,25 +112,27 @@ def examine(p: Pieces, w: Windows, tally: Tally) -> None:
         if p.certain:
             tally.certified += float(np.sum(closed.b - closed.a))
         elif hasattr(p.problem, "pressed") and p.motion.absolute and not p.problem.why:
-            halve(p, closed, tally)
+            halve(p, closed, tally, p.problem)
+        elif p.cones is not None:
+            halve(p, closed, tally, p.cones)
         else:
             tally.windows.append((closed, np.zeros(len(closed.a)), FORCE, False))
     flying = w.chosen(~w.closed)
     if len(flying.a):
-        halve(p, flying, tally)
+        halve(p, flying, tally, p.problem)
 
 
-def halve(p: Pieces, w: Windows, tally: Tally) -> None:
+def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
     """Windows, which are halved until they are certified or too small or too many."""
     most, rough = MOST * len(w.a) + LEAST, True
     looked = 0
     while len(w.a):
         looked += len(w.a)
         try:
-            s = p.problem.seen(w, rough=rough)
+            s = problem.seen(w, rough=rough)
         except NotEnclosed as error:
-            p.problem.why = str(error)
-        if p.problem.why:
+            problem.why = str(error)
+        if problem.why:
             look_at_samples(p, w, tally)
             return
         small = np.minimum(s.own, NEGLIGIBLE * p.largest)
@@ -147,12 +153,13 @@ def halve(p: Pieces, w: Windows, tally: Tally) -> None:
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
         vain = left & (
-            in_vain(p, w, s, lower) if isinstance(p.problem, Flat) else False
+            in_vain(p, w, s, lower) if isinstance(problem, Flat) else False
         )  # others: errors shrink
         end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
         if np.any(end):
             narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
-            for which, why in (end & narrow, NARROW), (end & ~narrow, TOO_MANY):
+            near = NARROW if problem is p.problem else EDGE
+            for which, why in (end & narrow, near), (end & ~narrow, TOO_MANY):
                 if np.any(which):
                     tally.windows.append((w.chosen(which), lower[which], why, False))
         w = w.chosen(left & ~end).halved()
@@ -197,7 +204,8 @@ def counted(p: Pieces, tally: Tally) -> tuple[int, int]:
     fresh = p.touched[:-1].copy()
     fresh[1:] |= p.closed[:-1]
     fresh[0] = True
-    fresh &= ~p.closed & (np.diff(p.t) > 0.0)[:, None]
+    fresh &= (p.t[1:] > p.t[:-1])[:, None]
+    fresh &= ~p.closed
     count = int(np.count_nonzero(fresh))
     if not (tally.windows or tally.found):
         return count, 0

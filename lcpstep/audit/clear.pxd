@@ -42,8 +42,12 @@ cdef class Gap:
     cdef double* gaps
     cdef double* bends
     cdef double place, bend, fourth, loose, length, error, own, small, since, until, moment, near, negligible
-    cdef bint first, last
+    cdef double begin_place, end_place, begin_gap, end_gap, begin_bend, end_bend
+    cdef bint first, last, begin_known, end_known
     cdef void at(self, double tau) noexcept nogil
+    cdef void note_ends(
+        self, double begin, double end, double begin_gap, double end_gap, double begin_bend, double end_bend
+    ) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
 
 cdef double late(double t, double speed) noexcept nogil
@@ -54,7 +58,7 @@ cdef bint open_between(
 cdef bint shallow(Gap g, double g_a, double g_b, double h, double high) noexcept nogil
 cdef bint beside(Gap g, double a, double b, double time) noexcept nogil
 cdef bint near(Gap g, double a, double b) noexcept nogil
-@cython.locals(good=bint, begins=bint, ends=bint, first=bint, last=bint)
+@cython.locals(good=bint, begins=bint, ends=bint, first=bint, last=bint, place=double, bend=double, gap=double)
 cdef bint clear(Gap g, Py_ssize_t c, double t0, double a, double b) noexcept nogil
 cdef bint between_corners(
     Gap g, Py_ssize_t c, double t0, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts

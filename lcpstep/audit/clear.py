@@ -26,7 +26,7 @@ if not cython.compiled:
     from lcpstep.kernels.function import Function
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
-DEEPEST, MOST = 28, 64  # halvings of a window in a row, and windows that one may become
+DEEPEST, MOST = 28, 256  # halvings of a window in a row, and windows that one may become
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 
@@ -126,6 +126,7 @@ class Gap:
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
     error, own, small    of the gap: all of it; without what steps have added up; below the third it is nothing
+    begin_known, end_known    whether place, gap and bend are known where the piece begins and ends: begin_place, ...
     since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
         where events of other pieces do not matter
 
@@ -153,11 +154,22 @@ class Gap:
             self.length
         ) = 0.0
         self.since = self.until = inf
-        self.first = self.last = False
+        self.begin_place = self.end_place = self.begin_gap = self.end_gap = 0.0
+        self.begin_bend = self.end_bend = 0.0
+        self.first = self.last = self.begin_known = self.end_known = False
         self.moment, self.near, self.negligible = limits
 
     def at(self, tau: float) -> None:
         """Ask for the motion: self.place, self.bend."""
+
+    def note_ends(
+        self, begin: float, end: float, begin_gap: float, end_gap: float, begin_bend: float, end_bend: float
+    ) -> None:
+        """Take note of `place`, the gap and `bend` at both ends of the piece, where these are known."""
+        self.begin_place, self.end_place = begin, end
+        self.begin_gap, self.end_gap = begin_gap, end_gap
+        self.begin_bend, self.end_bend = begin_bend, end_bend
+        self.begin_known = self.end_known = True
 
     def sigma(self, c: int, t: float) -> float:
         """What contact c meets at a time."""
@@ -222,13 +234,21 @@ def near(g: Gap, a: float, b: float) -> bool:
 
 def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
     """Whether the gap of contact c stays open between a and b after t0, which no corner of the obstacle parts."""
-    first, last = g.first and a == 0.0, g.last and b == g.length
-    g.at(a)
-    tau, place, bend = a, g.place, g.bend
-    gap = 0.0 if first else place - g.sigma(c, t0 + a)
-    g.at(b)
-    g.times[0], g.places[0], g.bends[0] = b, g.place, g.bend
-    g.gaps[0] = 0.0 if last else g.place - g.sigma(c, t0 + b)
+    first, last, tau = g.first and a == 0.0, g.last and b == g.length, a
+    if g.begin_known and a == 0.0:
+        place, bend, gap = g.begin_place, g.begin_bend, g.begin_gap
+    else:
+        g.at(a)
+        place, bend = g.place, g.bend
+        gap = 0.0 if first else place - g.sigma(c, t0 + a)
+    g.times[0] = b
+    if g.end_known and b == g.length:
+        g.places[0], g.bends[0], g.gaps[0] = g.end_place, g.end_bend, g.end_gap
+    else:
+        g.at(b)
+        g.places[0], g.bends[0] = g.place, g.bend
+        g.gaps[0] = 0.0 if last else g.place - g.sigma(c, t0 + b)
+    gap, g.gaps[0] = 0.0 if first else gap, 0.0 if last else g.gaps[0]
     n, looked = 1, 0
     while n > 0:
         looked += 1

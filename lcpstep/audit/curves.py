@@ -79,13 +79,14 @@ def clear_curves(
     Parameters
     ----------
     t : (m + 1,);  B : (m, degree + 1, n_q)   the motion;  G, offset : of the contacts
-    obstacle : (m + 1, n_c, 3)   s, s' and s'' at the states
+    obstacle : (m + 1 or 1, n_c, 3)   s, s' and s'' at the states
     absolute : (m or 1, n_q), relative   errors of the positions
     drift : (m or 0, n_q)   how much of the first steps have added up
     touched : (m + 1, n_c) uint8   whether an event of the run lies there;  skipped : (m, n_c) uint8
     cuts : (k,)   times at which the obstacle may have a corner
     """
     n, n_c, n_q, n_cuts, degree = len(found), len(offset), B.shape[2], len(cuts), g.degree
+    step = 3 * n_c if len(obstacle) > 1 else 0
     rows, drifts = 0 if len(absolute) == 1 else n_q, len(drift) > 0
     events = np.full((2, n_c), -np.inf)
     last, following, gone = doubles(events[0]), doubles(events[1]), doubles(drift)
@@ -99,6 +100,8 @@ def clear_curves(
                 if touch[k * n_c + c] != 0:
                     last[c] = times[k]
             if not times[k + 1] > times[k]:
+                for c in range(n_c):
+                    out[k * n_c + c] = 1
                 continue
             while i < n_cuts and corner[i] <= times[k]:
                 i += 1
@@ -119,7 +122,7 @@ def clear_curves(
                         g.own -= abs(normal[c * n_q + j]) * gone[k * n_q + j]
                 g.first, g.last = touch[k * n_c + c] != 0, touch[(k + 1) * n_c + c] != 0
                 good = at_once(
-                    g, c, times[k + 1], size, s[3 * (k * n_c + c)], s[3 * ((k + 1) * n_c + c)], whole
+                    g, c, times[k + 1], size, s[step * k + 3 * c], s[step * (k + 1) + 3 * c], whole
                 )
                 if not good:
                     if drifts:
@@ -170,6 +173,7 @@ def at_once(g: Curve, c: int, t: float, size: float, s: float, s_b: float, whole
     differences(g, size)
     g_a, g_b = g.x[0] - s, g.x[d] - s_b
     g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
+    g.note_ends(g.x[0], g.x[d], g_a, g_b, g.second[0], g.second[d - 2])
     if g.cells.whole_rough or not whole:
         return False
     low = high = g.second[0]

@@ -22,6 +22,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
+PLACE, SPEED = 1.0 / 6.0, 1.0 / 12.0
 LOOSE = 1e-12  # of the largest: natural frequencies squared that count as zero
 
 
@@ -35,7 +36,8 @@ def drift(run: Trajectory, m: Model, jumps: NDArray[np.bool_], cuts: Array) -> A
     first, second, gone = np.zeros((3, len(t) - 1, v.shape[1]))
     size = np.zeros(v.shape[1])
     changes(t, v, jump, cuts, first, second, size)
-    add_up(t, jump, first, second, frequency(run, m, size, second), gone)
+    h, held = np.diff(t)[:, None], frequency(run, m, size, second)
+    add_up(t, jump, PLACE * h * h * first, SPEED * h * second, held, gone)
     return gone
 
 

@@ -40,9 +40,10 @@ def look(p: Any) -> NDArray[np.bool_]:
 
 def finer_at_releases(p: Any, o: Obstacle) -> None:
     """Bounds of what moves as fine as an event lasts, where contacts open: gaps rise there with the cube of time."""
-    opens = (p.closed[:-1] & ~p.closed[1:]).any(axis=1)
-    if o.moves and isinstance(p.motion, Oscillation) and np.count_nonzero(opens) >= FEW:
-        o.refine(p.t[1:-1][opens], len(p.closed))
+    if o.moves and isinstance(p.motion, Oscillation):
+        opens = (p.closed[:-1] & ~p.closed[1:]).any(axis=1)
+        if np.count_nonzero(opens) >= FEW:
+            o.refine(p.t[1:-1][opens], len(p.closed))
 
 
 def by_flights(p: Any, o: Obstacle, met: Any, found: Any) -> None:
@@ -89,16 +90,19 @@ def by_groups(p: Any, problem: Curved, found: Any) -> None:
 
 
 def sampled(o: Obstacle, t: Any) -> Any:
-    """What the contacts meet at every kept state, (m + 1, n_c, 3)."""
+    """What the contacts meet at every kept state, (m + 1, n_c, 3); one row of zeros where nothing moves."""
+    if not o.m.motion.given:
+        return np.zeros((1, o.n_c, 3))
     out = np.zeros((len(t), o.n_c, 3))
-    if o.m.motion.given:
-        o.m.motion.sample(t, o.state[0], o.state[1], out)
+    o.m.motion.sample(t, o.state[0], o.state[1], out)
     return out
 
 
 def marks(p: Any, o: Obstacle) -> tuple[Any, Any, Any]:
     """Events of the run, what kind pieces are of, see `flights`, and corners."""
-    kind = np.where(p.unknown[:, None], UNKNOWN, PRESSED * p.closed.view(np.uint8)).astype(np.uint8)
+    kind = p.closed.view(np.uint8) * np.uint8(PRESSED)
+    if p.unknown.any():
+        kind[p.unknown] = UNKNOWN
     return p.touched.view(np.uint8), kind, p.cuts if o.moves else NEVER
 
 

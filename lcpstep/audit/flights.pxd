@@ -2,8 +2,8 @@ cimport cython
 from libc.math cimport cos, hypot, sin, sqrt
 from lcpstep.arrays cimport doubles, small_numbers
 from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
-from lcpstep.events.flight.motion cimport Flight, absolute, leave_from
-from lcpstep.pointers cimport abs, after, max, min
+from lcpstep.events.flight.motion cimport Flight, absolute, leave_from, steady
+from lcpstep.pointers cimport abs, after, max, min, nan
 
 cdef double SLACK, ROUNDING, PRESSING, ERRORS
 cdef Py_ssize_t UNKNOWN, PRESSED
@@ -13,19 +13,20 @@ cdef Py_ssize_t UNKNOWN, PRESSED
 cdef class Swing(Gap):
     cdef Flight s
     cdef readonly bint swings, known
-    cdef double forced, height
+    cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bend, fast
     cdef double size(self, double z, double w) noexcept nogil
+    cdef void begin(self, double t, double y, double w) noexcept nogil
 
-@cython.locals(whole=bint, good=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
+@cython.locals(whole=bint, good=bint, begins=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t, step=Py_ssize_t)
 cpdef object clear_flights(
     Swing g, object t, object q, object y, object w, object obstacle, object touched, object kind,
     object cuts, object found
 )
-@cython.locals(bent=bint)
+@cython.locals(good=bint)
 cdef bint at_once(
     Swing g, Flight o, double t, double* q, double* x, double* w, double s, double s_b, bint whole
 ) noexcept nogil
-cdef double equation(Flight o, double t, double y, double w) noexcept nogil
+cdef double equation(Swing g, Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)
 cdef bint pressed(Swing g, Flight s, double t0, double a, double b) noexcept nogil

@@ -19,8 +19,8 @@ if not cython.compiled:
 
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.audit.clear import DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
-    from lcpstep.events.flight.motion import Flight, absolute, leave_from
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.events.flight.motion import Flight, absolute, leave_from, steady
+    from lcpstep.pointers import Doubles, abs, after, max, min, nan
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
@@ -29,6 +29,11 @@ ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
 
 class Swing(Gap):
     """The gap of a flight in closed form.
+
+    amplitude   of the oscillation that is left of a flight, a bound from its start on; with `size`, how large the
+        numbers are that its positions are made of, `bend` and `middle`, between which and beyond G y'' does not go
+    fast        the largest velocity of what moves by itself
+    force_at, force    a time, and the force over the mass then, times G, as it was last asked for
 
     Parameters
     ----------
@@ -42,6 +47,11 @@ class Swing(Gap):
         self.known = self.swings or (s.w2 == 0.0 and s.delta == 0.0)
         self.forced = hypot(s.X, s.Y)
         self.height = s.f0 / s.w2 if self.swings else 0.0
+        self.per_root = 1.0 / sqrt(s.w2 - s.delta * s.delta) if self.swings else 0.0
+        self.amplitude, self.force, self.force_at = 0.0, 0.0, nan
+        self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
+        self.most, self.bend = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
+        self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
 
     def at(self, tau: float) -> None:
         """Ask for the motion."""
@@ -50,8 +60,16 @@ class Swing(Gap):
 
     def size(self, z: float, w: float) -> float:
         """How large an oscillation is that has this place and velocity."""
-        rate = (w + self.s.delta * z) / sqrt(self.s.w2 - self.s.delta * self.s.delta)
+        rate = (w + self.s.delta * z) * self.per_root
         return sqrt(z * z + rate * rate)
+
+    def begin(self, t: float, y: float, w: float) -> None:
+        """A flight begins at time t with this absolute state."""
+        if self.swings:
+            rest, rate = steady(self.s, t)
+            self.amplitude = (1.0 + SLACK) * self.size(y - rest - self.height, w - rate)
+            self.most = self.amplitude + self.forced + abs(self.height)
+            self.bend = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
 
 
 def clear_flights(
@@ -61,19 +79,24 @@ def clear_flights(
 
     Parameters
     ----------
-    t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones;  obstacle : (m + 1, 3)   s, s' and s'' there
+    t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones;  obstacle : (m + 1 or 1, 3)   s, s' and s'' there
     touched : (m + 1,) uint8   whether an event of the run lies there
     kind : (m,) uint8   of the pieces: 0, or PRESSED for a closed contact, or UNKNOWN, which are left out
     cuts : (k,)   times at which the obstacle may have a corner
     """
-    n, n_cuts = len(found), len(cuts)
+    n, n_cuts, step = len(found), len(cuts), 3 if len(obstacle) > 1 else 0
     times, places, position, speed = doubles(t), doubles(q), doubles(y), doubles(w)
     s, corner = doubles(obstacle), doubles(cuts)
     touch, left, out = small_numbers(touched), small_numbers(kind), small_numbers(found)
     with cython.nogil:
-        i = 0
+        i, begins = 0, True
         for k in range(n):
-            if left[k] == UNKNOWN or not times[k + 1] > times[k]:
+            if touch[k] != 0 or left[k] != 0:
+                begins = True
+            if not times[k + 1] > times[k]:
+                out[k] = 1
+                continue
+            if left[k] == UNKNOWN:
                 continue
             while i < n_cuts and corner[i] <= times[k]:
                 i += 1
@@ -82,9 +105,12 @@ def clear_flights(
             if left[k] == PRESSED:
                 out[k] = 1 if pressed_between_corners(g, g.s, times[k], corner, i, n_cuts) else 0
                 continue
+            if begins:
+                g.begin(times[k], position[k], speed[k])
+                begins = False
             good = at_once(
                 g, g.s, times[k], after(places, k), after(position, k), after(speed, k),
-                s[3 * k], s[3 * k + 3], whole,
+                s[step * k], s[step * (k + 1)], whole,
             )  # fmt: skip
             if not good:
                 leave(g, g.s, times[k], position[k], speed[k])
@@ -100,51 +126,52 @@ def at_once(
     q, x : relative and absolute places;  w : velocities, after an event;  s, s_b : of the obstacle
     whole : whether no corner lies within
     """
-    y, y_b, h, amplitude = x[0], x[1], g.length, 0.0
-    if g.swings:
-        size = amplitude = g.size(abs(y - g.height) + g.forced, abs(w[0]) + abs(o.Omega) * g.forced)
-        bend, middle = o.w2 * size, 0.0
-    else:
-        size, bend, middle = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h, 0.0, o.G * o.f0
-    bend = (1.0 + SLACK) * abs(o.G) * (bend + o.Omega * o.Omega * g.forced)
-    low, high = middle - bend, middle + bend
-    size += g.forced + abs(g.height) + abs(q[0])
-    g.error = ROUNDING * (abs(o.G) * size + abs(o.offset) + max(abs(s), abs(s_b)))
-    g.error += late(max(abs(t), abs(t + h)), g.cells.whole_fast[0] + abs(o.G * o.Omega) * g.forced)
-    g.own, g.small = g.error, min(g.error, g.negligible)
-    place = o.offset + (o.G * y if o.G * y < o.G * y_b else o.G * y_b)
-    if place - 0.125 * max(high, 0.0) * h * h - g.cells.whole_top[0] > g.error:
+    y, y_b, h, size = x[0], x[1], g.length, g.most
+    if not g.swings:
+        size = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h + g.forced
+    g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset) + max(abs(s), abs(s_b)))
+    g.error += late(max(abs(t), abs(t + h)), g.fast)
+    begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bend, g.middle + g.bend
+    lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
+    if lowest > g.cells.whole_top[0]:
         return True
     g.cells.find(0, t, t + h)
-    if place - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error:
+    if lowest > g.cells.top:
         return True
+    g.own, g.small = g.error, min(g.error, g.negligible)
+    g.begin_known = g.end_known = False
     g_a, g_b = o.offset + o.G * q[0] - s, o.offset + o.G * q[1] - s_b
     g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
-    if g.cells.rough or not whole:
+    good = not g.cells.rough and whole
+    if good and open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error):
+        return True
+    if not good:
         return False
-    bent = open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
-    if bent or not g.swings or (g.last and o.delta != 0.0):
-        return bent
-    a, b = equation(o, t, y, w[0]), equation(o, t + h, y_b, w[1])
-    Omega2 = o.Omega * o.Omega
-    fourth = abs(o.G) * (amplitude * o.w2 * o.w2 + g.forced * Omega2 * Omega2)
-    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * bend
+    a, b = equation(g, o, t, y, w[0]), equation(g, o, t + h, y_b, w[1])
+    g.note_ends(begin, end, g_a, g_b, a, b)
+    g.end_known = not g.last or o.delta == 0.0  # else its velocity there is not that after the event
+    if not (g.swings and g.end_known):
+        return False
+    fourth = abs(o.G) * (g.amplitude * o.w2 * o.w2 + g.turning * o.Omega * o.Omega)
+    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bend
     low, high = min(a, b) - margin, max(a, b) + margin
     return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
 
 
-def equation(o: Flight, t: float, y: float, w: float) -> float:
-    """G y'' of a state."""
-    return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + driven(o, t)
+def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:
+    """G y'' of a state; the force is known where the piece before has ended."""
+    if t != g.force_at:
+        g.force_at, g.force = t, driven(o, t)
+    return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + g.force
 
 
 def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
     """The motion from this absolute state on, and how large its fourth derivative can be."""
     leave_from(s, t, y, w)
-    size, Omega2 = 0.0, s.Omega * s.Omega
+    fourth = g.amplitude * s.w2 * s.w2 + g.turning * s.Omega * s.Omega
+    g.fourth, g.loose = (1.0 + SLACK) * abs(s.G) * fourth, SLACK * g.bend
     if g.swings:
-        size = g.size(s.z0 - g.height, s.dz0)
-    g.fourth = (1.0 + SLACK) * abs(s.G) * (size * s.w2 * s.w2 + g.forced * Omega2 * Omega2)
+        g.loose += PRESSING * abs(s.G * s.f0)
 
 
 def pressed_between_corners(g: Swing, s: Flight, t0: float, cuts: Doubles, i: int, n_cuts: int) -> bool:

@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 
 from lagrangian import Contacts
 from lcpstep.audit import motion
+from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
-from lcpstep.audit.sums import missed
+from lcpstep.audit.missed import missed
+from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
+from lcpstep.events.arcs.run import Arcs
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
@@ -47,17 +50,29 @@ class Pieces:
     touched   (m + 1, n_c)   at which times a contact is at zero by what the run says
     scale     of times: the period, or the span
     largest   of all gaps, of some of the states
-    certain   whether the forces of closed contacts are constant, so that the run has judged them for good
+    certain   whether the forces of closed contacts are constant, so that the run has judged them for good, or their
+        sticking and sliding has ended by bounds
+    cones     guards of closed contacts with friction, or None
     """
 
     def __init__(self, run: Trajectory) -> None:
         self.run, self.scene = run, run.scene
-        self.m = model(self.scene)
+        self.m = getattr(run.dense, "model", None) or model(self.scene)
         found = turns(self.scene)
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
-        self.certain = isinstance(run.dense, Moved) and run.dense.constant
-        gone = drift(run, self.m, run.dense.jumps, self.cuts) if isinstance(run.dense, Bent) else None
+        self.certain = isinstance(run.dense, Arcs) or (isinstance(run.dense, Moved) and run.dense.constant)
+        t = np.ascontiguousarray(self.t)
+        names = "time", "contact", "kind", "after"
+        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        if mode is not None:
+            self.closed = (mode == CLOSED)[:, None]  # of one contact
+        else:
+            self.closed = closed_from_the_start(run, t)
+            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
+        known = by_tolerance(run.method) and not self.certain and self.closed.any() and is_known(self.scene)
+        self.cones = Cones(self.scene, self.motion, run.v, self.closed, error) if known else None
+        gone = self.added_up()
         if gone is not None:
             error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
@@ -65,14 +80,6 @@ class Pieces:
             self.problem: Any = Curved(self.scene, self.m, self.motion, error, gone)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error, gone)
-        names = "time", "contact", "kind", "after"
-        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
-        t = np.ascontiguousarray(self.t)
-        if mode is not None:
-            self.closed = np.repeat((mode == CLOSED)[:, None], self.scene.n_c, axis=1)
-        else:
-            self.closed = closed_from_the_start(run, t)
-            close(t, time, contact, kind, rate, self.closed.view(np.uint8))
         some = slice(None, None, max(1, len(run.t) // LOOKS))
         when, q, v = (np.ascontiguousarray(x[some]) for x in (run.t, run.q, run.v))
         self.largest = float(np.max(np.abs(extremes(self.m, when, q, v))))
@@ -81,9 +88,18 @@ class Pieces:
         self.unknown = np.zeros(len(self.t) - 1, dtype=bool)
         touched, unknown = (x.view(np.uint8) for x in (self.touched, self.unknown))
         mark(t, time, contact, kind, touched, unknown)
-        if np.any(self.closed):
+        if self.closed.any():
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
+
+    def added_up(self) -> Array | None:
+        """What the steps have added up, (m, n_q), of methods that choose none by their error; see `drift`, `missed`."""
+        run, dense = self.run, self.run.dense
+        if isinstance(dense, Bent):
+            return drift(run, self.m, dense.jumps, self.cuts)
+        if getattr(run.method, "order", "exact") == "exact":
+            return None
+        return missed(run, self.m, self.motion, self.closed, self.cuts)
 
     def to_event(self, w: Windows) -> Array:
         """How far windows reach from the nearest event of their contact, in whichever piece it lies [s]."""
@@ -139,7 +155,7 @@ def between(run: Trajectory, jumps: Mask) -> Array:
     """How far the parabolas between kept states may be from the motion, (m, n_q)."""
     out = np.zeros((len(run.t) - 1, run.q.shape[1]))
     t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
-    missed(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
+    between_states(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
     return out
 
 

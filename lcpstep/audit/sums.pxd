@@ -2,8 +2,6 @@ cimport cython
 from lcpstep.arrays cimport doubles, small_numbers
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef double PLACE, SPEED
-
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, n_cuts=Py_ssize_t, i=Py_ssize_t, k=Py_ssize_t, j=Py_ssize_t,
                a=double, turn=double, last=double, turned=double, smooth=bint, known=bint, was=bint, had=bint, cut=bint)
 cpdef object changes(
@@ -12,6 +10,6 @@ cpdef object changes(
 @cython.locals(k=Py_ssize_t, j=Py_ssize_t, before=double, own=double, after=double)
 cdef void beside(double* x, Py_ssize_t n, Py_ssize_t n_q, double share) noexcept nogil
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, k=Py_ssize_t, j=Py_ssize_t, off=double, fast=double, moved=double)
-cpdef object add_up(object t, object jumps, object first, object second, object rate, object gone)
+cpdef object add_up(object t, object jumps, object place, object speed, object rate, object gone)
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, i=Py_ssize_t, k=Py_ssize_t, j=Py_ssize_t, x=double, h=double, end=double)
 cpdef object missed(object t, object q, object v, object jumps, object out)

@@ -1,4 +1,4 @@
-"""What steps of order two miss, piece by piece, and what that adds up to, as kernels: the sums of `drift`."""
+"""What steps miss, piece by piece, and what that adds up to, as kernels: the sums of `drift` and `missed`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import cython
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.pointers import Doubles, abs, inf, max, min
-
-PLACE, SPEED = 1.0 / 6.0, 1.0 / 12.0
 
 
 def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
@@ -59,14 +57,15 @@ def beside(x: Doubles, n: int, n_q: int, share: float) -> None:
             before = own
 
 
-def add_up(t: Any, jumps: Any, first: Any, second: Any, rate: Any, gone: Any) -> None:
+def add_up(t: Any, jumps: Any, place: Any, speed: Any, rate: Any, gone: Any) -> None:
     """How far the positions may be off in each piece, (m, n_q), into `gone`; see `drift`.
 
-    t, jumps, first, second : as of `changes`;  rate : (n_q,)   what holds the coordinates, 0 where nothing does
+    t, jumps : as of `changes`;  place, speed : (m, n_q)   what each piece errs by in position and velocity
+    rate : (n_q,)   what holds the coordinates, 0 where nothing does
     """
-    n, n_q = len(first), first.shape[1]
+    n, n_q = len(place), place.shape[1]
     times, jump = doubles(t), small_numbers(jumps)
-    one, two, held, out = doubles(first), doubles(second), doubles(rate), doubles(gone)
+    one, two, held, out = doubles(place), doubles(speed), doubles(rate), doubles(gone)
     with cython.nogil:
         for j in range(n_q):
             off = fast = moved = 0.0
@@ -74,8 +73,8 @@ def add_up(t: Any, jumps: Any, first: Any, second: Any, rate: Any, gone: Any) ->
                 if jump[k] != 0:
                     off = fast = moved = 0.0
                 h = times[k + 1] - times[k]
-                off += PLACE * h * h * one[k * n_q + j]
-                fast += SPEED * h * two[k * n_q + j]
+                off += one[k * n_q + j]
+                fast += two[k * n_q + j]
                 moved += h * fast
                 out[k * n_q + j] = off + (min(moved, fast / held[j]) if held[j] > 0.0 else moved)
 

@@ -1,7 +1,9 @@
 from lcpstep.arrays cimport doubles
+from lcpstep.kernels.acceleration cimport divide_by_mass, free_acceleration
 from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport after, max, min
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport after, max, min, nan
 
 cdef void find_extremes(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double* g, double* low, double* high
@@ -15,4 +17,10 @@ cdef void find_power(
 ) noexcept
 cdef void find_energy(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double* M, double* out
+) noexcept
+cdef void find_accelerations(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* work, double* out
+) noexcept
+cdef void find_responses(
+    Model m, Py_ssize_t count, double* t, double* q, double* v, double* rates, double* work, double* G, double* MG
 ) noexcept

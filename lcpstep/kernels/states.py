@@ -12,9 +12,11 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
+    from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
     from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
     from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, after, max, min
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, after, max, min, nan
 
 
 def extremes(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
@@ -146,3 +148,49 @@ def find_energy(m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, M: Dou
                 for j in range(n):
                     total += 0.5 * (M[i * n + j] * x_t[i] * x_t[j] + m.K[i * n + j] * x[i] * x[j])
             out[k] = total
+
+
+def accelerations(m: Model, t: Any, q: Any, v: Any) -> Any:
+    """M^-1 f without the forces of contacts, (n, n_q); not-a-number where M is singular."""
+    count, found, work = len(t), np.zeros((len(t), m.n_q)), np.zeros((m.n_q + 1) * m.n_q)
+    at, x, x_t, space, out = doubles(t), doubles(q), doubles(v), doubles(work), doubles(found)
+    find_accelerations(m, count, at, x, x_t, space, out)
+    return found
+
+
+def find_accelerations(
+    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, work: Doubles, out: Doubles
+) -> None:
+    """Kernel of `accelerations`."""
+    with cython.nogil:
+        n = m.n_q
+        for k in range(count):
+            a = after(out, k * n)
+            if not free_acceleration(m, t[k], after(q, k * n), after(v, k * n), after(work, n), work, a):
+                for i in range(n):
+                    a[i] = nan
+
+
+def responses(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
+    """The gaps' Jacobian G and M^-1 G^T by rows, (n, n_c, n_q) each."""
+    count, work, rates = len(t), np.zeros((m.n_q + 1) * m.n_q), np.zeros(m.n_c)
+    G, MG = np.zeros((2, len(t), m.n_c, m.n_q))
+    at, x, x_t, own, space = doubles(t), doubles(q), doubles(v), doubles(rates), doubles(work)
+    rows, back = doubles(G), doubles(MG)
+    find_responses(m, count, at, x, x_t, own, space, rows, back)
+    return G, MG
+
+
+def find_responses(
+    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, rates: Doubles, work: Doubles, G: Doubles,
+    MG: Doubles,
+) -> None:  # fmt: skip
+    """Kernel of `responses`."""
+    with cython.nogil:
+        n, size = m.n_q, m.n_c * m.n_q
+        for k in range(count):
+            x, x_t, own = after(q, k * n), after(v, k * n), after(G, k * size)
+            gap_rates(m, t[k], x, x_t, own, rates)
+            copy(after(MG, k * size), own, size)
+            for c in range(m.n_c):
+                divide_by_mass(m, t[k], x, x_t, after(work, n), work, after(MG, k * size + c * n))

@@ -80,16 +80,16 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     """Bands of the guards, and which of them are beyond theirs, as modes begin; False where one is not finite."""
     if not look(s, t, s.y):
         return False
-    forces = force_noise(s)
+    forces, nothing = force_noise(s), NOISE * s.atol  # the second where all terms vanish, as in the tail of a pulse
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            s.band[k] = max(NOISE * gap_size(s, c), -2.0 * s.value[k])  # deeper than it is now
+            s.band[k] = max(NOISE * gap_size(s, c) + nothing, -2.0 * s.value[k])  # deeper than it is now
         else:
-            s.band[k] = forces
-            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c])
+            s.band[k] = forces + nothing
+            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + nothing
             if s.mode[c] == SLIDES:
-                s.band[k + 1] = NOISE * size_of(s, i + s.n_c, s.v)
+                s.band[k + 1] = NOISE * size_of(s, i + s.n_c, s.v) + nothing
         for g in range(k, k + GUARDS):
             s.armed[g] = 1 if s.value[g] > s.band[g] else 0
     return True

@@ -48,15 +48,16 @@ def widen_bands(s: Strides) -> None:
     """Gaps and sliding velocities that rounding of the forces makes within a step have no sign.
 
     A contact that opens, or begins to slide, does so with none, for its force has come to zero or to the edge of its
-    cone.
+    cone. Where all terms vanish, as beside the far tail of a pulse, rounding is that of the tolerance.
     """
     for c in range(s.n_c):
         g, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
             s.band[g] = max(s.band[g], s.h * NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i)))
+            s.band[g] = max(s.band[g], NOISE * s.atol)
         elif s.mode[c] == SLIDES:
             g, i = g + 1, i + s.n_c
-            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i))
+            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i) + s.atol)
         else:
             continue
         s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
@@ -169,7 +170,11 @@ def elevate(s: Strides) -> None:
 
 
 def locate(s: Strides, g: int, h: float) -> float:
-    """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE."""
+    """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
+
+    One that begins within its band, as where a contact has just opened, acts where it is seen below zero: there it is
+    zero to rounding, and steps shorter and shorter would come back to that.
+    """
     t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < 0.0
     if tau <= 0.0:
         return 0.0
@@ -179,7 +184,7 @@ def locate(s: Strides, g: int, h: float) -> float:
         if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
             return NOWHERE
         value = s.value[g]
-        crossed = crossed or value <= 0.0
+        crossed = crossed or value < 0.0 or (value == 0.0 and s.armed[g] == 1)
         if s.scan.bracket.looks > 1 and value != s.scan.bracket.value:
             slope = (value - s.scan.bracket.value) / (tau - s.scan.bracket.seen)
         s.scan.bracket.newton(value, min(slope, 0.0))  # where it rises: bisection
@@ -188,4 +193,4 @@ def locate(s: Strides, g: int, h: float) -> float:
             if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
                 return NOWHERE
             break
-    return tau if crossed or s.value[g] <= s.band[g] else NOWHERE
+    return tau if crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1) else NOWHERE
