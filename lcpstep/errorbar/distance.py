@@ -5,7 +5,8 @@
 for positions, velocities and energy. Between an impact and its partner in the other run one of the two velocities has
 jumped and the other not: there the pointwise distance of velocities and energies is as large as the jump however
 near the two motions are. Their `largest` leaves these times out. The integrals take all: by Gauss' rule with two
-points between breaks, of which every event of either run is one.
+points between breaks, where every event of either run is one. Else they go on between breaks as if nothing jumped,
+and what events do is added: for each pair the jump times the time between the two.
 """
 
 from __future__ import annotations
@@ -17,20 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.partners import Alike, Apart
+from lcpstep.errorbar.looks import GAUSS, MANY, Looks, at, brief, event_times, with_nodes
+from lcpstep.errorbar.partners import Alike, Apart, Pairs
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 199, 599  # breaks besides the events
-GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
-JUMP = (
-    10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
-)
-TINY = float(np.finfo(float).tiny)
-GRADES = 12  # times an interval after an event is halved towards it
-BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
@@ -49,57 +43,6 @@ class Distance:
     energy: Bar
     left_out: Array
     size: float  # half the range of the coordinate that moves most, or what is no motion but rounding
-
-
-def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
-    """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone."""
-    steps = _telling(run)
-    if not every:
-        return steps[steps <= end]
-    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, LEAST)
-    t = np.unique(np.concatenate([even, events, _after(events, run), steps]))
-    return t[(t >= run.t[0]) & (t <= end)]
-
-
-def _telling(run: Trajectory) -> Array:
-    """Kept times, or as many as are to be looked at: they lie as near to each other as time and velocities go on."""
-    if len(run.t) <= MOST:
-        return run.t
-    turns = np.abs(np.diff(run.v, axis=0)).sum(axis=1)
-    share = np.minimum(turns, JUMP * turns.mean())
-    going = np.cumsum(np.diff(run.t) / (run.t[-1] - run.t[0]) + share / max(share.sum(), TINY))
-    places = np.searchsorted(going, np.linspace(0.0, going[-1], MOST))
-    return run.t[np.unique(np.append(places, len(run.t) - 1))]
-
-
-def _after(events: Array, run: Trajectory) -> Array:
-    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
-    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // MOST], run.t[-1:]])
-    halves = 0.5 ** np.arange(1, 2 + min(GRADES, MOST // len(some)))
-    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
-
-
-def event_times(run: Trajectory, other: Trajectory) -> Array:
-    """When anything happened in either run."""
-    return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
-
-
-def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
-    """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
-    events = event_times(run, other)
-    short = np.flatnonzero(np.diff(events) < BRIEF * span)
-    return np.column_stack([events[short], events[short + 1]])
-
-
-def at(run: Trajectory, t: Array, every: bool) -> tuple[Array, Array]:
-    """States at times in their order, which are kept ones where not every state was kept."""
-    if not every:
-        k = np.searchsorted(run.t, t, side="right") - 1
-        return run.q[k], run.v[k]
-    later = np.diff(t, prepend=-math.inf) > 0.0
-    q, v = run.at(t[later])
-    place = np.cumsum(later) - 1
-    return q[place], v[place]
 
 
 def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
@@ -145,29 +88,35 @@ def moving_apart(run: Trajectory, other: Trajectory) -> Apart:
 def distance(
     m: Model,
     runs: tuple[Trajectory, Trajectory],
-    every: bool,
-    t: Array,
+    look: Looks,
+    pairs: Pairs,
     windows: Array,
     around: float,
     falls: float,
 ) -> Distance:
-    """Distances of two runs at breaks t; the largest of velocities without windows and what is `around` them.
+    """Distances of two runs as they are looked at; the largest of velocities without windows and what is `around`.
 
     falls : see `fall` [m/s]
     """
-    n_q, length = runs[0].scene.n_q, float(t[-1] - t[0])
-    times = with_nodes(t) if every else t
-    one, other = (at(x, times, every) for x in runs)
+    t, n_q = look.t, runs[0].scene.n_q
+    length, times = float(t[-1] - t[0]), with_nodes(t) if look.nodes else t
+    one, other = (at(x, times, kept) for x, kept in zip(runs, look.kept, strict=True))
     energies = [energy(m, times, *x) for x in (one, other)]
     apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
     far, fast = (np.abs(x).max(axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
-    integral = _integral(t, apart, every) + floor * (t - t[0])[:, None]
-    if not every and len(windows):
-        integral[:, n_q:] = math.nan  # where impacts fall between kept states
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
-    apart[within(left_out, times), n_q:] = 0.0
-    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * every] + floor
+    between = np.column_stack([pairs.start, pairs.start + pairs.time])
+    out = within(left_out, times)
+    jumping = apart[:, n_q:].copy()
+    apart[out, n_q:] = 0.0
+    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * look.nodes] + floor
+    apart[:, n_q:] = jumping[_before(within(merged(between, around), times))] if look.jumps else jumping
+    integral = _integral(t, apart, look.nodes) + floor * (t - t[0])[:, None]
+    if look.jumps:
+        integral[:, n_q:] += _of_jumps(m, runs[look.kept[0]], t, merged(between, 0.0), around)
+    elif not look.nodes and len(windows):
+        integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
@@ -175,15 +124,27 @@ def distance(
     return Distance(position, velocity, power, left_out, max(size, least))
 
 
-def with_nodes(t: Array) -> Array:
-    """Times (n,), and after each but the last the nodes between it and the next."""
-    between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
-    return np.append(between.ravel(), t[-1])
+def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Places of the last times before each that are not left out."""
+    return np.asarray(np.maximum.accumulate(np.where(out, 0, np.arange(len(out)))))
 
 
-def _integral(t: Array, x: Array, every: bool) -> Array:
+def _of_jumps(m: Model, run: Trajectory, t: Array, own: Array, around: float) -> Array:
+    """What events add to the integrals of velocities and energy up to times t, (n, n_q + 1); of many a part tells."""
+    own = own[(own[:, 1] > own[:, 0]) & (own[:, 1] < t[-1])]
+    some = own[:: 1 + len(own) // MANY]
+    added = np.zeros((len(t), run.scene.n_q + 1))
+    if len(some):
+        times = np.clip(some + around * np.array([-1.0, 1.0]), run.t[0], run.t[-1]).ravel()
+        q, v = run.at(times)
+        jump = np.abs(np.diff(np.column_stack([v, energy(m, times, q, v)]), axis=0)[::2])
+        np.add.at(added, np.searchsorted(t, some[:, 1]), jump * np.diff(some))
+    return np.cumsum(added, axis=0) * (len(own) / max(len(some), 1))
+
+
+def _integral(t: Array, x: Array, nodes: bool) -> Array:
     """Integral up to each time, by the nodes between times, or by the times where there are none."""
-    means = 0.5 * (x[1::3] + x[2::3] if every else x[1:] + x[:-1])
+    means = 0.5 * (x[1::3] + x[2::3] if nodes else x[1:] + x[:-1])
     return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
 
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.companions import Companion, companions, followed, in_words
-from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks, moving_apart
+from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
+from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
 from lcpstep.errorbar.partners import Pairs, Partners, partners
 from lcpstep.model import model
 from lcpstep.recording import Kept
@@ -25,7 +26,7 @@ SHORT = 1e-9  # of the span: impacts of one contact that follow each other faste
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
 
-def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
+def error_bar(run: Trajectory, every: bool, seconds: float, wide: bool = False) -> ErrorBar:
     """Error bar of a run.
 
     Parameters
@@ -34,19 +35,19 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
     every : whether every step was kept; if not, states are compared where they were kept, and the integrals of
         velocity and energy are not known
     seconds : CPU time that a companion may take, where it takes more than a second [s]
+    wide : whether the run has kept states between its steps too, so that no other run is needed for them
     """
     if len(run.t) < 2:
         return unknown(run, "only one state was kept")
     start, end = float(run.t[0]), _reached(run)
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
-    nothing = np.zeros(0)
-    kept = Kept(1, False, nothing) if every else Kept(0, False, looks(run, run, every, end))
+    look = looks(run, run, every, end)
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
     for group in companions(run):
         for c in group:
             if c not in known:
-                known[c] = followed(c, scene, kept, seconds)
+                known[c] = followed(c, scene, _kept(look, every, c), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
         if (
             known[group[0]] is None
@@ -55,11 +56,18 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
             or (_reach(found) == reach and clear)
         ):
             continue
-        bar, reach = against(run, every, found), _reach(found)
+        bar, reach = against(run, every, found, wide=wide, look=look), _reach(found)
         clear = group[0].tells(run, bar)
         if reach >= end and clear:
             break
     return bar
+
+
+def _kept(look: Looks, every: bool, c: Companion) -> Kept:
+    """What a companion keeps: every step, or the states that it is asked for."""
+    if every and not c.seen:
+        return Kept(1, False, np.zeros(0))
+    return Kept(0, False, np.unique(with_nodes(look.t)) if every else look.t)
 
 
 def _reach(found: Found) -> float:
@@ -84,11 +92,18 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
 
 
 def against(
-    run: Trajectory, every: bool, found: Found, limit: float = math.inf, resolution: float | None = None
+    run: Trajectory,
+    every: bool,
+    found: Found,
+    limit: float = math.inf,
+    resolution: float | None = None,
+    wide: bool = False,
+    look: Looks | None = None,
 ) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit.
 
     resolution : within what time impacts of a contact are one; default: what the run resolves [s]
+    wide : as of `error_bar`;  look : times at which a companion that is `seen` there alone has kept states
     """
     other = found[0][1]
     resolution = resolved(run) if resolution is None else resolution
@@ -105,10 +120,13 @@ def against(
             until = pairs.differs
             reason = f"there the run and {in_words(c.method)} see different events, {pairs.reason}"
     around = ROUNDING * float(np.max(np.abs(run.t))) + 0.5 * resolution
-    t = looks(run, other, every, min(limit, until - around if reason else until))
+    last = min(limit, until - around if reason else until)
+    known_there = every and look is not None and found[0][0].seen
+    look = seen(look, last) if look is not None and known_there else looks(run, other, every, last, wide)
+    t = look.t
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
-    apart = distance(m, (run, other), every, t, logs[0].windows, around, falls)
+    apart = distance(m, (run, other), look, logs[0].pairs, logs[0].windows, around, falls)
     texts = tuple(in_words(c.method) for c, _ in found)
     horizon = _lost(t, apart) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
