@@ -143,7 +143,7 @@ def simulate(
     _warn_of_fast_gaps(run)
     doubt = _no_room(run) or too_deep(run) or unresolved(run)
     run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
-    return _with_error(run, wide, kept.all, seconds) if error else run
+    return _with_error(run, wide, kept, seconds) if error else run
 
 
 def _can_tell_errors(scene: Any, method: Method) -> None:
@@ -166,13 +166,13 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
         raise LcpStepError(f"error: expected one of the methods {names}, got {method!r}")
 
 
-def _with_error(run: Trajectory, wide: Trajectory, every: bool, seconds: float) -> Trajectory:
+def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -> Trajectory:
     """The run with its error bar, told by one with more states; an interrupt leaves the run without one."""
     from lcpstep.errorbar.estimate import error_bar
 
-    more = wide is not run and not hasattr(run.dense, "jumps")
+    times = kept.times if wide is not run and not hasattr(run.dense, "jumps") else None
     try:
-        return replace(run, error=error_bar(wide if more else run, every, seconds, more))
+        return replace(run, error=error_bar(run if times is None else wide, kept.all, seconds, times))
     except KeyboardInterrupt:
         raise SimulationInterrupted(lambda: run) from None
 

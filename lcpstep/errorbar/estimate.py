@@ -26,7 +26,7 @@ SHORT = 1e-9  # of the span: impacts of one contact that follow each other faste
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
 
-def error_bar(run: Trajectory, every: bool, seconds: float, wide: bool = False) -> ErrorBar:
+def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None = None) -> ErrorBar:
     """Error bar of a run.
 
     Parameters
@@ -35,7 +35,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: bool = False) 
     every : whether every step was kept; if not, states are compared where they were kept, and the integrals of
         velocity and energy are not known
     seconds : CPU time that a companion may take, where it takes more than a second [s]
-    wide : whether the run has kept states between its steps too, so that no other run is needed for them
+    wide : times between its steps at which the run has kept states too, so that no other run is needed for them
     """
     if len(run.t) < 2:
         return unknown(run, "only one state was kept")
@@ -97,7 +97,7 @@ def against(
     found: Found,
     limit: float = math.inf,
     resolution: float | None = None,
-    wide: bool = False,
+    wide: Array | None = None,
     look: Looks | None = None,
 ) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit.

@@ -17,7 +17,6 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 LEAST, MOST = 199, 599  # breaks besides the events
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
-WIDEST = 1500  # kept states that are compared
 MANY = 2000  # events; of more only so many are breaks
 JUMP = (
     10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
@@ -34,23 +33,26 @@ class Looks(NamedTuple):
     kept : whether the states of the run, and of the other one, are kept ones
     nodes : whether integrals ask for states between the breaks
     jumps : whether events fall between breaks, so that integrals have to add what they do
+    even : the breaks among them that lie anywhere in steps: kept states alone may be nearer to each other than others
     """
 
     t: Array
     kept: tuple[bool, bool]
     nodes: bool
     jumps: bool
+    even: Array | None = None
 
 
-def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: bool = False) -> Looks:
+def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Array | None = None) -> Looks:
     """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone.
 
-    wide : whether the run has kept states between its steps too
+    wide : times between its steps at which the run has kept states too
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)
-    if wide:
-        return Looks(_telling(run, end, WIDEST), (True, False), False, True)
+    if wide is not None:
+        even = wide[wide <= end]
+        return Looks(np.union1d(_telling(run, end, MOST), even), (True, False), False, True, even)
     events, even = event_times(run, other), np.linspace(float(run.t[0]), end, LEAST)
     some = events if len(events) <= MANY else events[:: 1 + len(events) // MANY]
     t = np.unique(np.concatenate([even, some, _after(some, run), _telling(run, end, MOST)]))
