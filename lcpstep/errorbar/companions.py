@@ -37,7 +37,8 @@ KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 BEST = EventDriven(1e-13, 1e-13)
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
 FAR = 0.03  # the same of event-driven runs that are tighter than usual
-EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
+LOOSEST, ENOUGH = 1e-7, 100.0  # tolerance of a companion, and how many times smaller than an error it is then
+EARLY, CLEAR = 0.25, 50.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
 LONG, ROWS = 4.0, 400  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
@@ -62,20 +63,28 @@ class Companion:
         if not self.first:
             return True
         early = int(np.searchsorted(bar.t, bar.t[0] + EARLY * (bar.t[-1] - bar.t[0]), side="right")) - 1
-        size = max(float(np.max(np.abs(x))) for x in (run.q, run.v))
-        own = self.method.atol + self.method.rtol * size
+        own = self.method.rtol * _size(run)
         return bool(np.max(bar.position.largest[early]) > CLEAR * own)
 
 
-def companions(run: Trajectory) -> Iterator[tuple[Companion, ...]]:
-    """Companions that a run may have, the best first; the first that treats the scene is taken."""
+def _size(run: Trajectory) -> float:
+    """What a tolerance, absolute and relative, means for a run."""
+    return 1.0 + max(float(np.max(np.abs(x))) for x in (run.q, run.v))
+
+
+def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Companion, ...]]:
+    """Companions that a run may have, the best first; the first that treats the scene is taken.
+
+    error : of the run, early on, where it is known [m]
+    """
     method, scene = run.method, run.scene
     if isinstance(method, EventDriven):
         yield from _of_event_driven(method, scene, run)
         return
     order = 1 if isinstance(method, Moreau) else method.order
-    if order in FIRST and not in_closed_form(scene):
-        yield (Companion(EventDriven(FIRST[order], FIRST[order]), first=True),)
+    loose = FIRST.get(order, BEST.rtol) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
+    if loose > BEST.rtol and not in_closed_form(scene):
+        yield (Companion(EventDriven(loose, loose), first=True),)
     yield (Companion(BEST),)
 
 

@@ -9,19 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
-from lcpstep.errorbar.companions import Companion, companions, followed, in_words
+from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
 from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
-from lcpstep.errorbar.partners import Pairs, Partners, partners
+from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import model
 from lcpstep.recording import Kept
+from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Status, Trajectory
+from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
 Found = list[tuple[Companion, Trajectory]]
 LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
 STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
+PART = 0.125  # of the span, in which a run that takes so long [s] is held against the best companion first
+LASTING = 0.01
 SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
@@ -44,7 +47,12 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     look = looks(run, run, every, end)
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
-    for group in companions(run):
+    soon = None
+    if every and seconds > LASTING and isinstance(run.method, (Moreau, Located)):
+        soon = _soon(run, seconds, wide)
+        if soon is not None and soon.reason:
+            return soon
+    for group in companions(run, None if soon is None else soon.position.sup):
         for c in group:
             if c not in known:
                 known[c] = followed(c, scene, _kept(look, every, c), seconds)
@@ -61,6 +69,17 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
         if reach >= end and clear:
             break
     return bar
+
+
+def _soon(run: Trajectory, seconds: float, wide: Array | None) -> ErrorBar | None:
+    """The bar over a first part of a long run, None where it is not known; its reason is that of the whole, or ""."""
+    start, end = float(run.t[0]), _reached(run)
+    part = replace(run.scene, t_span=(start, start + PART * (end - start)))
+    best = Companion(BEST)
+    x = followed(best, part, Kept(1, False, np.zeros(0)), seconds)
+    if x is None or x.status != Status.DONE:
+        return None
+    return against(run, True, [(best, x)], wide=wide, goes_on=True)
 
 
 def _kept(look: Looks, every: bool, c: Companion) -> Kept:
@@ -99,11 +118,13 @@ def against(
     resolution: float | None = None,
     wide: Array | None = None,
     look: Looks | None = None,
+    goes_on: bool = False,
 ) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit.
 
     resolution : within what time impacts of a contact are one; default: what the run resolves [s]
     wide : as of `error_bar`;  look : times at which a companion that is `seen` there alone has kept states
+    goes_on : whether the companion ends before the run, whose size and strongest impact are those of the whole
     """
     other = found[0][1]
     resolution = resolved(run) if resolution is None else resolution
@@ -111,10 +132,14 @@ def against(
     for c, x in found:
         if _reached(x) < until:
             until = _reached(x)
-            reason = f"{in_words(c.method)} ends there, {x.message}"
+            reason = "" if goes_on else f"{in_words(c.method)} ends there, {x.message}"
     m = model(run.scene)
     falls = fall(m, run)
-    logs = [_matched(run, x, every, until, resolution, falls) for _, x in found]
+    still = STILL * (float(np.max(np.abs(run.v))) + falls)
+    if goes_on:
+        struck = run.impacts[run.impacts["kind"] == Kind.IMPACT]
+        still = max(still, WEAK * float(np.max(np.abs(struck["after"] - struck["before"]), initial=0.0)))
+    logs = [_matched(run, x, every, until, resolution, still) for _, x in found]
     for (c, _), pairs in zip(found, logs, strict=True):
         if pairs.differs < until:
             until = pairs.differs
@@ -128,7 +153,8 @@ def against(
         return unknown(run, reason or "no states to compare")
     apart = distance(m, (run, other), look, logs[0].pairs, logs[0].windows, around, falls)
     texts = tuple(in_words(c.method) for c, _ in found)
-    horizon = _lost(t, apart) if math.isinf(limit) else math.inf
+    size = max(apart.size, 0.5 * float(np.ptp(run.q, axis=0).max()) if goes_on else 0.0)
+    horizon = _lost(t, apart, size) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
     if n < len(t):
         reason = "from there on its error is more than a quarter of the range of the motion"
@@ -152,10 +178,9 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
 
 
 def _matched(
-    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, falls: float
+    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, still: float
 ) -> Partners:
-    """Partners of the impacts of two runs; a jump is none that is rounding of what moves, or would."""
-    still = STILL * (float(np.max(np.abs(run.v))) + falls)
+    """Partners of the impacts of two runs; a jump below `still` is none: rounding of what moves, or would."""
     if not every:
         return partners(run.impacts, other.impacts, until, resolution, still)
     same, differ = alike(run, other, resolution), moving_apart(run, other)
@@ -170,7 +195,7 @@ def resolved(run: Trajectory) -> float:
     return 2.0 * min(run.method.h, span / max(run.counts.steps, 1))
 
 
-def _lost(t: Array, apart: Distance) -> float:
+def _lost(t: Array, apart: Distance, size: float) -> float:
     """Time from which on the error says only how large the motion is."""
-    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * apart.size)
+    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * size)
     return float(t[lost[0]]) if len(lost) else math.inf
