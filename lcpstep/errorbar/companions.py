@@ -50,7 +50,7 @@ class Companion:
 
     measures : its distance is the error, or it only looks for the same events
     first : it may not be accurate enough for that, and the next one is
-    seen : it keeps the states alone that are compared: those between its own ask for another run
+    seen : it keeps the states that are compared: those between its own ask for another run
     """
 
     method: Any

@@ -22,6 +22,7 @@ from lcpstep.errorbar.looks import GAUSS, MANY, Looks, at, brief, event_times, w
 from lcpstep.errorbar.partners import Alike, Apart, Pairs
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
+from lcpstep.stepping.interpolation import Parabolic
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -45,7 +46,7 @@ class Distance:
     size: float  # half the range of the coordinate that moves most, or what is no motion but rounding
 
 
-def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
+def alike(run: Trajectory, other: Trajectory, resolution: float, apart: Apart) -> Alike:
     """From when on two runs move alike again after an event of one of them, nan where they do not.
 
     Looked at after the event and those of other contacts at the same time, or after one or two more, in a state that
@@ -64,7 +65,7 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
         after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
         told = until > events[end]
         found = np.full(end.shape, math.inf)
-        differ = moving_apart(run, other)(after[told], np.broadcast_to(jump, end.shape)[told])
+        differ = apart(after[told], np.broadcast_to(jump, end.shape)[told])
         found[told] = np.where(differ, math.inf, after[told])
         soonest = np.min(found, axis=0)
         return np.where(np.isfinite(soonest), soonest, math.nan)
@@ -72,17 +73,22 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
     return again
 
 
-def moving_apart(run: Trajectory, other: Trajectory) -> Apart:
-    """Whether velocities differ at times by more than a share of jumps."""
+def moving_apart(run: Trajectory, other: Trajectory, whole: bool) -> Apart:
+    """Whether velocities differ at times by more than a share of jumps; `whole`: the other has all its steps."""
 
     def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
-        times, place = np.unique(
-            t, return_inverse=True
-        )  # some runs are run again for those between kept ones
-        apart = np.abs(run.at(times)[1] - other.at(times)[1])
+        times, place = np.unique(t, return_inverse=True)
+        apart = np.abs(roughly(run, times) - (roughly(other, times) if whole else other.at(times)[1]))
         return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
 
     return differ
+
+
+def roughly(run: Trajectory, t: Array) -> Array:
+    """Velocities of a run with all its steps, by parabolas within them where it would be run again for those."""
+    if getattr(run.dense, "dear", False) and len(run.t) > 1:
+        return Parabolic(run.t, run.q, run.v, True)(t)[1]
+    return run.at(t)[1]
 
 
 def distance(
@@ -106,7 +112,8 @@ def distance(
     far, fast = (np.abs(x).max(axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
-    between = np.column_stack([pairs.start, pairs.start + pairs.time])
+    between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
+    between = between[between[:, 1] - between[:, 0] < length / len(times)]  # those that looks tell nothing of
     out = within(left_out, times)
     jumping = apart[:, n_q:].copy()
     apart[out, n_q:] = 0.0
@@ -117,7 +124,7 @@ def distance(
         integral = _evened(t, apart, integral, look.even)
     integral = integral + floor * (t - t[0])[:, None]
     if look.jumps:
-        integral[:, n_q:] += _of_jumps(m, runs[look.kept[0]], t, merged(between, 0.0), around)
+        integral[:, n_q:] += _of_jumps(m, runs[look.kept[0]], t, between, around)
     elif not look.nodes and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))

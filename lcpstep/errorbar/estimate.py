@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
-from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_words
+from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
 from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
@@ -24,7 +25,7 @@ Found = list[tuple[Companion, Trajectory]]
 LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
 STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
 PART = 0.125  # of the span, in which a run that takes so long [s] is held against the best companion first
-LASTING = 0.01
+LASTING, SAVED = 0.01, 0.7  # of its time: a best companion that takes longer is worth a looser one
 SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
@@ -47,12 +48,16 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     look = looks(run, run, every, end)
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
-    soon = None
-    if every and seconds > LASTING and isinstance(run.method, (Moreau, Located)):
+    error = None
+    steps = isinstance(run.method, (Moreau, Located))
+    if every and seconds > LASTING and steps and not in_closed_form(run.scene):
+        begin = time.process_time()
         soon = _soon(run, seconds, wide)
         if soon is not None and soon.reason:
             return soon
-    for group in companions(run, None if soon is None else soon.position.sup):
+        dear = (time.process_time() - begin) / PART > SAVED * seconds
+        error = soon.position.sup if soon is not None and dear else 0.0
+    for group in companions(run, error):
         for c in group:
             if c not in known:
                 known[c] = followed(c, scene, _kept(look, every, c), seconds)
@@ -139,7 +144,7 @@ def against(
     if goes_on:
         struck = run.impacts[run.impacts["kind"] == Kind.IMPACT]
         still = max(still, WEAK * float(np.max(np.abs(struck["after"] - struck["before"]), initial=0.0)))
-    logs = [_matched(run, x, every, until, resolution, still) for _, x in found]
+    logs = [_matched(run, x, every, until, resolution, still, not c.seen) for c, x in found]
     for (c, _), pairs in zip(found, logs, strict=True):
         if pairs.differs < until:
             until = pairs.differs
@@ -178,12 +183,19 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
 
 
 def _matched(
-    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, still: float
+    run: Trajectory,
+    other: Trajectory,
+    every: bool,
+    until: float,
+    resolution: float,
+    still: float,
+    whole: bool,
 ) -> Partners:
     """Partners of the impacts of two runs; a jump below `still` is none: rounding of what moves, or would."""
     if not every:
         return partners(run.impacts, other.impacts, until, resolution, still)
-    same, differ = alike(run, other, resolution), moving_apart(run, other)
+    differ = moving_apart(run, other, whole)
+    same = alike(run, other, resolution, differ)
     return partners(run.impacts, other.impacts, until, resolution, still, same, differ)
 
 

@@ -17,7 +17,7 @@ from lcpstep.trajectory import Trajectory
 Array = NDArray[np.float64]
 LEAST, MOST = 199, 599  # breaks besides the events
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
-MANY = 2000  # events; of more only so many are breaks
+MANY = 600  # events; of more only so many are breaks
 JUMP = (
     10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
 )
@@ -60,7 +60,7 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
 
 
 def seen(look: Looks, end: float) -> Looks:
-    """Up to a time, where the other run has kept states at these times and nodes alone."""
+    """Up to a time, where the other run has kept states at these times and nodes."""
     return Looks(look.t[look.t <= end], (False, True), True, True)
 
 
