@@ -34,11 +34,12 @@ from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
-BEST = EventDriven(1e-13, 1e-13)
+TIGHT = 1e-13
+BEST = EventDriven(TIGHT, TIGHT)
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
 FAR = 0.03  # the same of event-driven runs that are tighter than usual
-LOOSEST, ENOUGH = 1e-7, 100.0  # tolerance of a companion, and how many times smaller than an error it is then
-EARLY, CLEAR = 0.25, 50.0  # part of the bar, in which it is so many times a companion's tolerance
+LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
+EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
 LONG, ROWS = 4.0, 400  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
@@ -82,8 +83,8 @@ def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Co
         yield from _of_event_driven(method, scene, run)
         return
     order = 1 if isinstance(method, Moreau) else method.order
-    loose = FIRST.get(order, BEST.rtol) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
-    if loose > BEST.rtol and not in_closed_form(scene):
+    loose = FIRST.get(order, 0.0) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
+    if loose > TIGHT and not in_closed_form(scene):
         yield (Companion(EventDriven(loose, loose), first=True),)
     yield (Companion(BEST),)
 
@@ -98,7 +99,7 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
         pass
     order = 4 if scene.n_j == 0 else 2
     looks = Companion(Located(step / PIECES, order), measures=False)
-    rtol, atol = (max(LEAST_TOLERANCE, min(BEST.rtol, x * FAR)) for x in (method.rtol, method.atol))
+    rtol, atol = (max(LEAST_TOLERANCE, min(TIGHT, x * FAR)) for x in (method.rtol, method.atol))
     yield Companion(EventDriven(rtol, atol)), looks
 
 

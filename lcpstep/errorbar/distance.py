@@ -26,6 +26,7 @@ from lcpstep.stepping.interpolation import Parabolic
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
+HIDDEN = 3  # looks within an interval between partners, that do not tell what happens there
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
@@ -113,12 +114,12 @@ def distance(
     floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
     between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
-    between = between[between[:, 1] - between[:, 0] < length / len(times)]  # those that looks tell nothing of
+    between, hidden = (x[np.diff(np.searchsorted(times, x))[:, 0] <= HIDDEN] for x in (between, left_out))
     out = within(left_out, times)
     jumping = apart[:, n_q:].copy()
     apart[out, n_q:] = 0.0
     largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * look.nodes] + floor
-    apart[:, n_q:] = jumping[_before(within(merged(between, around), times))] if look.jumps else jumping
+    apart[:, n_q:] = jumping[_before(within(hidden, times))] if look.jumps else jumping
     integral = _integral(t, apart, look.nodes)
     if look.even is not None:
         integral = _evened(t, apart, integral, look.even)

@@ -45,7 +45,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
         return unknown(run, "only one state was kept")
     start, end = float(run.t[0]), _reached(run)
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
-    look = looks(run, run, every, end)
+    look: Looks | None = None
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
     error = None
@@ -60,7 +60,8 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     for group in companions(run, error):
         for c in group:
             if c not in known:
-                known[c] = followed(c, scene, _kept(look, every, c), seconds)
+                look = look or (looks(run, run, every, end) if c.seen or not every else None)
+                known[c] = followed(c, scene, _kept(look, every), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
         if (
             known[group[0]] is None
@@ -87,9 +88,9 @@ def _soon(run: Trajectory, seconds: float, wide: Array | None) -> ErrorBar | Non
     return against(run, True, [(best, x)], wide=wide, goes_on=True)
 
 
-def _kept(look: Looks, every: bool, c: Companion) -> Kept:
+def _kept(look: Looks | None, every: bool) -> Kept:
     """What a companion keeps: every step, or the states that it is asked for."""
-    if every and not c.seen:
+    if look is None:
         return Kept(1, False, np.zeros(0))
     return Kept(0, False, np.unique(with_nodes(look.t)) if every else look.t)
 

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 199, 599  # breaks besides the events
+LEAST, MOST, STEPS = 80, 600, 8  # breaks besides the events: one in so many steps, between two bounds
+EVEN = 3  # of them one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 MANY = 600  # events; of more only so many are breaks
 JUMP = (
@@ -50,12 +51,13 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)
+    most = min(max(LEAST, run.counts.steps // STEPS), MOST)
     if wide is not None:
         even = wide[wide <= end]
-        return Looks(np.union1d(_telling(run, end, MOST), even), (True, False), False, True, even)
-    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, LEAST)
+        return Looks(np.union1d(_telling(run, end, most), even), (True, False), False, True, even)
+    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, most // EVEN)
     some = events if len(events) <= MANY else events[:: 1 + len(events) // MANY]
-    t = np.unique(np.concatenate([even, some, _after(some, run), _telling(run, end, MOST)]))
+    t = np.unique(np.concatenate([even, some, _after(some, run, most), _telling(run, end, most)]))
     return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, len(some) < len(events))
 
 
@@ -78,10 +80,10 @@ def _telling(run: Trajectory, end: float, most: int) -> Array:
     return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
 
 
-def _after(events: Array, run: Trajectory) -> Array:
+def _after(events: Array, run: Trajectory, most: int) -> Array:
     """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
-    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // MOST], run.t[-1:]])
-    halves = 0.5 ** np.arange(1, 2 + min(GRADES, MOST // len(some)))
+    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // most], run.t[-1:]])
+    halves = 0.5 ** np.arange(1, 2 + min(GRADES, most // len(some)))
     return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
 
 
