@@ -170,7 +170,7 @@ def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -
     """The run with its error bar, told by one with more states; an interrupt leaves the run without one."""
     from lcpstep.errorbar.estimate import error_bar
 
-    times = kept.times if wide is not run and not hasattr(run.dense, "jumps") else None
+    times = kept.times if wide is not run else None
     try:
         return replace(run, error=error_bar(run if times is None else wide, kept.all, seconds, times))
     except KeyboardInterrupt:

@@ -114,7 +114,7 @@ def distance(
     floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
     between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
-    between, hidden = (x[np.diff(np.searchsorted(times, x))[:, 0] <= HIDDEN] for x in (between, left_out))
+    between, hidden = (_hidden(x, times, look.kept[0]) for x in (between, left_out))
     out = within(left_out, times)
     jumping = apart[:, n_q:].copy()
     apart[out, n_q:] = 0.0
@@ -133,6 +133,13 @@ def distance(
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
     size = 0.5 * float(np.ptp(one[0], axis=0).max())
     return Distance(position, velocity, power, left_out, max(size, least))
+
+
+def _hidden(intervals: Array, times: Array, alone: bool) -> Array:
+    """Intervals that looks do not resolve; at kept states alone none tells how long it lasts."""
+    if alone:
+        return intervals[np.diff(intervals)[:, 0] < HIDDEN * (times[-1] - times[0]) / len(times)]
+    return intervals[np.diff(np.searchsorted(times, intervals))[:, 0] <= HIDDEN]
 
 
 def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:

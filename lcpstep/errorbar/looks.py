@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST, STEPS = 80, 600, 8  # breaks besides the events: one in so many steps, between two bounds
+LEAST, MOST, STEPS = 200, 600, 3  # breaks besides the events: one in so many steps, between two bounds
 EVEN = 3  # of them one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 MANY = 600  # events; of more only so many are breaks

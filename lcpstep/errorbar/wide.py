@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene
+from lagrangian import LinearContacts, LinearSystem, Scene
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located
 from lcpstep.trajectory import Trajectory
@@ -23,11 +23,18 @@ def widened(method: Any, scene: Scene, kept: Kept) -> Kept:
     if not (isinstance(method, Located) and kept.all) or method.audit:
         return kept
     rubs = scene.contacts is not None and scene.contacts.friction is not None
-    if rubs or scene.n_j > 0 or (method.order == 2 and method.tolerance is None):
+    if rubs or scene.n_j > 0 or (method.order == 2 and (method.tolerance is None or _plain(scene))):
         return kept
     start, end = scene.t_span
     share = np.sort(np.mod(GOLDEN * np.arange(1, BETWEEN + 1), 1.0))
     return replace(kept, times=np.append(start, start + (end - start) * share))
+
+
+def _plain(scene: Scene) -> bool:
+    """Whether steps of order 2 by a tolerance may be known in between."""
+    c = scene.contacts
+    flat = c is None or (isinstance(c, LinearContacts) and c.motion is None)
+    return isinstance(scene.system, LinearSystem) and flat
 
 
 def narrowed(run: Trajectory, kept: Kept) -> Trajectory:
@@ -39,10 +46,7 @@ def narrowed(run: Trajectory, kept: Kept) -> Trajectory:
         return run
     impulse = np.add.reduceat(run.impulse[: places[-1] + 1], np.append(0, places[:-1] + 1), axis=0)
     joints, rubbing = run.joint_impulse[stay], run.friction_impulse[stay]
-    dense: Any = run.dense
-    if hasattr(dense, "jumps"):
-        dense = replace(dense, t=dense.t[stay], q=dense.q[stay], v=dense.v[stay], jumps=dense.jumps[stay])
     return replace(
-        run, t=run.t[stay], q=run.q[stay], v=run.v[stay], impulse=impulse, dense=dense, joint_impulse=joints,
+        run, t=run.t[stay], q=run.q[stay], v=run.v[stay], impulse=impulse, joint_impulse=joints,
         friction_impulse=rubbing,
     )  # fmt: skip
