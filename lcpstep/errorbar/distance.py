@@ -79,17 +79,17 @@ def moving_apart(run: Trajectory, other: Trajectory, whole: bool) -> Apart:
 
     def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
         times, place = np.unique(t, return_inverse=True)
-        apart = np.abs(roughly(run, times) - (roughly(other, times) if whole else other.at(times)[1]))
+        apart = np.abs(roughly(run, times)[1] - (roughly(other, times) if whole else other.at(times))[1])
         return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
 
     return differ
 
 
-def roughly(run: Trajectory, t: Array) -> Array:
-    """Velocities of a run with all its steps, by parabolas within them where it would be run again for those."""
+def roughly(run: Trajectory, t: Array) -> tuple[Array, Array]:
+    """States of a run with all its steps, by parabolas within them where it would be run again for those."""
     if getattr(run.dense, "dear", False) and len(run.t) > 1:
-        return Parabolic(run.t, run.q, run.v, True)(t)[1]
-    return run.at(t)[1]
+        return Parabolic(run.t, run.q, run.v, True)(t)
+    return run.at(t)
 
 
 def distance(
@@ -125,7 +125,7 @@ def distance(
         integral = _evened(t, apart, integral, look.even)
     integral = integral + floor * (t - t[0])[:, None]
     if look.jumps:
-        integral[:, n_q:] += _of_jumps(m, runs[look.kept[0]], t, between, around)
+        integral[:, n_q:] += _of_jumps(m, runs, look, between, around)
     elif not look.nodes and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
@@ -147,17 +147,31 @@ def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:
     return np.asarray(np.maximum.accumulate(np.where(out, 0, np.arange(len(out)))))
 
 
-def _of_jumps(m: Model, run: Trajectory, t: Array, own: Array, around: float) -> Array:
-    """What events add to the integrals of velocities and energy up to times t, (n, n_q + 1); of many a part tells."""
+def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: Array, around: float) -> Array:
+    """What intervals between partners add to the integrals of velocities and energy up to all looks, (n, n_q + 1)."""
+    t, run = look.t, runs[0]
     own = own[(own[:, 1] > own[:, 0]) & (own[:, 1] < t[-1])]
-    some = own[:: 1 + len(own) // MANY]
+    some = own[:: 1 + len(own) // MANY]  # of many a part tells
     added = np.zeros((len(t), run.scene.n_q + 1))
     if len(some):
-        times = np.clip(some + around * np.array([-1.0, 1.0]), run.t[0], run.t[-1]).ravel()
-        q, v = run.at(times)
-        jump = np.abs(np.diff(np.column_stack([v, energy(m, times, q, v)]), axis=0)[::2])
-        np.add.at(added, np.searchsorted(t, some[:, 1]), jump * np.diff(some))
+        between = 0.5 * (some[:, 0] + some[:, 1])
+        if look.kept[1]:  # the other run is not known there: nor what one jumps by while it waits
+            times = np.clip(
+                np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1]), run.t[0], run.t[-1]
+            )
+            jumps = np.abs(np.diff(_speeds(m, run, times.ravel()), axis=0)).reshape(-1)
+            jumps = np.append(jumps, np.zeros(added.shape[1])).reshape(len(some), 4, -1)
+            apart = np.maximum(jumps[:, 0], jumps[:, 2])
+        else:
+            apart = np.abs(_speeds(m, run, between) - _speeds(m, runs[1], between))
+        np.add.at(added, np.searchsorted(t, some[:, 1]), apart * np.diff(some))
     return np.cumsum(added, axis=0) * (len(own) / max(len(some), 1))
+
+
+def _speeds(m: Model, run: Trajectory, t: Array) -> Array:
+    """Velocities and energy (n, n_q + 1)."""
+    q, v = roughly(run, t)
+    return np.column_stack([v, energy(m, t, q, v)])
 
 
 def _integral(t: Array, x: Array, nodes: bool) -> Array:
