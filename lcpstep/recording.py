@@ -62,6 +62,11 @@ class Kept:
         """Whether every step is kept."""
         return self.every == 1
 
+    @property
+    def given(self) -> bool:
+        """Whether nothing but states at given times is kept."""
+        return self.every == 0 and not self.on_events
+
 
 def in_order(events: Array, end: float) -> Array:
     """Events in the order of time, within the span; those of one time in the order in which they were noted.

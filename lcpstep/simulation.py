@@ -121,14 +121,20 @@ def simulate(
 
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
-    begin = time.process_time() if error else 0.0
+    begin, asked = time.process_time() if error else 0.0, kept
+    if error:
+        from lcpstep.errorbar.wide import narrowed, widened
+
+        kept = widened(method, scene, kept)
     if getattr(method, "audit", False):
         from lcpstep.audit import audited
 
         run = audited(method, scene, kept, report)
     else:
         run = method.run(scene, kept, report)
-    seconds = time.process_time() - begin if error else 0.0
+    seconds, wide = time.process_time() - begin if error else 0.0, run
+    if kept is not asked:
+        run = narrowed(run, kept)
     if fault() is not None:
         from lcpstep.model import culprit
 
@@ -137,7 +143,7 @@ def simulate(
     _warn_of_fast_gaps(run)
     doubt = _no_room(run) or too_deep(run) or unresolved(run)
     run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
-    return _with_error(run, kept, seconds) if error else run
+    return _with_error(run, wide, kept, seconds) if error else run
 
 
 def _can_tell_errors(scene: Any, method: Method) -> None:
@@ -160,12 +166,13 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
         raise LcpStepError(f"error: expected one of the methods {names}, got {method!r}")
 
 
-def _with_error(run: Trajectory, kept: Kept, seconds: float) -> Trajectory:
-    """The run with its error bar; an interrupt leaves the run without one."""
+def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -> Trajectory:
+    """The run with its error bar, told by one with more states; an interrupt leaves the run without one."""
     from lcpstep.errorbar.estimate import error_bar
 
+    times = kept.times if wide is not run else None
     try:
-        return replace(run, error=error_bar(run, kept.all, seconds))
+        return replace(run, error=error_bar(run if times is None else wide, kept.all, seconds, times))
     except KeyboardInterrupt:
         raise SimulationInterrupted(lambda: run) from None
 

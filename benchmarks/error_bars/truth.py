@@ -25,9 +25,10 @@ from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.accuracy.errors import Difference, energies
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errorbar.companions import Companion
-from lcpstep.errorbar.distance import fall, looks, merged, with_nodes
+from lcpstep.errorbar.distance import fall, merged
 from lcpstep.errorbar.distance import within as inside
 from lcpstep.errorbar.estimate import against, resolved
+from lcpstep.errorbar.looks import looks, with_nodes
 from lcpstep.errors import LcpStepError, SimulationInterrupted
 from lcpstep.model import model
 from lcpstep.simulation import Method
@@ -143,7 +144,7 @@ def errors(run: Trajectory, reference: Trajectory, until: float, resolution: flo
 
 def away_from_impacts(run: Trajectory, reference: Trajectory, margin: float) -> NDArray[np.float64]:
     """Times about which the bar of a run says something of velocities, as far as impacts of the truth are known."""
-    t = with_nodes(looks(run, reference, True, run.error.until))
+    t = with_nodes(looks(run, reference, True, run.error.until).t)
     t = np.unique(t[t <= run.error.until])
     return t[~inside(merged(run.error.left_out, margin), t)]
 

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian import Scene
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
@@ -34,11 +34,14 @@ from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
-BEST = EventDriven(1e-13, 1e-13)
+TIGHT = 1e-13
+BEST = EventDriven(TIGHT, TIGHT)
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
 FAR = 0.03  # the same of event-driven runs that are tighter than usual
+LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
+LONG, ROWS = 4.0, 400  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 
@@ -48,45 +51,73 @@ class Companion:
 
     measures : its distance is the error, or it only looks for the same events
     first : it may not be accurate enough for that, and the next one is
+    seen : it keeps the states that are compared: those between its own ask for another run
     """
 
     method: Any
     measures: bool = True
     first: bool = False
+    seen: bool = False
 
     def tells(self, run: Trajectory, bar: ErrorBar) -> bool:
         """Whether the bar is far above the companion's own tolerance, early on, where no error has grown yet."""
         if not self.first:
             return True
         early = int(np.searchsorted(bar.t, bar.t[0] + EARLY * (bar.t[-1] - bar.t[0]), side="right")) - 1
-        size = max(float(np.max(np.abs(x))) for x in (run.q, run.v))
-        own = self.method.atol + self.method.rtol * size
+        own = self.method.rtol * _size(run)
         return bool(np.max(bar.position.largest[early]) > CLEAR * own)
 
 
-def companions(run: Trajectory) -> Iterator[tuple[Companion, ...]]:
-    """Companions that a run may have, the best first; the first that treats the scene is taken."""
+def _size(run: Trajectory) -> float:
+    """What a tolerance, absolute and relative, means for a run."""
+    return 1.0 + max(float(np.max(np.abs(x))) for x in (run.q, run.v))
+
+
+def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Companion, ...]]:
+    """Companions that a run may have, the best first; the first that treats the scene is taken.
+
+    error : of the run, early on, where it is known [m]
+    """
     method, scene = run.method, run.scene
     if isinstance(method, EventDriven):
         yield from _of_event_driven(method, scene, run)
         return
     order = 1 if isinstance(method, Moreau) else method.order
-    if order in FIRST:
-        yield (Companion(EventDriven(FIRST[order], FIRST[order]), first=True),)
+    loose = FIRST.get(order, 0.0) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
+    if loose > TIGHT and not in_closed_form(scene):
+        yield (Companion(EventDriven(loose, loose), first=True),)
     yield (Companion(BEST),)
 
 
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
-    step = float(run.t[-1] - run.t[0]) / max(run.counts.steps, 1)
+    span = float(run.t[-1] - run.t[0])
+    step = span / max(run.counts.steps, 1)
     try:
         require_exact(scene)
-        yield (Companion(Located(step, "exact")),)
+        yield (Companion(Located(max(step, min(LONG * step, span / ROWS)), "exact"), seen=True),)
     except LcpStepError:
         pass
     order = 4 if scene.n_j == 0 else 2
     looks = Companion(Located(step / PIECES, order), measures=False)
-    rtol, atol = (max(LEAST_TOLERANCE, min(BEST.rtol, x * FAR)) for x in (method.rtol, method.atol))
+    rtol, atol = (max(LEAST_TOLERANCE, min(TIGHT, x * FAR)) for x in (method.rtol, method.atol))
     yield Companion(EventDriven(rtol, atol)), looks
+
+
+def in_closed_form(scene: Scene) -> bool:
+    """Whether an event-driven run moves in closed form: a looser tolerance makes it no faster."""
+    s, c = scene.system, scene.contacts
+    known = isinstance(s, LinearSystem) and isinstance(s.force, Harmonic) and scene.n_j == 0
+    if not known or not (c is None or (isinstance(c, LinearContacts) and c.friction is None)):
+        return False
+    return (scene.n_q == 1 and scene.n_c <= 1) or _constant(scene)
+
+
+def _constant(scene: Scene) -> bool:
+    """Whether the accelerations of a linear system are constant, and its obstacles stand still."""
+    s: Any = scene.system
+    moves = s.frame is not None or (scene.contacts is not None and scene.contacts.motion is not None)
+    turns = s.force.omega != 0.0 and any(np.any(x) for x in s.force.terms(scene.n_q)[1:])
+    return not (moves or turns or any(abs(x).max() > 0.0 for x in (s.C, s.K)))
 
 
 def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> Trajectory | None:

@@ -5,7 +5,8 @@
 for positions, velocities and energy. Between an impact and its partner in the other run one of the two velocities has
 jumped and the other not: there the pointwise distance of velocities and energies is as large as the jump however
 near the two motions are. Their `largest` leaves these times out. The integrals take all: by Gauss' rule with two
-points between breaks, of which every event of either run is one.
+points between breaks, where every event of either run is one. Else they go on between breaks as if nothing jumped,
+and what events do is added: for each pair the jump times the time between the two.
 """
 
 from __future__ import annotations
@@ -17,20 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.partners import Alike, Apart
+from lcpstep.errorbar.looks import GAUSS, MANY, Looks, at, brief, event_times, with_nodes
+from lcpstep.errorbar.partners import Alike, Apart, Pairs
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
+from lcpstep.stepping.interpolation import Parabolic
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST = 199, 599  # breaks besides the events
-GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
-JUMP = (
-    10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
-)
-TINY = float(np.finfo(float).tiny)
-GRADES = 12  # times an interval after an event is halved towards it
-BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
+HIDDEN = 3  # looks within an interval between partners, that do not tell what happens there
 FURTHER = 3  # gaps between events after one that differs, in which motions may be alike again
 SAME = 0.1  # of a jump, by which velocities of motions may differ that are alike
 AT_REST = 1e-6  # of the length that forces would move it by
@@ -51,58 +47,7 @@ class Distance:
     size: float  # half the range of the coordinate that moves most, or what is no motion but rounding
 
 
-def looks(run: Trajectory, other: Trajectory, every: bool, end: float) -> Array:
-    """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone."""
-    steps = _telling(run)
-    if not every:
-        return steps[steps <= end]
-    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, LEAST)
-    t = np.unique(np.concatenate([even, events, _after(events, run), steps]))
-    return t[(t >= run.t[0]) & (t <= end)]
-
-
-def _telling(run: Trajectory) -> Array:
-    """Kept times, or as many as are to be looked at: they lie as near to each other as time and velocities go on."""
-    if len(run.t) <= MOST:
-        return run.t
-    turns = np.abs(np.diff(run.v, axis=0)).sum(axis=1)
-    share = np.minimum(turns, JUMP * turns.mean())
-    going = np.cumsum(np.diff(run.t) / (run.t[-1] - run.t[0]) + share / max(share.sum(), TINY))
-    places = np.searchsorted(going, np.linspace(0.0, going[-1], MOST))
-    return run.t[np.unique(np.append(places, len(run.t) - 1))]
-
-
-def _after(events: Array, run: Trajectory) -> Array:
-    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
-    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // MOST], run.t[-1:]])
-    halves = 0.5 ** np.arange(1, 2 + min(GRADES, MOST // len(some)))
-    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
-
-
-def event_times(run: Trajectory, other: Trajectory) -> Array:
-    """When anything happened in either run."""
-    return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
-
-
-def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
-    """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
-    events = event_times(run, other)
-    short = np.flatnonzero(np.diff(events) < BRIEF * span)
-    return np.column_stack([events[short], events[short + 1]])
-
-
-def at(run: Trajectory, t: Array, every: bool) -> tuple[Array, Array]:
-    """States at times in their order, which are kept ones where not every state was kept."""
-    if not every:
-        k = np.searchsorted(run.t, t, side="right") - 1
-        return run.q[k], run.v[k]
-    later = np.diff(t, prepend=-math.inf) > 0.0
-    q, v = run.at(t[later])
-    place = np.cumsum(later) - 1
-    return q[place], v[place]
-
-
-def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
+def alike(run: Trajectory, other: Trajectory, resolution: float, apart: Apart) -> Alike:
     """From when on two runs move alike again after an event of one of them, nan where they do not.
 
     Looked at after the event and those of other contacts at the same time, or after one or two more, in a state that
@@ -121,7 +66,7 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
         after = np.where(kept, run.t[k], 0.5 * (events[end] + until))
         told = until > events[end]
         found = np.full(end.shape, math.inf)
-        differ = moving_apart(run, other)(after[told], np.broadcast_to(jump, end.shape)[told])
+        differ = apart(after[told], np.broadcast_to(jump, end.shape)[told])
         found[told] = np.where(differ, math.inf, after[told])
         soonest = np.min(found, axis=0)
         return np.where(np.isfinite(soonest), soonest, math.nan)
@@ -129,45 +74,60 @@ def alike(run: Trajectory, other: Trajectory, resolution: float) -> Alike:
     return again
 
 
-def moving_apart(run: Trajectory, other: Trajectory) -> Apart:
-    """Whether velocities differ at times by more than a share of jumps."""
+def moving_apart(run: Trajectory, other: Trajectory, whole: bool) -> Apart:
+    """Whether velocities differ at times by more than a share of jumps; `whole`: the other has all its steps."""
 
     def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
-        times, place = np.unique(
-            t, return_inverse=True
-        )  # some runs are run again for those between kept ones
-        apart = np.abs(run.at(times)[1] - other.at(times)[1])
+        times, place = np.unique(t, return_inverse=True)
+        apart = np.abs(roughly(run, times)[1] - (roughly(other, times) if whole else other.at(times))[1])
         return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
 
     return differ
 
 
+def roughly(run: Trajectory, t: Array) -> tuple[Array, Array]:
+    """States of a run with all its steps, by parabolas within them where it would be run again for those."""
+    if getattr(run.dense, "dear", False) and len(run.t) > 1:
+        return Parabolic(run.t, run.q, run.v, True)(t)
+    return run.at(t)
+
+
 def distance(
     m: Model,
     runs: tuple[Trajectory, Trajectory],
-    every: bool,
-    t: Array,
+    look: Looks,
+    pairs: Pairs,
     windows: Array,
     around: float,
     falls: float,
 ) -> Distance:
-    """Distances of two runs at breaks t; the largest of velocities without windows and what is `around` them.
+    """Distances of two runs as they are looked at; the largest of velocities without windows and what is `around`.
 
     falls : see `fall` [m/s]
     """
-    n_q, length = runs[0].scene.n_q, float(t[-1] - t[0])
-    times = with_nodes(t) if every else t
-    one, other = (at(x, times, every) for x in runs)
+    t, n_q = look.t, runs[0].scene.n_q
+    length, times = float(t[-1] - t[0]), with_nodes(t) if look.nodes else t
+    one, other = (at(x, times, kept) for x, kept in zip(runs, look.kept, strict=True))
     energies = [energy(m, times, *x) for x in (one, other)]
     apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
     far, fast = (np.abs(x).max(axis=0) for x in one)
     floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
-    integral = _integral(t, apart, every) + floor * (t - t[0])[:, None]
-    if not every and len(windows):
-        integral[:, n_q:] = math.nan  # where impacts fall between kept states
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
-    apart[within(left_out, times), n_q:] = 0.0
-    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * every] + floor
+    between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
+    between, hidden = (_hidden(x, times, look.kept[0]) for x in (between, left_out))
+    out = within(left_out, times)
+    jumping = apart[:, n_q:].copy()
+    apart[out, n_q:] = 0.0
+    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * look.nodes] + floor
+    apart[:, n_q:] = jumping[_before(within(hidden, times))] if look.jumps else jumping
+    integral = _integral(t, apart, look.nodes)
+    if look.even is not None:
+        integral = _evened(t, apart, integral, look.even)
+    integral = integral + floor * (t - t[0])[:, None]
+    if look.jumps:
+        integral[:, n_q:] += _of_jumps(m, runs, look, between, around)
+    elif not look.nodes and len(windows):
+        integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
@@ -175,16 +135,61 @@ def distance(
     return Distance(position, velocity, power, left_out, max(size, least))
 
 
-def with_nodes(t: Array) -> Array:
-    """Times (n,), and after each but the last the nodes between it and the next."""
-    between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
-    return np.append(between.ravel(), t[-1])
+def _hidden(intervals: Array, times: Array, alone: bool) -> Array:
+    """Intervals that looks do not resolve; at kept states alone none tells how long it lasts."""
+    if alone:
+        return intervals[np.diff(intervals)[:, 0] < HIDDEN * (times[-1] - times[0]) / len(times)]
+    return intervals[np.diff(np.searchsorted(times, intervals))[:, 0] <= HIDDEN]
 
 
-def _integral(t: Array, x: Array, every: bool) -> Array:
+def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Places of the last times before each that are not left out."""
+    return np.asarray(np.maximum.accumulate(np.where(out, 0, np.arange(len(out)))))
+
+
+def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: Array, around: float) -> Array:
+    """What intervals between partners add to the integrals of velocities and energy up to all looks, (n, n_q + 1)."""
+    t, run = look.t, runs[0]
+    own = own[(own[:, 1] > own[:, 0]) & (own[:, 1] < t[-1])]
+    some = own[:: 1 + len(own) // MANY]  # of many a part tells
+    added = np.zeros((len(t), run.scene.n_q + 1))
+    if len(some):
+        between = 0.5 * (some[:, 0] + some[:, 1])
+        if look.kept[1]:  # the other run is not known there: nor what one jumps by while it waits
+            times = np.clip(
+                np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1]), run.t[0], run.t[-1]
+            )
+            jumps = np.abs(np.diff(_speeds(m, run, times.ravel()), axis=0)).reshape(-1)
+            jumps = np.append(jumps, np.zeros(added.shape[1])).reshape(len(some), 4, -1)
+            apart = np.maximum(jumps[:, 0], jumps[:, 2])
+        else:
+            apart = np.abs(_speeds(m, run, between) - _speeds(m, runs[1], between))
+        np.add.at(added, np.searchsorted(t, some[:, 1]), apart * np.diff(some))
+    return np.cumsum(added, axis=0) * (len(own) / max(len(some), 1))
+
+
+def _speeds(m: Model, run: Trajectory, t: Array) -> Array:
+    """Velocities and energy (n, n_q + 1)."""
+    q, v = roughly(run, t)
+    return np.column_stack([v, energy(m, t, q, v)])
+
+
+def _integral(t: Array, x: Array, nodes: bool) -> Array:
     """Integral up to each time, by the nodes between times, or by the times where there are none."""
-    means = 0.5 * (x[1::3] + x[2::3] if every else x[1:] + x[:-1])
+    means = 0.5 * (x[1::3] + x[2::3] if nodes else x[1:] + x[:-1])
     return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
+
+
+def _evened(t: Array, x: Array, integral: Array, even: Array) -> Array:
+    """The integral over the intervals between even times: by all times there, or by these alone where that is more.
+
+    Errors at the ends of steps may be smaller than within.
+    """
+    k = np.searchsorted(t, even)
+    alone = 0.5 * np.diff(even)[:, None] * (x[k[1:]] + x[k[:-1]])
+    more = np.cumsum(np.maximum(alone - np.diff(integral[k], axis=0), 0.0), axis=0)
+    added = np.concatenate([np.zeros((1, x.shape[1])), more])
+    return integral + added[np.maximum(np.searchsorted(even, t, side="right") - 1, 0)]
 
 
 def merged(windows: Array, around: float) -> Array:

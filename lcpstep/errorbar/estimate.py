@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
-from lcpstep.errorbar.companions import Companion, companions, followed, in_words
-from lcpstep.errorbar.distance import Distance, alike, distance, fall, looks, moving_apart
-from lcpstep.errorbar.partners import Pairs, Partners, partners
+from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
+from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
+from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
+from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import model
 from lcpstep.recording import Kept
+from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Status, Trajectory
+from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
 Found = list[tuple[Companion, Trajectory]]
 LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
 STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
+PART = 0.125  # of the span, in which a run that takes so long [s] is held against the best companion first
+LASTING, SAVED = 0.01, 0.7  # of its time: a best companion that takes longer is worth a looser one
 SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
 
-def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
+def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None = None) -> ErrorBar:
     """Error bar of a run.
 
     Parameters
@@ -34,19 +39,29 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
     every : whether every step was kept; if not, states are compared where they were kept, and the integrals of
         velocity and energy are not known
     seconds : CPU time that a companion may take, where it takes more than a second [s]
+    wide : times between its steps at which the run has kept states too, so that no other run is needed for them
     """
     if len(run.t) < 2:
         return unknown(run, "only one state was kept")
     start, end = float(run.t[0]), _reached(run)
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
-    nothing = np.zeros(0)
-    kept = Kept(1, False, nothing) if every else Kept(0, False, looks(run, run, every, end))
+    look: Looks | None = None
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
-    for group in companions(run):
+    error = None
+    steps = isinstance(run.method, (Moreau, Located))
+    if every and seconds > LASTING and steps and not in_closed_form(run.scene):
+        begin = time.process_time()
+        soon = _soon(run, seconds, wide)
+        if soon is not None and soon.reason:
+            return soon
+        dear = (time.process_time() - begin) / PART > SAVED * seconds
+        error = soon.position.sup if soon is not None and dear else 0.0
+    for group in companions(run, error):
         for c in group:
             if c not in known:
-                known[c] = followed(c, scene, kept, seconds)
+                look = look or (looks(run, run, every, end) if c.seen or not every else None)
+                known[c] = followed(c, scene, _kept(look, every), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
         if (
             known[group[0]] is None
@@ -55,11 +70,29 @@ def error_bar(run: Trajectory, every: bool, seconds: float) -> ErrorBar:
             or (_reach(found) == reach and clear)
         ):
             continue
-        bar, reach = against(run, every, found), _reach(found)
+        bar, reach = against(run, every, found, wide=wide, look=look), _reach(found)
         clear = group[0].tells(run, bar)
         if reach >= end and clear:
             break
     return bar
+
+
+def _soon(run: Trajectory, seconds: float, wide: Array | None) -> ErrorBar | None:
+    """The bar over a first part of a long run, None where it is not known; its reason is that of the whole, or ""."""
+    start, end = float(run.t[0]), _reached(run)
+    part = replace(run.scene, t_span=(start, start + PART * (end - start)))
+    best = Companion(BEST)
+    x = followed(best, part, Kept(1, False, np.zeros(0)), seconds)
+    if x is None or x.status != Status.DONE:
+        return None
+    return against(run, True, [(best, x)], wide=wide, goes_on=True)
+
+
+def _kept(look: Looks | None, every: bool) -> Kept:
+    """What a companion keeps: every step, or the states that it is asked for."""
+    if look is None:
+        return Kept(1, False, np.zeros(0))
+    return Kept(0, False, np.unique(with_nodes(look.t)) if every else look.t)
 
 
 def _reach(found: Found) -> float:
@@ -84,11 +117,20 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
 
 
 def against(
-    run: Trajectory, every: bool, found: Found, limit: float = math.inf, resolution: float | None = None
+    run: Trajectory,
+    every: bool,
+    found: Found,
+    limit: float = math.inf,
+    resolution: float | None = None,
+    wide: Array | None = None,
+    look: Looks | None = None,
+    goes_on: bool = False,
 ) -> ErrorBar:
     """The bar from a companion that measures and others that look for the same events, up to a limit.
 
     resolution : within what time impacts of a contact are one; default: what the run resolves [s]
+    wide : as of `error_bar`;  look : times at which a companion that is `seen` there alone has kept states
+    goes_on : whether the companion ends before the run, whose size and strongest impact are those of the whole
     """
     other = found[0][1]
     resolution = resolved(run) if resolution is None else resolution
@@ -96,21 +138,29 @@ def against(
     for c, x in found:
         if _reached(x) < until:
             until = _reached(x)
-            reason = f"{in_words(c.method)} ends there, {x.message}"
+            reason = "" if goes_on else f"{in_words(c.method)} ends there, {x.message}"
     m = model(run.scene)
     falls = fall(m, run)
-    logs = [_matched(run, x, every, until, resolution, falls) for _, x in found]
+    still = STILL * (float(np.max(np.abs(run.v))) + falls)
+    if goes_on:
+        struck = run.impacts[run.impacts["kind"] == Kind.IMPACT]
+        still = max(still, WEAK * float(np.max(np.abs(struck["after"] - struck["before"]), initial=0.0)))
+    logs = [_matched(run, x, every, until, resolution, still, not c.seen) for c, x in found]
     for (c, _), pairs in zip(found, logs, strict=True):
         if pairs.differs < until:
             until = pairs.differs
             reason = f"there the run and {in_words(c.method)} see different events, {pairs.reason}"
     around = ROUNDING * float(np.max(np.abs(run.t))) + 0.5 * resolution
-    t = looks(run, other, every, min(limit, until - around if reason else until))
+    last = min(limit, until - around if reason else until)
+    known_there = every and look is not None and found[0][0].seen
+    look = seen(look, last) if look is not None and known_there else looks(run, other, every, last, wide)
+    t = look.t
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")
-    apart = distance(m, (run, other), every, t, logs[0].windows, around, falls)
+    apart = distance(m, (run, other), look, logs[0].pairs, logs[0].windows, around, falls)
     texts = tuple(in_words(c.method) for c, _ in found)
-    horizon = _lost(t, apart) if math.isinf(limit) else math.inf
+    size = max(apart.size, 0.5 * float(np.ptp(run.q, axis=0).max()) if goes_on else 0.0)
+    horizon = _lost(t, apart, size) if math.isinf(limit) else math.inf
     n = max(int(np.searchsorted(t, horizon)), 1)
     if n < len(t):
         reason = "from there on its error is more than a quarter of the range of the motion"
@@ -134,13 +184,19 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
 
 
 def _matched(
-    run: Trajectory, other: Trajectory, every: bool, until: float, resolution: float, falls: float
+    run: Trajectory,
+    other: Trajectory,
+    every: bool,
+    until: float,
+    resolution: float,
+    still: float,
+    whole: bool,
 ) -> Partners:
-    """Partners of the impacts of two runs; a jump is none that is rounding of what moves, or would."""
-    still = STILL * (float(np.max(np.abs(run.v))) + falls)
+    """Partners of the impacts of two runs; a jump below `still` is none: rounding of what moves, or would."""
     if not every:
         return partners(run.impacts, other.impacts, until, resolution, still)
-    same, differ = alike(run, other, resolution), moving_apart(run, other)
+    differ = moving_apart(run, other, whole)
+    same = alike(run, other, resolution, differ)
     return partners(run.impacts, other.impacts, until, resolution, still, same, differ)
 
 
@@ -152,7 +208,7 @@ def resolved(run: Trajectory) -> float:
     return 2.0 * min(run.method.h, span / max(run.counts.steps, 1))
 
 
-def _lost(t: Array, apart: Distance) -> float:
+def _lost(t: Array, apart: Distance, size: float) -> float:
     """Time from which on the error says only how large the motion is."""
-    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * apart.size)
+    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * size)
     return float(t[lost[0]]) if len(lost) else math.inf

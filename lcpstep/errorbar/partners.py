@@ -10,24 +10,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.errorbar.pairs import ALIKE, LATE, MARGIN, NEAR, Array, Blows, Pairs, Places, middle, one_to_one
 from lcpstep.trajectory import Kind
 
-Array = NDArray[np.float64]
-Places = NDArray[np.intp]
 Alike = Callable[[Array, Array], Array]
 Apart = Callable[[Array, Array], NDArray[np.bool_]]
 WEAK = 0.02  # of the largest jump: the error of the motion shows what a weaker impact without partner does
-ALIKE = 0.5  # of the larger jump, by which those of partners may differ
-NEAR = 0.5  # of the time to the next impact of the contact
-SLIGHT = 1e-3  # of the time over which impacts fall, that those of a weak pair may be apart to be left out
-MARGIN = 4.0  # largest differences of partners' times, by which an impact may fall beyond the end of a run
-LATE = 4.0  # times the median difference of partners' times: such partners are asked whether they are some
 
 
 class Suspect(NamedTuple):
@@ -40,74 +33,6 @@ class Suspect(NamedTuple):
     jump: float
     reason: str
     since: float = math.inf
-
-
-@dataclass(frozen=True, eq=False)
-class Blows:
-    """Impacts of one contact, those without time between them as one.
-
-    Attributes
-    ----------
-    first, last : (n,)   times of the first and the last impact of each [s]
-    jump, impulse : (n,)   sums of the jumps of the gap velocity [m/s], and of the impulses [N s]
-    rows : places of the impacts in the log, and `count` (n,) how many each has
-    """
-
-    first: Array
-    last: Array
-    jump: Array
-    impulse: Array
-    rows: Places
-    count: Places
-
-
-class Pairs(NamedTuple):
-    """Pairs of blows (k,): from the first to the last impact, differences of time and impulse, jumps; whether weak.
-
-    rows : places of their impacts in the first log, and `many` (k,) how many belong to each
-    """
-
-    start: Array
-    stop: Array
-    time: Array
-    impulse: Array
-    jump: Array
-    weak: NDArray[np.bool_]
-    rows: Places
-    many: Places
-
-    @classmethod
-    def none(cls) -> Pairs:
-        """No pairs."""
-        numbers, places = np.zeros(0), np.zeros(0, dtype=np.intp)
-        return cls(numbers, numbers, numbers, numbers, numbers, np.zeros(0, dtype=bool), places, places)
-
-    @classmethod
-    def joined(cls, a: Blows, b: Blows, i: Places, j: Places, weak: float) -> Pairs:
-        """The blows i of one run and j of the other."""
-        chosen = np.isin(np.repeat(np.arange(len(a.count)), a.count), i)
-        jump = np.maximum(a.jump[i], b.jump[j])
-        return cls(
-            np.minimum(a.first[i], b.first[j]), np.maximum(a.last[i], b.last[j]), np.abs(a.first[i] - b.first[j]),
-            np.abs(a.impulse[i] - b.impulse[j]), jump, jump <= weak, a.rows[chosen], a.count[i],
-        )  # fmt: skip
-
-    @property
-    def of_row(self) -> Places:
-        """The pair that each of the rows belongs to."""
-        return np.repeat(np.arange(len(self.many)), self.many)
-
-    def of(self, chosen: NDArray[np.bool_]) -> Pairs:
-        """Some of them."""
-        of_row = chosen[self.of_row]
-        columns = [x[of_row] if name == "rows" else x[chosen] for name, x in self._asdict().items()]
-        return Pairs(*columns)
-
-    def windows(self, resolution: float) -> Array:
-        """Times in which one run has struck and the other has not, with as much before and after, (l, 2) [s]."""
-        usual = MARGIN * np.max(self.time[~self.weak], initial=resolution)
-        near = self.time <= max(usual, SLIGHT * float(np.ptp(self.start)) if len(self.start) else 0.0)
-        return np.column_stack([self.start - self.time, self.stop + self.time])[~self.weak | near]
 
 
 class Partners(NamedTuple):
@@ -147,8 +72,9 @@ def partners(
     jumps = [np.abs(log["after"] - log["before"]) for log in (a, b)]
     largest = max(float(np.max(jump[k], initial=0.0)) for jump, k in zip(jumps, struck, strict=True))
     weak = max(WEAK * largest, still)
-    pairs, suspects, windows = [Pairs.none()], [], [np.zeros((0, 2))]
-    for contact in np.union1d(a["contact"][struck[0]], b["contact"][struck[1]]):
+    plain, contacts = one_to_one((a, b), struck, jumps, weak, resolution)
+    pairs, suspects, windows = [plain], [], [np.zeros((0, 2))]
+    for contact in contacts:
         one, other = (
             blows(log, jump, k[log["contact"][k] == contact], resolution)
             for log, jump, k in zip((a, b), jumps, struck, strict=True)
@@ -179,9 +105,7 @@ def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pai
     """
     if apart is None or not len(pairs.time):
         return pairs, []
-    late = np.flatnonzero(
-        (pairs.time > LATE * np.sort(pairs.time)[len(pairs.time) // 2]) & (pairs.time > resolution)
-    )
+    late = np.flatnonzero((pairs.time > LATE * middle(pairs.time)) & (pairs.time > resolution))
     if not len(late):
         return pairs, []
     good = np.ones(len(pairs.time), dtype=bool)

@@ -97,14 +97,14 @@ class StepRun(Run):
     def states(self) -> States:
         """All states kept, and the last one where states are kept by steps or events."""
         s, end = super().states(), self.scene.t_span[1]
-        if len(self.kept.times) == 0 and len(s.t) == 0:  # an interrupt before the first step
+        if not self.kept.given and len(s.t) == 0:  # an interrupt before the first step
             s = s.and_then(
                 self.scene.t_span[0],
                 np.array(self.scene.q0),
                 np.array(self.scene.v0),
                 np.zeros(s.impulse.shape[1]),
             )
-        if len(self.kept.times) == 0 and self.now > s.t[-1]:
+        if not self.kept.given and self.now > s.t[-1]:
             s = self.with_last(s)
         if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):
             s.t[-1] = end

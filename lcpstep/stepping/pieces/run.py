@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -176,8 +176,12 @@ class LocatedRun(StepRun):
 
 @dataclass(frozen=True, eq=False)
 class Again:
-    """States at any time, by another run that keeps them; one that ends early, ends in the state q_end, v_end."""
+    """States at any time, by another run that keeps them; one that ends early, ends in the state q_end, v_end.
 
+    dear : it takes as long as the run
+    """
+
+    dear: ClassVar[bool] = True
     method: Located
     scene: Scene
     q_end: Array

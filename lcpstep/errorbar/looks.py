@@ -1,0 +1,116 @@
+"""When two runs are looked at, and their states then.
+
+Where states between kept ones are cheap, runs are looked at between breaks, of which every event of either run is
+one, as long as there are not too many. Where a run has to be run again for them (`Again`) its kept states are taken.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+LEAST, MOST, STEPS = 200, 600, 3  # breaks besides the events: one in so many steps, between two bounds
+EVEN = 3  # of them one in so many at even times
+CLOSE = 16  # times as many kept states are looked at for those that are chosen
+MANY = 600  # events; of more only so many are breaks
+JUMP = (
+    10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
+)
+TINY = float(np.finfo(float).tiny)
+GRADES = 12  # times an interval after an event is halved towards it
+GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
+
+
+class Looks(NamedTuple):
+    """Breaks t (n,), and how runs are looked at there.
+
+    kept : whether the states of the run, and of the other one, are kept ones
+    nodes : whether integrals ask for states between the breaks
+    jumps : whether events fall between breaks, so that integrals have to add what they do
+    even : the breaks among them that lie anywhere in steps: kept states alone may be nearer to each other than others
+    """
+
+    t: Array
+    kept: tuple[bool, bool]
+    nodes: bool
+    jumps: bool
+    even: Array | None = None
+
+
+def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Array | None = None) -> Looks:
+    """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone.
+
+    wide : times between its steps at which the run has kept states too
+    """
+    if not every:
+        return Looks(_telling(run, end, MOST), (True, True), False, False)
+    most = min(max(LEAST, run.counts.steps // STEPS), MOST)
+    if wide is not None:
+        even = wide[wide <= end]
+        return Looks(np.union1d(_telling(run, end, most), even), (True, False), False, True, even)
+    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, most // EVEN)
+    some = events if len(events) <= MANY else events[:: 1 + len(events) // MANY]
+    t = np.unique(np.concatenate([even, some, _after(some, run, most), _telling(run, end, most)]))
+    return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, len(some) < len(events))
+
+
+def seen(look: Looks, end: float) -> Looks:
+    """Up to a time, where the other run has kept states at these times and nodes."""
+    return Looks(look.t[look.t <= end], (False, True), True, True)
+
+
+def _telling(run: Trajectory, end: float, most: int) -> Array:
+    """Kept times, or as many as are to be looked at: they lie as near to each other as time and velocities go on."""
+    n = int(np.searchsorted(run.t, end, side="right"))
+    if n <= most:
+        return run.t[:n]
+    some = slice(0, n, 1 + n // (CLOSE * most))
+    t, v = run.t[some], run.v[some]
+    turns = np.abs(np.diff(v, axis=0)).sum(axis=1)
+    share = np.minimum(turns, JUMP * turns.mean())
+    going = np.cumsum(np.diff(t) / (t[-1] - t[0]) + share / max(share.sum(), TINY))
+    places = np.searchsorted(going, np.linspace(0.0, going[-1], most))
+    return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
+
+
+def _after(events: Array, run: Trajectory, most: int) -> Array:
+    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
+    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // most], run.t[-1:]])
+    halves = 0.5 ** np.arange(1, 2 + min(GRADES, most // len(some)))
+    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
+
+
+def event_times(run: Trajectory, other: Trajectory) -> Array:
+    """When anything happened in either run."""
+    return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
+
+
+def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
+    """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
+    events = event_times(run, other)
+    short = np.flatnonzero(np.diff(events) < BRIEF * span)
+    return np.column_stack([events[short], events[short + 1]])
+
+
+def at(run: Trajectory, t: Array, kept: bool) -> tuple[Array, Array]:
+    """States at times in their order, kept ones or any."""
+    if kept:
+        k = np.searchsorted(run.t, t, side="right") - 1
+        return run.q[k], run.v[k]
+    later = np.diff(t, prepend=-math.inf) > 0.0
+    q, v = run.at(t[later])
+    place = np.cumsum(later) - 1
+    return q[place], v[place]
+
+
+def with_nodes(t: Array) -> Array:
+    """Times (n,), and after each but the last the nodes between it and the next."""
+    between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
+    return np.append(between.ravel(), t[-1])

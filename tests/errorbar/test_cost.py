@@ -1,0 +1,123 @@
+"""What a bar costs: companions that are good enough, states kept on the way, and no run for nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lagrangian import Scene, scenes
+from lagrangian.scenes import CATALOGUE
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.errorbar import companions, estimate
+from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
+from lcpstep.recording import Kept
+from lcpstep.stepping.pieces.run import Again
+
+
+class Asked:
+    """Runs that are made, by method."""
+
+    def __init__(self, monkeypatch):
+        self.of = []
+        for kind in (Located, EventDriven):
+            monkeypatch.setattr(kind, "run", self.noted(kind.run))
+
+    def noted(self, run):
+        def noted(method, *question):
+            self.of.append(method)
+            return run(method, *question)
+
+        return noted
+
+
+ALL = Kept(1, False, np.zeros(0))
+DEAR = (
+    Located(2e-3, 4),
+    Located(5e-3, "exact"),
+    Located(1e-2, tolerance=1e-4),
+    Located(1e-2, 4, tolerance=1e-6),
+)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_states_between_steps_change_nothing_of_a_run(name):
+    scene = CATALOGUE[name].make()
+    if not isinstance(scene, Scene):
+        pytest.skip("modes")
+    start, end = scene.t_span
+    scene = replace(scene, t_span=(start, start + 0.2 * (end - start)))
+    for method in DEAR:
+        method = replace(method, h=min(method.h, 0.01 * (end - start)))
+        kept = widened(method, scene, ALL)
+        if kept is ALL or (method.order == "exact" and not companions.in_closed_form(scene)):
+            continue
+        run, wide = (method.run(scene, k, lambda _: None) for k in (ALL, kept))
+        same = narrowed(wide, kept)
+        assert len(wide.t) >= len(run.t) + 0.9 * BETWEEN
+        for x in ("t", "q", "v", "impacts", "counts", "status"):
+            assert np.array_equal(getattr(same, x), getattr(run, x)), x
+        assert np.allclose(
+            same.impulse, run.impulse, rtol=1e-10, atol=1e-12 * np.max(run.impulse, initial=0.0)
+        )
+        assert isinstance(run.dense, Again)
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "runs"),
+    [
+        (scenes.impact_oscillator(t_end=20.0), Located(1e-2, 4), 2),  # none for states between steps
+        (scenes.impact_oscillator(t_end=20.0), EventDriven(), 2),
+        (scenes.bouncing_ball(t_end=2.0), Located(1e-2), 2),  # one companion is enough in closed form
+        (scenes.double_pendulum(t_end=2.0), Located(2e-3, 4), 2),
+    ],
+    ids=str,
+)
+def test_a_bar_takes_one_run_besides(monkeypatch, scene, method, runs):
+    asked = Asked(monkeypatch)
+    error = simulate(scene, method, error=True).error
+    assert (error.until, len(asked.of)) == (scene.t_span[1], runs)
+
+
+def test_the_bar_of_a_long_run_that_ends_early_takes_a_companion_over_a_part_alone(monkeypatch):
+    scene, ends = scenes.rocking_block(t_end=100.0), []
+    run = simulate(scene, Moreau(5e-3))
+    whole = estimate.error_bar(run, True, 0.0)
+    original = EventDriven.run
+
+    def noted(self, scene, *more):
+        ends.append(scene.t_span[1])
+        return original(self, scene, *more)
+
+    monkeypatch.setattr(EventDriven, "run", noted)
+    soon = estimate.error_bar(run, True, 1.0)
+    assert soon.reason
+    assert whole.until == pytest.approx(soon.until, rel=0.1)
+    assert max(ends) == pytest.approx(estimate.PART * 100.0)
+
+
+def test_looks_are_fewer_in_a_short_run_and_tell_the_same():
+    scene = scenes.impact_oscillator(t_end=20.0)
+    short, long = (simulate(scene, Located(h), error=True).error for h in (2e-2, 1e-3))
+    assert len(short.t) < 0.8 * len(long.t)
+    t = np.linspace(0.0, 20.0, 20_001)
+    for h, bar in ((2e-2, short), (1e-3, long)):
+        true = np.abs(simulate(scene, Located(h)).at(t)[0] - scene.exact(t)[0])
+        assert bar.position.sup == pytest.approx(np.max(true), rel=0.05)
+        assert bar.position.l1 == pytest.approx(np.trapezoid(true[:, 0], t), rel=0.05)
+
+
+@pytest.mark.parametrize("method", [Located(5e-2), EventDriven(), Located(1e-1, 4)], ids=str)
+def test_of_many_events_a_part_tells_the_integrals(method, monkeypatch):
+    scene = scenes.elastic_ball(t_end=400.0)
+    whole = simulate(replace(scene, q0=1.0 + 1e-7), method)
+    few = estimate.against(
+        whole, True, [(companions.Companion(EventDriven()), simulate(scene, EventDriven()))]
+    )
+    monkeypatch.setattr("lcpstep.errorbar.looks.MANY", 10**6)
+    monkeypatch.setattr("lcpstep.errorbar.distance.MANY", 10**6)
+    all_of_them = estimate.against(
+        whole, True, [(companions.Companion(EventDriven()), simulate(scene, EventDriven()))]
+    )
+    assert len(few.t) < len(all_of_them.t)
+    assert few.velocity.l1 == pytest.approx(all_of_them.velocity.l1, rel=0.25)
+    assert few.position.l1 == pytest.approx(all_of_them.position.l1, rel=0.1)
