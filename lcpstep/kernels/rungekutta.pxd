@@ -16,7 +16,7 @@ cdef class RungeKutta:
     cdef readonly bint dense
     cdef public double rtol, atol, length, next_step
     cdef public Py_ssize_t evaluations
-    cdef Py_ssize_t refused
+    cdef Py_ssize_t refused, stage
     cdef double stretch_end
     cdef double* A
     cdef double* C

@@ -43,6 +43,7 @@ class RungeKutta:
     F : (7, n)    dense output
     length       of the step last completed
     next_step    the size to be tried next
+    stage        whose rates are asked for
     evaluations  of the field
     state : (n,) array   y as Python sees it
 
@@ -53,7 +54,7 @@ class RungeKutta:
 
     def __init__(self, n: int, positions: int, rtol: float, atol: float, dense: bool = True) -> None:
         self.n, self.positions, self.dense, self.rtol, self.atol = n, positions, dense, rtol, atol
-        self.length, self.evaluations, self.refused = 0.0, 0, 0
+        self.length, self.evaluations, self.refused, self.stage = 0.0, 0, 0, 0
         self.next_step, self.stretch_end = inf, -inf
         self.tables = COEFFICIENTS
         self.A = doubles(self.tables)
@@ -110,13 +111,14 @@ class RungeKutta:
 
     def step(self, t: float, h: float) -> bool:
         """A step of size h from y at t to y_new; False where it is not finite."""
-        n = self.n
+        n, self.stage = self.n, 0
         if not self.rates(t, self.y, self.K):
             return False
         if not self.stages(t, h, 1, STAGES):
             return False
         self.combine(h, STAGES)
         copy(self.y_new, self.y_stage, n)
+        self.stage = STAGES
         return self.rates(t + h, self.y_new, after(self.K, STAGES * n)) and finite(self.y_new, n)
 
     def complete(self, t: float, h: float) -> bool:
@@ -131,6 +133,7 @@ class RungeKutta:
         """Stages first .. end - 1 of a step."""
         for stage in range(first, end):
             self.combine(h, stage)
+            self.stage = stage
             if not self.rates(t + self.C[stage] * h, self.y_stage, after(self.K, stage * self.n)):
                 return False
         return True

@@ -1,8 +1,10 @@
-from lcpstep.events.friction.held cimport right_hand_side
+from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.events.friction.step cimport step
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport after
 
 
 cdef class Smooth(Rubbing):

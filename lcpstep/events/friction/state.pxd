@@ -9,7 +9,7 @@ from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport after, indices_after
 
-cdef Py_ssize_t GUARDS, BEGIN, NOT_FINITE
+cdef Py_ssize_t ALL, GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
 
 
@@ -56,6 +56,9 @@ cdef class Rubbing(RungeKutta):
     cdef double* impulse
     cdef double* account
     cdef double* shifted_rate
+    cdef double* counted
+    cdef double* total
+    cdef double* loads
     cdef double* mu
     cdef double* mu_s
     cdef double* slip

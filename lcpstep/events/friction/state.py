@@ -12,6 +12,7 @@ import cython
 import numpy as np
 
 from lcpstep.events.friction.codes import BEGIN
+from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
@@ -55,6 +56,8 @@ class Rubbing(RungeKutta):
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
+    loads : (16, n_r)            multipliers at the stages of the step last made
+    counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
     jams                         how often it did;  rounds    problems of impacts at this instant
@@ -102,7 +105,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 10 * r)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r)
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -129,6 +132,9 @@ class Rubbing(RungeKutta):
         self.impulse = after(self.multiplier, r)
         self.account = after(self.impulse, r)
         self.shifted_rate = after(self.account, r)
+        self.counted = after(self.shifted_rate, r)
+        self.total = after(self.counted, r)
+        self.loads = after(self.total, r)
         self.per_contact = np.zeros(8 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking
