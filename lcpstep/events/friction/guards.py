@@ -212,13 +212,13 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
     """
     t0, change = s.clock.t0, 0.0
     tau = min(s.found * h, longest)
-    for _ in range(REFINEMENTS):
+    for k in range(REFINEMENTS + 1):
         if tau <= 0.0:
             return 0.0
         if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
             return UNKNOWN
         change = missing(s, g)
-        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h:
+        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
             break
         tau = min(max(tau + change, 0.0), longest)
     if not s.complete(t0, tau):
