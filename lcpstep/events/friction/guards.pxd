@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport gap_size, measure_friction, measure_gaps, measure_rates, size_of
-from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
+from lcpstep.events.friction.held cimport right_hand_side
 from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
 from lcpstep.events.hybrid.roots cimport CHECKS, COARSE, DEGREE, NONE, convert, first_rise, lower_bound, taylor

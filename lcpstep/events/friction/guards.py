@@ -15,7 +15,7 @@ from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import gap_size, measure_friction, measure_gaps, measure_rates, size_of
-    from lcpstep.events.friction.held import list_multipliers, right_hand_side
+    from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, COARSE, DEGREE, NONE, convert, first_rise, lower_bound, taylor
@@ -38,7 +38,6 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
         return False
     if s.n_held == 0:
         measure_rates(s, t, y)
-    list_multipliers(s)
     return read(s, t, y)
 
 

@@ -1,4 +1,4 @@
-from lcpstep.events.friction.held cimport list_multipliers, right_hand_side
+from lcpstep.events.friction.held cimport right_hand_side
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.events.friction.step cimport step
 from lcpstep.kernels.record cimport Record

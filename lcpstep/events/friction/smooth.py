@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.friction.held import list_multipliers, right_hand_side
+    from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.step import step
     from lcpstep.kernels.record import Record
@@ -21,7 +21,6 @@ class Smooth(Rubbing):
         """Dy = (v, v'); False where it is not finite, or the rows cannot be held."""
         if not right_hand_side(self, t, y, dy):
             return False
-        list_multipliers(self)
         copy(after(self.loads, self.stage * self.n_r), self.multiplier, self.n_r)
         return True
 

@@ -26,7 +26,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
-    cdef bint constant, moving, measured
+    cdef bint constant, moving, measured, mapped
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -59,6 +59,8 @@ cdef class Rubbing(RungeKutta):
     cdef double* counted
     cdef double* total
     cdef double* loads
+    cdef double* P
+    cdef double* Q
     cdef double* mu
     cdef double* mu_s
     cdef double* slip

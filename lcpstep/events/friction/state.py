@@ -55,6 +55,7 @@ class Rubbing(RungeKutta):
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
+    P : (n_q + n_r, n_q), Q : (n_q + n_r, n_r)   a and multipliers under forces and biases; mapped   whether known
     multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
     loads : (16, n_r)            multipliers at the stages of the step last made
     counted, total : (n_r,)      impulses of this step that have been counted; all of it
@@ -96,7 +97,7 @@ class Rubbing(RungeKutta):
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
         self.constant = self.constant and not coefficients.varies
         self.moving = contacts.motion.given or joints.motion.given or tangents.motion.given
-        self.measured = False
+        self.measured = self.mapped = False
         self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
@@ -105,7 +106,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r + (n + r) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -135,6 +136,8 @@ class Rubbing(RungeKutta):
         self.counted = after(self.shifted_rate, r)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
+        self.P = after(self.loads, ALL * r)
+        self.Q = after(self.P, (n + r) * n)
         self.per_contact = np.zeros(8 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking

@@ -13,7 +13,7 @@ if not cython.compiled:
 
     from lcpstep.events.friction.equations import add_impulse, lift, measure
     from lcpstep.events.friction.guards import UNKNOWN, first_event, locate
-    from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
+    from lcpstep.events.friction.held import hold_modes, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
     from lcpstep.events.friction.modes import decide, undecided
@@ -149,7 +149,6 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
         right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
-        list_multipliers(s)
         share = s.weights[k] * (b - a)
         for i in range(s.n_r):
             add_impulse(s, i, share * s.multiplier[i])
