@@ -10,13 +10,25 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from lcpstep.kernels.dop853 import ALL, DENSE, ERROR_3, ERROR_5, EXTRA_STAGES, STAGES, TIMES, WEIGHTS, table
+from lcpstep.kernels.dop853 import (
+    ALL,
+    DENSE,
+    ERROR_3,
+    ERROR_5,
+    EXTRA_STAGES,
+    NEEDED,
+    NEEDED_LATER,
+    STAGES,
+    TIMES,
+    WEIGHTS,
+    table,
+)
 from lcpstep.kernels.status import DONE, NOT_FINITE, STEP_TOO_SMALL
 
 if not cython.compiled:
     from math import pow, sqrt
 
-    from lcpstep.arrays import doubles
+    from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, finite
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
@@ -39,7 +51,7 @@ class RungeKutta:
     dense        whether `take_step` makes the dense output, and holds that of positions to the tolerance as well
     rtol, atol   tolerances
     y, y_new : (n,);  y_stage : (n,)   start and end of the step; work space, free between calls
-    K : (16, n)   rates at the stages
+    K : (16, n)   rates at the stages, and numbers beyond that may be read
     F : (7, n)    dense output
     length       of the step last completed
     next_step    the size to be tried next
@@ -56,8 +68,8 @@ class RungeKutta:
         self.n, self.positions, self.dense, self.rtol, self.atol = n, positions, dense, rtol, atol
         self.length, self.evaluations, self.refused, self.stage = 0.0, 0, 0, 0
         self.next_step, self.stretch_end = inf, -inf
-        self.tables = COEFFICIENTS
-        self.A = doubles(self.tables)
+        self.tables = COEFFICIENTS, np.array(NEEDED, dtype=np.intp)
+        self.A, self.needed = doubles(self.tables[0]), indices(self.tables[1])
         self.D = after(self.A, ALL * ALL)
         self.E3 = after(self.D, len(DENSE) * ALL)
         self.E5 = after(self.E3, ALL)
@@ -140,12 +152,12 @@ class RungeKutta:
 
     def combine(self, h: float, stage: int) -> None:
         """y_stage = y + h sum_j A[stage, j] K[j]."""
-        n, K, A = self.n, self.K, after(self.A, stage * ALL)
-        for i in range(n):
-            total = 0.0
-            for j in range(stage):
-                total += A[j] * K[j * n + i]
-            self.y_stage[i] = self.y[i] + h * total
+        n, A, first = self.n, after(self.A, stage * ALL), self.needed[stage]
+        for i in range(0, n, 2):
+            a, b = weigh(A, after(self.K, i), n, first, stage)
+            self.y_stage[i] = self.y[i] + h * a
+            if i + 1 < n:
+                self.y_stage[i + 1] = self.y[i + 1] + h * b
 
     def error_norm(self, h: float) -> float:
         """Estimated error of y_new over the tolerance; the step is good where it is not above one."""
@@ -153,8 +165,8 @@ class RungeKutta:
         err5, err3 = 0.0, 0.0
         for i in range(n):
             scale = self.atol + self.rtol * max(abs(self.y[i]), abs(self.y_new[i]))
-            e5, e3 = 0.0, 0.0
-            for j in range(STAGES + 1):
+            e5, e3 = E5[0] * K[i], E3[0] * K[i]
+            for j in range(NEEDED_LATER, STAGES + 1):
                 e5 += E5[j] * K[j * n + i]
                 e3 += E3[j] * K[j * n + i]
             err5 += (e5 / scale) * (e5 / scale)
@@ -187,11 +199,12 @@ class RungeKutta:
             F[i] = delta
             F[n + i] = h * K[i] - delta
             F[2 * n + i] = 2.0 * delta - h * (K[STAGES * n + i] + K[i])
-            for k in range(4):
-                total = 0.0
-                for j in range(ALL):
-                    total += self.D[k * ALL + j] * K[j * n + i]
-                F[(3 + k) * n + i] = h * total
+        for k in range(4):
+            for i in range(0, n, 2):
+                a, b = weigh(after(self.D, k * ALL), after(K, i), n, NEEDED_LATER, ALL)
+                F[(3 + k) * n + i] = h * a
+                if i + 1 < n:
+                    F[(3 + k) * n + i + 1] = h * b
 
     def dense_error(self, h: float) -> float:
         """Estimated error of the dense output of positions over TOLERANCES tolerances.
@@ -222,6 +235,15 @@ class RungeKutta:
                 total += F[(6 - k) * n + i]
                 total *= x if k % 2 == 0 else 1.0 - x
             out[i] = self.y[i] + total
+
+
+def weigh(w: Doubles, K: Doubles, n: int, first: int, end: int) -> tuple[float, float]:
+    """Weighted sums of the rates of two components side by side: of the start, and of the stages first .. end - 1."""
+    a, b = w[0] * K[0], w[0] * K[1]
+    for j in range(first, end):
+        a += w[j] * K[j * n]
+        b += w[j] * K[j * n + 1]
+    return a, b
 
 
 def factor(error: float) -> float:
