@@ -153,11 +153,12 @@ class RungeKutta:
     def combine(self, h: float, stage: int) -> None:
         """y_stage = y + h sum_j A[stage, j] K[j]."""
         n, A, first = self.n, after(self.A, stage * ALL), self.needed[stage]
-        for i in range(0, n, 2):
+        for i in range(0, n - 1, 2):
             a, b = weigh(A, after(self.K, i), n, first, stage)
-            self.y_stage[i] = self.y[i] + h * a
-            if i + 1 < n:
-                self.y_stage[i + 1] = self.y[i + 1] + h * b
+            self.y_stage[i], self.y_stage[i + 1] = self.y[i] + h * a, self.y[i + 1] + h * b
+        if n % 2 == 1:
+            a, b = weigh(A, after(self.K, n - 1), n, first, stage)
+            self.y_stage[n - 1] = self.y[n - 1] + h * a
 
     def error_norm(self, h: float) -> float:
         """Estimated error of y_new over the tolerance; the step is good where it is not above one."""
@@ -200,11 +201,13 @@ class RungeKutta:
             F[n + i] = h * K[i] - delta
             F[2 * n + i] = 2.0 * delta - h * (K[STAGES * n + i] + K[i])
         for k in range(4):
-            for i in range(0, n, 2):
-                a, b = weigh(after(self.D, k * ALL), after(K, i), n, NEEDED_LATER, ALL)
-                F[(3 + k) * n + i] = h * a
-                if i + 1 < n:
-                    F[(3 + k) * n + i + 1] = h * b
+            D, later = after(self.D, k * ALL), after(F, (3 + k) * n)
+            for i in range(0, n - 1, 2):
+                a, b = weigh(D, after(K, i), n, NEEDED_LATER, ALL)
+                later[i], later[i + 1] = h * a, h * b
+            if n % 2 == 1:
+                a, b = weigh(D, after(K, n - 1), n, NEEDED_LATER, ALL)
+                later[n - 1] = h * a
 
     def dense_error(self, h: float) -> float:
         """Estimated error of the dense output of positions over TOLERANCES tolerances.

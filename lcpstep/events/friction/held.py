@@ -28,7 +28,7 @@ if not cython.compiled:
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.dynamics import total_force
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import add, clear, copy, product
     from lcpstep.pointers import Doubles, abs, after
 
 DEPENDENT = 1e-12  # relative: what a row must have more of that the rows before it have not
@@ -164,7 +164,7 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     a = after(dy, n)
     copy(dy, after(y, n), n)
     if s.measured:
-        yield_to_forces(s, t, y, a)
+        accelerate(s, t, y, a)
         return a[0] - a[0] == 0.0
     if not free_motion(s, t, y, a):
         return False
@@ -176,43 +176,38 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     return a[0] - a[0] == 0.0
 
 
-def yield_to_forces(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
+def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
     """Acceleration, and multipliers by row, where rows and masses never change: linear in forces and biases."""
-    n, r = s.n_q, s.n_r
+    n, m = s.n_q, s.n_q + s.n_r
     if not s.mapped:
         map_forces(s)
     total_force(s.contacts, s.clock.inside(t), y, after(y, n), s.force)
-    for i in range(n):
-        a[i] = product(s.P, s.force, i, n)
-    for i in range(r):
-        s.multiplier[i] = product(s.P, s.force, n + i, n)
+    clear(s.effect, m)
+    for j in range(n):
+        add(s.effect, s.force[j], after(s.effects, j * m), m)
     if s.moving and s.n_held > 0:
         measure_rates(s, t, y)
         measure_biases(s, t, y)
-        for i in range(n):
-            a[i] += product(s.Q, s.bias, i, r)
-        for i in range(r):
-            s.multiplier[i] = s.multiplier[i] + product(s.Q, s.bias, n + i, r)
+        for i in range(s.n_r):
+            add(s.effect, s.bias[i], after(s.effects, (n + i) * m), m)
+    copy(a, s.effect, n)
 
 
 def map_forces(s: Rubbing) -> None:
-    """P, Q: acceleration and multipliers under each force alone, and each bias."""
+    """What each force does alone, and each bias."""
     n, r, a, bias = s.n_q, s.n_r, s.dv, s.shifted_rate
     for k in range(n + r if s.moving else n):
         clear(a, n)
         clear(bias, r)
-        out, width, j = (s.P, n, k) if k < n else (s.Q, r, k - n)
         if k < n:
-            a[j] = 1.0
+            a[k] = 1.0
             inverse_mass(s.contacts, s.M, s.work, a)
         else:
-            bias[j] = 1.0
+            bias[k - n] = 1.0
         constrain(s, a, bias)
         list_multipliers(s)
-        for i in range(n):
-            out[i * width + j] = a[i]
-        for i in range(r):
-            out[(n + i) * width + j] = s.multiplier[i]
+        copy(s.effect, a, n)
+        copy(after(s.effects, k * (n + r)), s.effect, n + r)
     s.mapped = True
 
 

@@ -59,8 +59,8 @@ cdef class Rubbing(RungeKutta):
     cdef double* counted
     cdef double* total
     cdef double* loads
-    cdef double* P
-    cdef double* Q
+    cdef double* effect
+    cdef double* effects
     cdef double* mu
     cdef double* mu_s
     cdef double* slip

@@ -55,8 +55,9 @@ class Rubbing(RungeKutta):
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
-    P : (n_q + n_r, n_q), Q : (n_q + n_r, n_r)   a and multipliers under forces and biases; mapped   whether known
-    multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
+    effects : (n_q + n_r, n_q + n_r)   what each force alone, and each bias, does to `a` and `multiplier`, where rows and
+        masses never change; mapped   whether these are known
+    effect : (n_q + n_r,)        `a`, and after it `multiplier` : (n_r,)  by row;  impulse : contacts, tangents, joints, since the last kept state
     loads : (16, n_r)            multipliers at the stages of the step last made
     counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
@@ -106,7 +107,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r + (n + r) * (n + r))
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r + (n + r + 1) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -129,15 +130,15 @@ class Rubbing(RungeKutta):
         self.velocity = after(self.gap, r)
         self.x = after(self.velocity, r)
         self.change = after(self.x, r)
-        self.multiplier = after(self.change, r)
-        self.impulse = after(self.multiplier, r)
+        self.impulse = after(self.change, r)
         self.account = after(self.impulse, r)
         self.shifted_rate = after(self.account, r)
         self.counted = after(self.shifted_rate, r)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
-        self.P = after(self.loads, ALL * r)
-        self.Q = after(self.P, (n + r) * n)
+        self.effect = after(self.loads, ALL * r)
+        self.multiplier = after(self.effect, n)
+        self.effects = after(self.multiplier, r)
         self.per_contact = np.zeros(8 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking
