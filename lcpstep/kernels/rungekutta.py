@@ -231,13 +231,10 @@ class RungeKutta:
 
     def at(self, x: float, out: Doubles) -> None:
         """State at the fraction x of the step, by its dense output."""
-        n, F = self.n, self.F
+        n, F, z = self.n, self.F, 1.0 - x
         for i in range(n):
-            total = 0.0
-            for k in range(POLYNOMIALS):
-                total += F[(6 - k) * n + i]
-                total *= x if k % 2 == 0 else 1.0 - x
-            out[i] = self.y[i] + total
+            late = F[3 * n + i] + x * (F[4 * n + i] + z * (F[5 * n + i] + x * F[6 * n + i]))
+            out[i] = self.y[i] + x * (F[i] + z * (F[n + i] + x * (F[2 * n + i] + z * late)))
 
 
 def weigh(w: Doubles, K: Doubles, n: int, first: int, end: int) -> tuple[float, float]:
