@@ -18,7 +18,7 @@ cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(found=bint)
 cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
-@cython.locals(fine=bint, error=double, place=double)
+@cython.locals(fine=bint, evenly=bint, error=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint stays_clear(Rubbing s) noexcept nogil

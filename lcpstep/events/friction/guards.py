@@ -106,11 +106,12 @@ def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
     n, parts, part = GUARDS * s.n_c, 1, 0
     s.guard, s.found = -1, 2.0
+    evenly = s.plain and abs(s.contacts.omega) * h < 1.0  # nothing turns that the motion does not show
     while part < parts:
         a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
         if not sample(s, h, a, b, True):
             return UNKNOWN
-        if stays_clear(s):
+        if evenly and stays_clear(s):
             part += 1
             continue
         if not sample(s, h, a, b, False):

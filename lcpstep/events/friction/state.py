@@ -39,6 +39,7 @@ class Rubbing(RungeKutta):
     contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
     constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
+    plain                        no function of the user's is in it
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
@@ -98,6 +99,8 @@ class Rubbing(RungeKutta):
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
         self.constant = self.constant and not coefficients.varies
         self.moving = contacts.motion.given or joints.motion.given or tangents.motion.given
+        ours = contacts.linear and not (contacts.force.given or contacts.frame.given or contacts.moded)
+        self.plain = ours and self.constant and not self.moving
         self.measured = self.mapped = False
         self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
