@@ -14,11 +14,26 @@ from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import gap_size, measure_friction, measure_gaps, measure_rates, size_of
+    from lcpstep.events.friction.equations import (
+        gap_size,
+        measure_friction,
+        measure_gaps,
+        measure_rates,
+        size_of,
+    )
     from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
-    from lcpstep.events.hybrid.roots import CHECKS, COARSE, DEGREE, NONE, convert, first_rise, lower_bound, taylor
+    from lcpstep.events.hybrid.roots import (
+        CHECKS,
+        COARSE,
+        DEGREE,
+        NONE,
+        convert,
+        first_rise,
+        lower_bound,
+        taylor,
+    )
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
@@ -150,9 +165,10 @@ def has(s: Rubbing, g: int) -> bool:
 def stays_clear(s: Rubbing) -> bool:
     """Whether no guard can act within the part, as far as its coarse samples tell."""
     for g in range(GUARDS * s.n_c):
-        if has(s, g):
-            if s.armed[g] == 0 or lower_bound(s.scan, after(s.samples, g * SAMPLES)) <= s.band[g]:
-                return False
+        if not has(s, g):
+            continue
+        if s.armed[g] == 0 or lower_bound(s.scan, after(s.samples, g * SAMPLES)) <= s.band[g]:
+            return False
     return True
 
 

@@ -56,9 +56,9 @@ class Rubbing(RungeKutta):
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
-    effects : (n_q + n_r, n_q + n_r)   what each force alone, and each bias, does to `a` and `multiplier`, where rows and
-        masses never change; mapped   whether these are known
-    effect : (n_q + n_r,)        `a`, and after it `multiplier` : (n_r,)  by row;  impulse : contacts, tangents, joints, since the last kept state
+    effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
+        never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
+    impulse : (n_r,)             contacts, tangents, joints, since the last kept state
     loads : (16, n_r)            multipliers at the stages of the step last made
     counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
