@@ -1,11 +1,11 @@
 cimport cython
 from libc.math cimport pow, sqrt
-from lcpstep.arrays cimport doubles
+from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, finite
 from lcpstep.pointers cimport abs, after, inf, max, min
 
-cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS
+cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS, NEEDED_LATER
 cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE
 
 
@@ -16,8 +16,9 @@ cdef class RungeKutta:
     cdef readonly bint dense
     cdef public double rtol, atol, length, next_step
     cdef public Py_ssize_t evaluations
-    cdef Py_ssize_t refused
+    cdef Py_ssize_t refused, stage
     cdef double stretch_end
+    cdef Py_ssize_t* needed
     cdef double* A
     cdef double* C
     cdef double* D
@@ -47,4 +48,6 @@ cdef class RungeKutta:
     cdef void at(self, double x, double* out) noexcept nogil
 
 
+@cython.locals(a=double, b=double)
+cdef (double, double) weigh(double* w, double* K, Py_ssize_t n, Py_ssize_t first, Py_ssize_t end) noexcept nogil
 cdef double factor(double error) noexcept nogil

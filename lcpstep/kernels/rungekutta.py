@@ -10,13 +10,25 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from lcpstep.kernels.dop853 import ALL, DENSE, ERROR_3, ERROR_5, EXTRA_STAGES, STAGES, TIMES, WEIGHTS, table
+from lcpstep.kernels.dop853 import (
+    ALL,
+    DENSE,
+    ERROR_3,
+    ERROR_5,
+    EXTRA_STAGES,
+    NEEDED,
+    NEEDED_LATER,
+    STAGES,
+    TIMES,
+    WEIGHTS,
+    table,
+)
 from lcpstep.kernels.status import DONE, NOT_FINITE, STEP_TOO_SMALL
 
 if not cython.compiled:
     from math import pow, sqrt
 
-    from lcpstep.arrays import doubles
+    from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, finite
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
@@ -39,10 +51,11 @@ class RungeKutta:
     dense        whether `take_step` makes the dense output, and holds that of positions to the tolerance as well
     rtol, atol   tolerances
     y, y_new : (n,);  y_stage : (n,)   start and end of the step; work space, free between calls
-    K : (16, n)   rates at the stages
+    K : (16, n)   rates at the stages, and numbers beyond that may be read
     F : (7, n)    dense output
     length       of the step last completed
     next_step    the size to be tried next
+    stage        whose rates are asked for
     evaluations  of the field
     state : (n,) array   y as Python sees it
 
@@ -53,10 +66,10 @@ class RungeKutta:
 
     def __init__(self, n: int, positions: int, rtol: float, atol: float, dense: bool = True) -> None:
         self.n, self.positions, self.dense, self.rtol, self.atol = n, positions, dense, rtol, atol
-        self.length, self.evaluations, self.refused = 0.0, 0, 0
+        self.length, self.evaluations, self.refused, self.stage = 0.0, 0, 0, 0
         self.next_step, self.stretch_end = inf, -inf
-        self.tables = COEFFICIENTS
-        self.A = doubles(self.tables)
+        self.tables = COEFFICIENTS, np.array(NEEDED, dtype=np.intp)
+        self.A, self.needed = doubles(self.tables[0]), indices(self.tables[1])
         self.D = after(self.A, ALL * ALL)
         self.E3 = after(self.D, len(DENSE) * ALL)
         self.E5 = after(self.E3, ALL)
@@ -110,13 +123,14 @@ class RungeKutta:
 
     def step(self, t: float, h: float) -> bool:
         """A step of size h from y at t to y_new; False where it is not finite."""
-        n = self.n
+        n, self.stage = self.n, 0
         if not self.rates(t, self.y, self.K):
             return False
         if not self.stages(t, h, 1, STAGES):
             return False
         self.combine(h, STAGES)
         copy(self.y_new, self.y_stage, n)
+        self.stage = STAGES
         return self.rates(t + h, self.y_new, after(self.K, STAGES * n)) and finite(self.y_new, n)
 
     def meet(self, t: float, tau: float, most: float, far: float, tries: int) -> float:
@@ -154,18 +168,20 @@ class RungeKutta:
         """Stages first .. end - 1 of a step."""
         for stage in range(first, end):
             self.combine(h, stage)
+            self.stage = stage
             if not self.rates(t + self.C[stage] * h, self.y_stage, after(self.K, stage * self.n)):
                 return False
         return True
 
     def combine(self, h: float, stage: int) -> None:
         """y_stage = y + h sum_j A[stage, j] K[j]."""
-        n, K, A = self.n, self.K, after(self.A, stage * ALL)
-        for i in range(n):
-            total = 0.0
-            for j in range(stage):
-                total += A[j] * K[j * n + i]
-            self.y_stage[i] = self.y[i] + h * total
+        n, A, first = self.n, after(self.A, stage * ALL), self.needed[stage]
+        for i in range(0, n - 1, 2):
+            a, b = weigh(A, after(self.K, i), n, first, stage)
+            self.y_stage[i], self.y_stage[i + 1] = self.y[i] + h * a, self.y[i + 1] + h * b
+        if n % 2 == 1:
+            a, b = weigh(A, after(self.K, n - 1), n, first, stage)
+            self.y_stage[n - 1] = self.y[n - 1] + h * a
 
     def error_norm(self, h: float) -> float:
         """Estimated error of y_new over the tolerance; the step is good where it is not above one."""
@@ -173,8 +189,8 @@ class RungeKutta:
         err5, err3 = 0.0, 0.0
         for i in range(n):
             scale = self.atol + self.rtol * max(abs(self.y[i]), abs(self.y_new[i]))
-            e5, e3 = 0.0, 0.0
-            for j in range(STAGES + 1):
+            e5, e3 = E5[0] * K[i], E3[0] * K[i]
+            for j in range(NEEDED_LATER, STAGES + 1):
                 e5 += E5[j] * K[j * n + i]
                 e3 += E3[j] * K[j * n + i]
             err5 += (e5 / scale) * (e5 / scale)
@@ -207,11 +223,14 @@ class RungeKutta:
             F[i] = delta
             F[n + i] = h * K[i] - delta
             F[2 * n + i] = 2.0 * delta - h * (K[STAGES * n + i] + K[i])
-            for k in range(4):
-                total = 0.0
-                for j in range(ALL):
-                    total += self.D[k * ALL + j] * K[j * n + i]
-                F[(3 + k) * n + i] = h * total
+        for k in range(4):
+            D, later = after(self.D, k * ALL), after(F, (3 + k) * n)
+            for i in range(0, n - 1, 2):
+                a, b = weigh(D, after(K, i), n, NEEDED_LATER, ALL)
+                later[i], later[i + 1] = h * a, h * b
+            if n % 2 == 1:
+                a, b = weigh(D, after(K, n - 1), n, NEEDED_LATER, ALL)
+                later[n - 1] = h * a
 
     def dense_error(self, h: float) -> float:
         """Estimated error of the dense output of positions over TOLERANCES tolerances.
@@ -235,13 +254,19 @@ class RungeKutta:
 
     def at(self, x: float, out: Doubles) -> None:
         """State at the fraction x of the step, by its dense output."""
-        n, F = self.n, self.F
+        n, F, z = self.n, self.F, 1.0 - x
         for i in range(n):
-            total = 0.0
-            for k in range(POLYNOMIALS):
-                total += F[(6 - k) * n + i]
-                total *= x if k % 2 == 0 else 1.0 - x
-            out[i] = self.y[i] + total
+            late = F[3 * n + i] + x * (F[4 * n + i] + z * (F[5 * n + i] + x * F[6 * n + i]))
+            out[i] = self.y[i] + x * (F[i] + z * (F[n + i] + x * (F[2 * n + i] + z * late)))
+
+
+def weigh(w: Doubles, K: Doubles, n: int, first: int, end: int) -> tuple[float, float]:
+    """Weighted sums of the rates of two components side by side: of the start, and of the stages first .. end - 1."""
+    a, b = w[0] * K[0], w[0] * K[1]
+    for j in range(first, end):
+        a += w[j] * K[j * n]
+        b += w[j] * K[j * n + 1]
+    return a, b
 
 
 def factor(error: float) -> float:

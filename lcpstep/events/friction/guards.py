@@ -11,22 +11,38 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import gap_size, measure_gaps, measure_rates, size_of
-    from lcpstep.events.friction.held import list_multipliers, right_hand_side
+    from lcpstep.events.friction.equations import (
+        gap_size,
+        measure_friction,
+        measure_gaps,
+        measure_rates,
+        size_of,
+    )
+    from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
-    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+    from lcpstep.events.hybrid.roots import (
+        CHECKS,
+        COARSE,
+        DEGREE,
+        NONE,
+        convert,
+        first_rise,
+        lower_bound,
+        taylor,
+    )
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import copy, finite, largest, product
+    from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 
 SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
 REFINEMENTS = 6  # of an event's time by repeated steps
-FAR = 1e-3  # of a step: it is not this event that is met
+NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
 UNKNOWN = -2  # in place of a guard: one is not finite
 OFF = 1.0  # value of a guard that a contact does not have
 
@@ -37,8 +53,14 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
         return False
     if s.n_held == 0:
         measure_rates(s, t, y)
-    list_multipliers(s)
     return read(s, t, y)
+
+
+def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
+    """The same at a stage of the step at hand, where the forces are known."""
+    measure_rates(s, t, y)
+    copy(s.multiplier, after(s.loads, stage * s.n_r), s.n_r)
+    return measure_friction(s, t, y) and read(s, t, y)
 
 
 def read(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -99,9 +121,15 @@ def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
     n, parts, part = GUARDS * s.n_c, 1, 0
     s.guard, s.found = -1, 2.0
+    evenly = s.plain and abs(s.contacts.omega) * h < 1.0  # nothing turns that the motion does not show
     while part < parts:
         a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
-        if not sample(s, h, a, b):
+        if not sample(s, h, a, b, True):
+            return UNKNOWN
+        if evenly and stays_clear(s):
+            part += 1
+            continue
+        if not sample(s, h, a, b, False):
             return UNKNOWN
         fine = True
         for g in range(n):
@@ -134,16 +162,37 @@ def has(s: Rubbing, g: int) -> bool:
     return which == 0 or mode == STICKS or (which == 1 and mode == SLIDES)
 
 
-def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
-    """All guards at the points of the part a .. b of a step; False where one is not finite."""
+def stays_clear(s: Rubbing) -> bool:
+    """Whether no guard can act within the part, as far as its coarse samples tell."""
+    for g in range(GUARDS * s.n_c):
+        if not has(s, g):
+            continue
+        if s.armed[g] == 0 or lower_bound(s.scan, after(s.samples, g * SAMPLES)) <= s.band[g]:
+            return False
+    return True
+
+
+def sample(s: Rubbing, h: float, a: float, b: float, coarse: bool) -> bool:
+    """All guards at the coarse points of the part a .. b of a step, or at the others; False: one is not finite."""
     for j in range(SAMPLES):
+        if (j % COARSE == 0 or j > DEGREE) != coarse:
+            continue
         place = a + (b - a) * s.scan.points[j]
-        s.at(place, s.seen)
-        if not look(s, s.clock.t0 + place * h, s.seen):
+        if not look_between(s, place, s.clock.t0 + place * h):
             return False
         for g in range(GUARDS * s.n_c):
             s.samples[g * SAMPLES + j] = s.value[g]
     return True
+
+
+def look_between(s: Rubbing, place: float, t: float) -> bool:
+    """All guards at the fraction `place` of the step at hand, into `value`; False where one is not finite."""
+    if place == 0.0:
+        return look_at_stage(s, 0, t, s.y)
+    if place == 1.0:
+        return look_at_stage(s, STAGES, t, s.y_new)
+    s.at(place, s.seen)
+    return look(s, t, s.seen)
 
 
 def first_fall(s: Rubbing, g: int) -> float:
@@ -172,21 +221,46 @@ def arm(s: Rubbing) -> None:
                 s.armed[g] = 1
 
 
-def locate(s: Rubbing, h: float, longest: float) -> float:
-    """Time from now at which the guard found acts; a step of that length is the last one made."""
+def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
+    """Time from now at which guard g acts: secants on steps of that length, of which the last one is left, complete.
+
+    UNKNOWN where a state is not finite.
+    """
+    t0, change = s.clock.t0, 0.0
     tau = min(s.found * h, longest)
-    return s.meet(s.clock.t0, tau, longest, FAR * h, REFINEMENTS) if tau > 0.0 else 0.0
+    for k in range(REFINEMENTS + 1):
+        if tau <= 0.0:
+            return 0.0
+        if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
+            return UNKNOWN
+        change = missing(s, g)
+        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
+            break
+        tau = min(max(tau + change, 0.0), longest)
+    if not s.complete(t0, tau):
+        return UNKNOWN
+    return creep(s, g, tau, change, longest) if abs(change) <= NEAR * tau else tau
 
 
-def missed(s: Rubbing, t: float, tau: float) -> float:
-    """How much longer the step just made should have been for the guard found to be zero at its end."""
-    g = s.guard
-    if s.slope >= 0.0 or s.armed[g] == 0 or not look(s, t + tau, s.y_new):
-        return 0.0
-    longer = -s.value[g] / s.slope
-    return longer if abs(longer) > 2.0 * RESOLUTION * (abs(t) + tau) else 0.0
+def missing(s: Rubbing, g: int) -> float:
+    """How much later guard g acts than at the state last looked at."""
+    return -s.value[g] / s.slope if s.slope < 0.0 and s.armed[g] == 1 else 0.0
 
 
-def finish_step(s: Rubbing, tau: float) -> bool:
-    """Dense output of the step of size tau that has just been made."""
-    return s.complete(s.clock.t0, tau) and finite(s.y_new, 2 * s.n_q)
+def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:
+    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base."""
+    t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
+    if abs(change) <= 2.0 * RESOLUTION * (abs(s.clock.t0) + tau):
+        return tau
+    copy(s.y_stage, s.y_new, s.n)
+    copy(s.dy, f, s.n)
+    for k in range(REFINEMENTS):
+        gone = min(gone + change, longest - tau)
+        for i in range(s.n):
+            s.y_new[i] = s.y_stage[i] + 0.5 * gone * (f[i] + s.dy[i])
+        if not look(s, t + gone, s.y_new):
+            return UNKNOWN
+        change = missing(s, g)
+        if k > 0 and abs(change) <= 2.0 * RESOLUTION * abs(t):
+            break
+    return tau + gone

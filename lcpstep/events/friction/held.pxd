@@ -1,9 +1,11 @@
 cimport cython
 from lcpstep.events.friction.equations cimport (
-    add_impulse, free_motion, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
+    add_impulse, free_motion, measure_biases, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
 )
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.kernels.acceleration cimport inverse_mass
+from lcpstep.kernels.dynamics cimport total_force
+from lcpstep.kernels.vectors cimport add, clear, copy, product
 from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t STICKS, SLIDES, REFINEMENTS
@@ -20,6 +22,8 @@ cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
 cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
 cdef bint nothing(double* x, Py_ssize_t n) noexcept nogil
 cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
+cdef void accelerate(Rubbing s, double t, double* y, double* a) noexcept nogil
+cdef void map_forces(Rubbing s) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
 @cython.locals(zero=bint)
 cdef bint is_on_rows(Rubbing s) noexcept nogil

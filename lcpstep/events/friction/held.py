@@ -17,6 +17,7 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import (
         add_impulse,
         free_motion,
+        measure_biases,
         measure_friction,
         measure_gaps,
         measure_rates,
@@ -25,7 +26,9 @@ if not cython.compiled:
         respond,
     )
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.acceleration import inverse_mass
+    from lcpstep.kernels.dynamics import total_force
+    from lcpstep.kernels.vectors import add, clear, copy, product
     from lcpstep.pointers import Doubles, abs, after
 
 DEPENDENT = 1e-12  # relative: what a row must have more of that the rows before it have not
@@ -72,7 +75,7 @@ def hold(s: Rubbing, i: int) -> bool:
 
 def hold_joints(s: Rubbing) -> None:
     """Hold the independent joints, and nothing else."""
-    s.n_held = 0
+    s.n_held, s.mapped = 0, False
     for i in range(s.n_j):
         hold(s, i)
 
@@ -159,14 +162,53 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     """dy = (v, v') with the rows held; False where it is not finite, or they cannot be held."""
     n = s.n_q
     a = after(dy, n)
+    copy(dy, after(y, n), n)
+    if s.measured:
+        accelerate(s, t, y, a)
+        return a[0] - a[0] == 0.0
     if not free_motion(s, t, y, a):
         return False
     if s.n_held > 0:
         if not measure_rows(s, t, y) or not (s.constant or hold_again(s)):
             return False
         constrain(s, a, s.bias)
-    copy(dy, after(y, n), n)
+    list_multipliers(s)
     return a[0] - a[0] == 0.0
+
+
+def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
+    """Acceleration, and multipliers by row, where rows and masses never change: linear in forces and biases."""
+    n, m = s.n_q, s.n_q + s.n_r
+    if not s.mapped:
+        map_forces(s)
+    total_force(s.contacts, s.clock.inside(t), y, after(y, n), s.force)
+    clear(s.effect, m)
+    for j in range(n):
+        add(s.effect, s.force[j], after(s.effects, j * m), m)
+    if s.moving and s.n_held > 0:
+        measure_rates(s, t, y)
+        measure_biases(s, t, y)
+        for i in range(s.n_r):
+            add(s.effect, s.bias[i], after(s.effects, (n + i) * m), m)
+    copy(a, s.effect, n)
+
+
+def map_forces(s: Rubbing) -> None:
+    """What each force does alone, and each bias."""
+    n, r, a, bias = s.n_q, s.n_r, s.dv, s.shifted_rate
+    for k in range(n + r if s.moving else n):
+        clear(a, n)
+        clear(bias, r)
+        if k < n:
+            a[k] = 1.0
+            inverse_mass(s.contacts, s.M, s.work, a)
+        else:
+            bias[k - n] = 1.0
+        constrain(s, a, bias)
+        list_multipliers(s)
+        copy(s.effect, a, n)
+        copy(after(s.effects, k * (n + r)), s.effect, n + r)
+    s.mapped = True
 
 
 def list_multipliers(s: Rubbing) -> None:

@@ -266,7 +266,7 @@ def turned(s: Rubbing, c: int) -> bool:
 
 def force_noise(s: Rubbing) -> float:
     """Rounding of the forces of contacts."""
-    size = largest(s.force, largest(s.x, 0.0, s.n_held), s.n_q)
+    size = largest(s.force, largest(s.multiplier, 0.0, s.n_r), s.n_q)
     for j in range(s.n_q):
         size = max(size, load_terms(s, j))
     return NOISE * size

@@ -1,7 +1,7 @@
 from lcpstep.arrays cimport doubles
 from lcpstep.events.friction.equations cimport free_motion, measure, measure_rows
 from lcpstep.events.friction.guards cimport look
-from lcpstep.events.friction.held cimport hold_modes, list_multipliers, pull, right_hand_side
+from lcpstep.events.friction.held cimport hold_modes, pull, right_hand_side
 from lcpstep.events.friction.impact cimport find_free
 from lcpstep.events.friction.modes cimport decide, take_over
 from lcpstep.events.friction.state cimport GUARDS, Rubbing

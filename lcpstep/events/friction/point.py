@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.events.friction.equations import free_motion, measure, measure_rows
     from lcpstep.events.friction.guards import look
-    from lcpstep.events.friction.held import hold_modes, list_multipliers, pull, right_hand_side
+    from lcpstep.events.friction.held import hold_modes, pull, right_hand_side
     from lcpstep.events.friction.impact import find_free
     from lcpstep.events.friction.modes import decide, take_over
     from lcpstep.events.friction.state import GUARDS, Rubbing
@@ -131,7 +131,6 @@ def forces(s: Any, t: float, x: Any) -> Any:
 def write_forces(s: Rubbing, t: float, y: Doubles, dy: Doubles, out: Doubles) -> None:
     """`forces`, into out."""
     right_hand_side(s, t, y, dy)
-    list_multipliers(s)
     for i in range(s.n_r):
         out[i] = s.multiplier[i]
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.friction.guards import missed
     from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.step import step
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import Doubles
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, after
 
 
 class Smooth(Rubbing):
@@ -19,11 +19,10 @@ class Smooth(Rubbing):
 
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v'); False where it is not finite, or the rows cannot be held."""
-        return right_hand_side(self, t, y, dy)
-
-    def miss(self, t: float, tau: float) -> float:
-        """By the guard that acts."""
-        return missed(self, t, tau)
+        if not right_hand_side(self, t, y, dy):
+            return False
+        copy(after(self.loads, self.stage * self.n_r), self.multiplier, self.n_r)
+        return True
 
     def proceed(self, record: Record, tally: Tally) -> int:
         """A step that meets the tolerance, up to the first event within it; a status."""

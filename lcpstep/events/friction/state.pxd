@@ -9,7 +9,7 @@ from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport after, indices_after
 
-cdef Py_ssize_t GUARDS, BEGIN, NOT_FINITE
+cdef Py_ssize_t ALL, GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
 
 
@@ -26,7 +26,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
-    cdef bint constant, moving, measured
+    cdef bint constant, moving, plain, measured, mapped
     cdef double* nodes
     cdef double* weights
     cdef double* q
@@ -56,6 +56,11 @@ cdef class Rubbing(RungeKutta):
     cdef double* impulse
     cdef double* account
     cdef double* shifted_rate
+    cdef double* counted
+    cdef double* total
+    cdef double* loads
+    cdef double* effect
+    cdef double* effects
     cdef double* mu
     cdef double* mu_s
     cdef double* slip

@@ -12,6 +12,7 @@ import cython
 import numpy as np
 
 from lcpstep.events.friction.codes import BEGIN
+from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
@@ -38,6 +39,7 @@ class Rubbing(RungeKutta):
     contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
     constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
+    plain                        no function of the user's is in it
     next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
@@ -54,7 +56,11 @@ class Rubbing(RungeKutta):
     terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
-    multiplier : (n_r,)          by row;  impulse : contacts, tangents, joints, since the last kept state
+    effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
+        never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
+    impulse : (n_r,)             contacts, tangents, joints, since the last kept state
+    loads : (16, n_r)            multipliers at the stages of the step last made
+    counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
     jams                         how often it did;  rounds    problems of impacts at this instant
@@ -97,7 +103,9 @@ class Rubbing(RungeKutta):
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
         self.constant = self.constant and not coefficients.varies
         self.moving = contacts.motion.given or joints.motion.given or tangents.motion.given
-        self.measured = False
+        ours = contacts.linear and not (contacts.force.given or contacts.frame.given or contacts.moded)
+        self.plain = ours and self.constant and not self.moving
+        self.measured = self.mapped = False
         self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
@@ -106,7 +114,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + 10 * r)
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r + (n + r + 1) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -129,10 +137,15 @@ class Rubbing(RungeKutta):
         self.velocity = after(self.gap, r)
         self.x = after(self.velocity, r)
         self.change = after(self.x, r)
-        self.multiplier = after(self.change, r)
-        self.impulse = after(self.multiplier, r)
+        self.impulse = after(self.change, r)
         self.account = after(self.impulse, r)
         self.shifted_rate = after(self.account, r)
+        self.counted = after(self.shifted_rate, r)
+        self.total = after(self.counted, r)
+        self.loads = after(self.total, r)
+        self.effect = after(self.loads, ALL * r)
+        self.multiplier = after(self.effect, n)
+        self.effects = after(self.multiplier, r)
         self.per_contact = np.zeros(8 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking

@@ -1,17 +1,18 @@
 cimport cython
-from lcpstep.events.friction.equations cimport lift, measure
-from lcpstep.events.friction.guards cimport UNKNOWN, finish_step, first_event, locate
-from lcpstep.events.friction.held cimport hold_modes, list_multipliers, project, right_hand_side
+from libc.math cimport sqrt
+from lcpstep.events.friction.equations cimport add_impulse, lift, measure
+from lcpstep.events.friction.guards cimport UNKNOWN, first_event, locate
+from lcpstep.events.friction.held cimport hold_modes, project, right_hand_side
 from lcpstep.events.friction.impact cimport find_touching, forget_terms, still
 from lcpstep.events.friction.keep cimport keep, store_dense
 from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.state cimport GUARDS, Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
+from lcpstep.kernels.vectors cimport clear, copy
 from lcpstep.pointers cimport abs, min
 
-cdef Py_ssize_t DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+cdef Py_ssize_t ALL, STAGES, DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
@@ -24,3 +25,5 @@ cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void find_standing(Rubbing s) noexcept nogil
 cdef void take_over(Rubbing s, Record record, Tally tally, double t, double tau) noexcept nogil
 cdef void press_between(Rubbing s, double a, double b) noexcept nogil
+cdef void press_rest(Rubbing s, double a, double b) noexcept nogil
+cdef bint sum_up(Rubbing s) noexcept nogil

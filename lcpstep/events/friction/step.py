@@ -5,19 +5,22 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS
+from lcpstep.kernels.dop853 import ALL, STAGES
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import lift, measure
-    from lcpstep.events.friction.guards import UNKNOWN, finish_step, first_event, locate
-    from lcpstep.events.friction.held import hold_modes, list_multipliers, project, right_hand_side
+    from math import sqrt
+
+    from lcpstep.events.friction.equations import add_impulse, lift, measure
+    from lcpstep.events.friction.guards import UNKNOWN, first_event, locate
+    from lcpstep.events.friction.held import hold_modes, project, right_hand_side
     from lcpstep.events.friction.impact import find_touching, forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import clear, copy
     from lcpstep.pointers import abs, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
@@ -45,8 +48,8 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
-    tau = locate(s, h, border - t0)
-    if tau > 0.0 and not finish_step(s, tau):
+    tau = locate(s, g, h, border - t0)
+    if tau == UNKNOWN:
         return NOT_FINITE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
     return arrive(s, g) if code == DONE else code
@@ -119,6 +122,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
     tally.steps += 1
     pressed = 0.0
+    clear(s.counted, s.n_r)
     while record.wants(t, t >= s.t_end):
         wanted = record.times[record.next_time] - s.clock.t0
         press_between(s, pressed, wanted)
@@ -129,7 +133,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
         keep(s, record, record.times[record.next_time], s.seen)
         record.next_time += 1
     if tau > 0.0:
-        press_between(s, pressed, tau)
+        press_rest(s, pressed, tau)
         store_dense(s, record)
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
@@ -145,11 +149,35 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
         right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
-        list_multipliers(s)
         share = s.weights[k] * (b - a)
-        for c in range(s.n_c):
-            s.impulse[c] = s.impulse[c] + share * s.multiplier[s.n_j + c]
-            tangent = s.multiplier[s.n_j + s.n_c + c]
-            s.impulse[s.n_c + c] = s.impulse[s.n_c + c] + share * tangent
-        for i in range(s.n_j):
-            s.impulse[2 * s.n_c + i] = s.impulse[2 * s.n_c + i] + share * s.multiplier[i]
+        for i in range(s.n_r):
+            add_impulse(s, i, share * s.multiplier[i])
+            s.counted[i] = s.counted[i] + share * s.multiplier[i]
+
+
+def press_rest(s: Rubbing, a: float, b: float) -> None:
+    """Add the impulses of the rest of the step, which ends b after the base; up to a they have been counted."""
+    if s.n_held == 0:
+        return
+    if not sum_up(s):
+        press_between(s, a, b)
+        return
+    late = b - s.length
+    for i in range(s.n_r):
+        add_impulse(s, i, s.total[i] + late * s.loads[STAGES * s.n_r + i] - s.counted[i])
+
+
+def sum_up(s: Rubbing) -> bool:
+    """The impulses of the whole step by its own weights; False where an estimated error is above the tolerance."""
+    for i in range(s.n_r):
+        total, e5, e3 = 0.0, 0.0, 0.0
+        for j in range(STAGES + 1):
+            load = s.loads[j * s.n_r + i]
+            total += s.A[STAGES * ALL + j] * load
+            e5 += s.E5[j] * load
+            e3 += s.E3[j] * load
+        s.total[i] = s.length * total
+        tolerance, error = s.atol + s.rtol * abs(s.total[i]), e5 * e5 + 0.01 * e3 * e3
+        if s.length * e5 * e5 > tolerance * sqrt(error):
+            return False
+    return True

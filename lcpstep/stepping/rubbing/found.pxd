@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport measure_rates, size_of
 from lcpstep.events.friction.guards cimport first_fall, read
-from lcpstep.events.friction.held cimport list_multipliers
 from lcpstep.events.friction.state cimport GUARDS, NOISE
 from lcpstep.events.hybrid.roots cimport DEGREE, NONE, taylor
 from lcpstep.kernels.clock cimport RESOLUTION

@@ -15,7 +15,6 @@ from lcpstep.events.friction.codes import OPEN, SLIDES
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
-    from lcpstep.events.friction.held import list_multipliers
     from lcpstep.events.friction.state import GUARDS, NOISE
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.kernels.clock import RESOLUTION
@@ -39,7 +38,6 @@ def measure_base(s: Strides, t: float) -> bool:
     if not s.rates(t, s.y, s.K):
         return False
     s.evaluations += 1
-    list_multipliers(s)
     copy(s.leaving, s.multiplier, s.n_r)
     return note(s, t, s.y, s.K, s.begin_value, s.begin_slope)
 

@@ -1,6 +1,5 @@
 cimport cython
 from lcpstep.arrays cimport doubles
-from lcpstep.events.friction.held cimport list_multipliers
 from lcpstep.events.friction.smooth cimport Smooth
 from lcpstep.events.friction.state cimport GUARDS
 from lcpstep.kernels.vectors cimport add, clear, copy, finite

@@ -19,7 +19,6 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.events.friction.held import list_multipliers
     from lcpstep.events.friction.smooth import Smooth
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.kernels.vectors import add, clear, copy, finite
@@ -137,7 +136,6 @@ def classical(s: Strides, t: float, h: float) -> bool:
             s.y_stage[i] = s.y[i] + length * s.K[(stage - 1) * n + i]
         if not s.rates(t + length, s.y_stage, after(s.K, stage * n)):
             return False
-        list_multipliers(s)
         add(s.push, h / 6.0 if stage == 3 else h / 3.0, s.multiplier, r)
         if stage < 3:
             add(s.middle, 0.5, s.multiplier, r)
@@ -152,5 +150,4 @@ def classical(s: Strides, t: float, h: float) -> bool:
 
 def arrive(s: Strides) -> None:
     """Take note of the forces where a step ends."""
-    list_multipliers(s)
     copy(s.arriving, s.multiplier, s.n_r)
