@@ -22,6 +22,7 @@ cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef bint rises(Rubbing s, Py_ssize_t g, double place) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil
 cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
 cdef bint finish_step(Rubbing s, double tau) noexcept nogil
