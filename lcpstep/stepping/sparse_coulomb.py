@@ -177,9 +177,9 @@ class Coupled:
             yield best
 
     def by_path(self, problem: Problem, modes: Any, guess: Any) -> Any:
-        """Modes by a path from the best that exchanges have led to; slides that jam or rows that contradict mislead it.
+        """Modes by a path from the best that exchanges led to, or, where slides that jam mislead it, from others.
 
-        Then from what they began with, which is the answer of a step before and seldom does, or from none.
+        The guess that the exchanges began with is the answer of a step before, whose slides do not jam.
         """
         starts = modes, guess, np.minimum(modes, STICK), np.zeros_like(modes)
         paths = (Path(self, problem, start).follow() for start in starts)

@@ -82,7 +82,7 @@ class Path:
         return p, rates
 
     def kinds(self) -> tuple[Any, Any]:
-        """Of the contacts' rows: whether each holds its rate, and the share of the normal that it sums up otherwise."""
+        """Of the contacts' rows: whether each holds its rate, and the share of the normal in it where it does not."""
         held = self.coupled.held(self.problem, self.modes)[self.coupled.n_j :]
         slide = np.append(np.zeros(self.coupled.n_c), SIGN[self.modes] * self.problem.mu)
         return held, slide

@@ -40,7 +40,9 @@ class Lines:
         """The lines after the contact `changed` has got another mode at tau."""
         if self.factored is not None:
             n_c = self.path.coupled.n_c
-            self.rows += [row for row in (changed, changed + n_c) if self.differs(row) and row not in self.rows]
+            self.rows += [
+                row for row in (changed, changed + n_c) if self.differs(row) and row not in self.rows
+            ]
             if len(self.rows) <= MOST and self.updated(tau):
                 return self.now
         return self.anew()
@@ -66,7 +68,7 @@ class Lines:
         rows, k = np.array(self.rows, dtype=np.intp), len(self.rows)
         held, slide = (kind[rows] for kind in self.path.kinds())
         carrier = rows % self.path.coupled.n_c
-        (p_0, rates_0), (p, rates) = self.start, self.now
+        (p_0, rates_0), (p_1, _) = self.start, self.now
 
         def left(p: Any, rates: Any) -> Any:
             return np.where(held, rates[:, rows], p[:, rows] + slide * p[:, carrier])
@@ -76,7 +78,7 @@ class Lines:
         except np.linalg.LinAlgError:
             return False
         self.now = p_0 + a @ self.Z_p[:k], rates_0 + a @ self.Z_rates[:k]
-        before, after = p[0] + tau * p[1], self.now[0][0] + tau * self.now[0][1]
+        before, after = (p[0] + tau * p[1] for p in (p_1, self.now[0]))
         return bool(np.max(np.abs(after - before)) <= DRIFT * np.max(np.abs(before)))
 
     def solve_columns(self) -> None:
