@@ -53,7 +53,8 @@ class EventDriven:
     in turn depends on an order that nothing but a gap can tell.
 
     Joints that depend on others are left out, and the others carry what all would; contacts that do so share their
-    forces in one of the possible ways. Joints and lasting contacts are put back onto g = 0, u = 0 after each step.
+    forces in one of the possible ways. Joints and lasting contacts are put back onto g = 0, u = 0 after each step,
+    and states kept at given times are put there.
     """
 
     rtol: float = 1e-12

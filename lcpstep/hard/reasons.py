@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from lcpstep.hard.methods import EVENT, LOCATED, MOREAU
+from lcpstep.hard.methods import LOCATED, MOREAU
 
 # (method, scene, part of what is checked) -> why
 REASONS: dict[tuple[str, str, str], str] = {
-    (EVENT, "bowl", "gap"): "the steps end on the wall; between them the gap is that of the dense output",
     (LOCATED, "bouncing-ball", "steps"): "rounding of 5e5 steps",
     (LOCATED, "slider-crank", "energy"): "order two: the free mechanism gains as much at this step",
     (LOCATED, "pendulum-stop", "tension"): "order two: the phase that 100 steps a period lose, as tension",
     (LOCATED, "double-pendulum", "states"): "order two, times the growth of errors in a chaotic motion",
-    (LOCATED, "bowl", "gap"): "between the ends of steps the gap is that of the interpolation",
     (
         LOCATED,
         "cam-follower",

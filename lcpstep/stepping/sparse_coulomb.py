@@ -142,12 +142,13 @@ class Coupled:
     def attempts(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
         """Answers for one set of modes after another."""
         point: Point | None = None
+        guess = modes
         try:
             for point in self.exchange(problem, modes, p):
                 yield point
             modes = modes if point is None else point.modes
             for _ in range(CENTRES):
-                found = self.by_path(problem._replace(b=problem.b - self.proximal * p), modes)
+                found = self.by_path(problem._replace(b=problem.b - self.proximal * p), modes, guess)
                 if found is None:
                     return
                 for point in self.exchange(problem, found, p, p):
@@ -175,9 +176,12 @@ class Coupled:
         if best is not None:
             yield best
 
-    def by_path(self, problem: Problem, modes: Any) -> Any:
-        """Modes by a path from a guess, or, where slides that jam or rows that contradict mislead it, from none."""
-        starts = modes, np.minimum(modes, STICK), np.zeros_like(modes)
+    def by_path(self, problem: Problem, modes: Any, guess: Any) -> Any:
+        """Modes by a path from the best that exchanges led to, or, where slides that jam mislead it, from others.
+
+        The guess that the exchanges began with is the answer of a step before, whose slides do not jam.
+        """
+        starts = modes, guess, np.minimum(modes, STICK), np.zeros_like(modes)
         paths = (Path(self, problem, start).follow() for start in starts)
         return next((found for found in paths if found is not None), None)
 

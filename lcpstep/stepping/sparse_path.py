@@ -13,7 +13,7 @@ comes to the end of its mode it takes the next one, and where the line then lead
     slides, tangential rate 0      sticks
     sticks, at its limit           slides
 
-This is Lemke's method begun from a guess, each pivot a factorisation of the sparse matrix: as many as modes change.
+This is Lemke's method begun from a guess, with about as many pivots as modes change; `sparse_updates` has the lines.
 Shifts that differ from contact to contact keep two from changing at once.
 
 Sources: C. E. Lemke, Management Science 11 (1965) 681; S. P. Dirkse, M. C. Ferris, Optim. Methods Softw. 5 (1995)
@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lcpstep.lcp.factor import Singular
+from lcpstep.stepping.sparse_updates import Lines
 
 if TYPE_CHECKING:
     from lcpstep.stepping.sparse_coulomb import Coupled, Problem
@@ -80,6 +81,12 @@ class Path:
         p[1] += self.s
         return p, rates
 
+    def kinds(self) -> tuple[Any, Any]:
+        """Of the contacts' rows: whether each holds its rate, and the share of the normal in it where it does not."""
+        held = self.coupled.held(self.problem, self.modes)[self.coupled.n_j :]
+        slide = np.append(np.zeros(self.coupled.n_c), SIGN[self.modes] * self.problem.mu)
+        return held, slide
+
     def times(self, u: Any, held: Any, slide: Any) -> Any:
         """The matrix times u (n_q + n_r, 2)."""
         c, x, p = self.coupled, u[: self.coupled.n_q], u[self.coupled.n_q :]
@@ -98,9 +105,9 @@ class Path:
 
     def pivots(self) -> Any:
         """See `follow`."""
-        entered: Any = None
+        entered, lines = None, Lines(self)
+        p, rates = lines.anew()
         for _ in range(PIVOTS * (self.coupled.n_c + 1)):
-            p, rates = self.lines()
             at_zero, slope, watched = self.rooms(p, rates)
             down = entered is None or slope[entered] < 0.0
             if entered is not None:
@@ -115,13 +122,14 @@ class Path:
                 return None
             self.tau += -reach[end] if down else reach[end]
             entered = self.change(int(end[0]), int(end[1]), rates)
+            p, rates = lines.at(self.tau, entered[1])
         return None
 
     def rooms(self, p: Any, rates: Any) -> tuple[Any, Any, Any]:
         """What each kind of end has left (5, n_c) at tau = 0; its slope in tau; and which modes it may end."""
-        mu, modes = self.problem.mu, self.modes
-        normal, tangent, limit, slides = p[:, self.N], p[:, self.T], mu * p[:, self.N], SIGN[modes]
-        closes, turns = rates[:, self.N], slides * rates[:, self.T]
+        mu, modes, n_c = self.problem.mu, self.modes, self.coupled.n_c
+        normal, tangent, limit, slides = p[:, :n_c], p[:, n_c:], mu * p[:, :n_c], SIGN[modes]
+        closes, turns = rates[:, :n_c], slides * rates[:, n_c:]
         rough = self.problem.rough
         sticks = (modes == STICK) & rough
         left = np.stack([closes, normal, limit - tangent, limit + tangent, turns], axis=1)
@@ -133,7 +141,7 @@ class Path:
         """Give the contact the mode behind this end of its own; the end of the new one that it stands at."""
         mode = self.modes[contact]
         if end == ENTERS:
-            slip = rates[:, self.T][:, contact] @ (1.0, self.tau)
+            slip = rates[:, self.coupled.n_c + contact] @ (1.0, self.tau)
             slides = FORWARDS if slip > 0.0 else BACKWARDS
             new, stands = slides if self.problem.rough[contact] else STICK, LEAVES
         elif end == LEAVES:

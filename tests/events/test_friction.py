@@ -18,6 +18,7 @@ from lagrangian import (
     scenes,
 )
 from lagrangian.scenes.dry_friction import slip_time
+from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
 from lcpstep import energy as energy_balance
@@ -77,6 +78,21 @@ def test_the_coulomb_oscillator_turns_at_multiples_of_pi_and_stops_at_its_place(
     assert abs(times(run, Kind.STICK_TANGENT)[0] - 5.0 * math.pi) < 1e-11
     assert abs(run.q[-1, 0] + 0.05) < 1e-12
     assert np.all(run.v[-1] == 0.0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-12])
+def test_a_block_on_two_corners_strikes_at_its_times_however_short_its_flights(tolerance):
+    """A gap that opens and closes within one step is as small at the impact as after a long flight."""
+    scene = scenes.rocking_block(form="corners")
+    b, h = 0.1, 0.4
+    p = math.sqrt(0.75 * G0 / math.hypot(b, h))
+    exact, rates = rocking_times(0.15, math.atan2(b, h), p, impact_ratio(b, h), 60)
+    run = simulate(scene, EventDriven(tolerance, tolerance), keep="impacts")
+    struck = run.impacts[run.impacts.kind == Kind.IMPACT][:60]
+    assert np.max(np.abs(struck.time - exact)) < 40.0 * tolerance
+    np.testing.assert_allclose(struck.before, -2.0 * b * rates, rtol=0, atol=10.0 * tolerance)
+    angles = [run.q[np.flatnonzero(run.t == t)[-1], 2] for t in struck.time]
+    assert np.max(np.abs(angles)) < 0.1 * tolerance
 
 
 def test_a_wheel_begins_to_roll_at_its_time():

@@ -75,6 +75,26 @@ def test_states_at_given_times_are_those_of_the_full_run(scene):
     assert_same_log(part, full)
 
 
+HELD = {  # scene, since when, and what holds it
+    "bowl": (scenes.bowl(), 0.5, lambda q: np.hypot(q[:, 0], q[:, 1]) - 1.0),
+    "rod": (scenes.pendulum_stop(form="rod"), 0.0, lambda q: np.hypot(q[:, 0], q[:, 1]) - 1.0),
+    "rough corner": (scenes.rocking_block(form="corners"), 0.0, lambda q: np.min(corners(q), axis=0)),
+}
+
+
+def corners(q):
+    """Heights of the lower corners of the block."""
+    s, c = np.sin(q[:, 2]), np.cos(q[:, 2])
+    return q[:, 1] - 0.4 * c + 0.1 * np.stack([-s, s])
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_states_at_given_times_lie_on_what_holds_them(name):
+    scene, since, gap = HELD[name]
+    m = simulate(scene, EventDriven(1e-8, 1e-8), keep=np.linspace(*scene.t_span, 501))
+    assert np.max(np.abs(gap(m.q[m.t >= since]))) < 1e-15
+
+
 @every_scene
 def test_the_state_at_a_row_is_the_row(scene):
     m = simulate(scene, EventDriven())

@@ -9,6 +9,7 @@ from lcpstep import Moreau, energy, simulate, solve_lcp
 from lcpstep.stepping import sparse_coupled
 from lcpstep.stepping.sparse_coulomb import Coupled, Problem
 from lcpstep.stepping.sparse_path import OPEN, STICK, Path
+from lcpstep.stepping.sparse_updates import Lines
 
 
 def row_of_points(seed, n, mu=0.3):
@@ -68,6 +69,43 @@ def test_a_path_alone_ends_at_modes_that_fit(seed):
         assert violation(coupled, problem, point.x, point.p) < 1e-11
 
 
+def test_the_lines_of_every_pivot_are_those_of_a_new_factorisation(monkeypatch):
+    coupled, problem, rng = row_of_points(2, 150)
+    plain, pivots = Lines.at, []
+
+    def compared(self, tau, changed):
+        now = plain(self, tau, changed)
+        for line, anew in zip(now, self.path.lines(), strict=True):
+            largest = np.max(np.abs(anew))
+            # some modes on the way are nearly singular: factors of any kind leave 1e-6 then
+            np.testing.assert_allclose(line, anew[:, coupled.n_j :], rtol=0, atol=1e-5 * largest)
+        pivots.append(changed)
+        return now
+
+    monkeypatch.setattr(Lines, "at", compared)
+    assert Path(coupled, problem, rng.integers(0, 4, 150)).follow() is not None
+    assert len(pivots) > 100
+    assert len(set(pivots)) < len(pivots)  # some change more than once
+
+
+def test_many_pivots_take_few_factorisations(monkeypatch):
+    coupled, problem, rng = row_of_points(2, 150)
+    factor, pivot, done = coupled.patterned.factor, Path.change, {"factor": 0, "pivot": 0}
+
+    def counted(name, f):
+        def call(*given):
+            done[name] += 1
+            return f(*given)
+
+        return call
+
+    monkeypatch.setattr(coupled.patterned, "factor", counted("factor", factor))
+    monkeypatch.setattr(Path, "change", counted("pivot", pivot))
+    assert Path(coupled, problem, rng.integers(0, 4, 150)).follow() is not None
+    assert done["pivot"] > 100
+    assert done["factor"] < 0.1 * done["pivot"]
+
+
 def test_without_friction_a_path_ends_at_the_answer_of_a_dense_solver():
     coupled, problem, rng = row_of_points(5, 40, mu=0.0)
     n_j, A = coupled.n_j, coupled.A.toarray()
@@ -88,6 +126,22 @@ def test_contacts_that_cannot_all_be_met_end_no_path():
     both, none = np.ones(2, dtype=bool), np.zeros(2)
     closing = Problem(np.append([-1.0, -1.0], none), np.ones(4), both, ~both, none, 1.0)
     assert not jaws.solve(closing, np.zeros(2, dtype=int), np.zeros(4)).solved
+
+
+@pytest.mark.slow
+def test_paths_begin_from_the_step_before_rather_than_from_nothing(monkeypatch):
+    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+    follow, begun = Path.follow, []
+
+    def seen(self):
+        begun.append(np.count_nonzero(self.modes != OPEN))
+        return follow(self)
+
+    monkeypatch.setattr(Path, "follow", seen)
+    run = simulate(scenes.hinged_chain(n=30, restitution=0.5, t_end=0.5), Moreau(1e-3))
+    assert run.status.name == "DONE"
+    assert len(begun) > 20
+    assert min(begun) > 0
 
 
 @pytest.mark.slow

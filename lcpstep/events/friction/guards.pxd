@@ -25,6 +25,7 @@ cdef bint stays_clear(Rubbing s) noexcept nogil
 cdef bint sample(Rubbing s, double h, double a, double b, bint coarse) noexcept nogil
 cdef bint look_between(Rubbing s, double place, double t) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef bint rises(Rubbing s, Py_ssize_t g, double place) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil
 cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
 cdef double missing(Rubbing s, Py_ssize_t g) noexcept nogil

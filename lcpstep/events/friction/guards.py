@@ -142,7 +142,7 @@ def first_event(s: Rubbing, h: float) -> int:
                 break
             place = first_fall(s, g)
             if place != NONE and a + (b - a) * place < s.found:
-                s.guard, s.found = g, a + (b - a) * place
+                s.guard, s.found, s.risen = g, a + (b - a) * place, rises(s, g, place)
                 _, slope, _ = taylor(s.scan.c, place, s.scan.half)
                 s.slope = slope * parts / h
         if not fine:  # the same place again, more finely
@@ -213,6 +213,14 @@ def first_fall(s: Rubbing, g: int) -> float:
     return NONE if up == NONE else first_rise(s.scan, -1.0, 0.0, up)
 
 
+def rises(s: Rubbing, g: int, place: float) -> bool:
+    """Whether guard g, which acts at this place of the part, is or was above its band before: it falls to zero there.
+
+    A body that rocks closes a gap within the step in which that gap has opened.
+    """
+    return s.armed[g] == 1 or 0.0 <= first_rise(s.scan, 1.0, s.band[g], 0.0) < place
+
+
 def arm(s: Rubbing) -> None:
     """Note the guards that have come out of their band within the part just sampled."""
     for g in range(GUARDS * s.n_c):
@@ -244,7 +252,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 
 def missing(s: Rubbing, g: int) -> float:
     """How much later guard g acts than at the state last looked at."""
-    return -s.value[g] / s.slope if s.slope < 0.0 and s.armed[g] == 1 else 0.0
+    return -s.value[g] / s.slope if s.slope < 0.0 and s.risen else 0.0
 
 
 def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:

@@ -26,7 +26,7 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard
     cdef double found, slope
-    cdef bint constant, moving, plain, measured, mapped
+    cdef bint constant, moving, plain, measured, mapped, risen
     cdef double* nodes
     cdef double* weights
     cdef double* q

@@ -63,6 +63,7 @@ class Rubbing(RungeKutta):
     counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
+    risen                        the guard found has been above its band before it falls through zero
     jams                         how often it did;  rounds    problems of impacts at this instant
     problem                      the complementarity problem at hand, of an impact or of forces
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
@@ -111,6 +112,7 @@ class Rubbing(RungeKutta):
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
         self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
+        self.risen = False
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)

@@ -24,6 +24,7 @@ cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
 @cython.locals(rests=bint)
 cdef void find_standing(Rubbing s) noexcept nogil
 cdef void take_over(Rubbing s, Record record, Tally tally, double t, double tau) noexcept nogil
+cdef void keep_wanted(Rubbing s, Record record, double tau) noexcept nogil
 cdef void press_between(Rubbing s, double a, double b) noexcept nogil
 cdef void press_rest(Rubbing s, double a, double b) noexcept nogil
 cdef bint sum_up(Rubbing s) noexcept nogil

@@ -127,11 +127,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
         wanted = record.times[record.next_time] - s.clock.t0
         press_between(s, pressed, wanted)
         pressed = wanted
-        copy(s.seen, s.y, 2 * s.n_q)
-        if wanted > 0.0:
-            s.at(wanted / s.length, s.seen)
-        keep(s, record, record.times[record.next_time], s.seen)
-        record.next_time += 1
+        keep_wanted(s, record, wanted)
     if tau > 0.0:
         press_rest(s, pressed, tau)
         store_dense(s, record)
@@ -139,6 +135,22 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
     s.clock.start_at(t)
     if tau > 0.0 and s.n_held > 0:
         project(s, t)
+
+
+def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
+    """Keep the state asked for next, tau from now: on the rows held, which dense output leaves by its own error."""
+    t = record.times[record.next_time]
+    if tau > 0.0:
+        s.at(tau / s.length, s.seen)
+        copy(s.dy, s.y, 2 * s.n_q)
+        copy(s.y, s.seen, 2 * s.n_q)
+        if s.n_held > 0:
+            project(s, t)
+        keep(s, record, t, s.y)
+        copy(s.y, s.dy, 2 * s.n_q)
+    else:
+        keep(s, record, t, s.y)
+    record.next_time += 1
 
 
 def press_between(s: Rubbing, a: float, b: float) -> None:

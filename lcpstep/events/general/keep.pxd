@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.events.general.held cimport project
 from lcpstep.events.general.motion cimport state_at
 from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.clock cimport RESOLUTION

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.events.general.held import project
     from lcpstep.events.general.motion import state_at
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.clock import RESOLUTION
@@ -32,9 +33,11 @@ def log(
 
 
 def keep_wanted(s: Mechanism, record: Record) -> None:
-    """Keep the state that is asked for next."""
+    """Keep the state that is asked for next: on the rows held, which dense output leaves by its own error."""
     t = record.times[record.next_time]
     state_at(s, t - s.t0)
+    if s.n_held > 0 and not s.constant and t > s.t0:
+        project(s, t)
     keep(s, record, t)
     record.next_time += 1
 

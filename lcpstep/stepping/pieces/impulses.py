@@ -103,9 +103,12 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int) -> int:
     w.gap[first], w.grounded[first] = 0.0, GROUND
     for c in range(w.n_c):
         w.before[c] = w.rate[c]
-        if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and w.gap[c] <= plan.slack:
+        near = w.gap[c] <= plan.slack
+        if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and (near or not m.flat):
             pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
-            if pushed or abs(w.rate[c] - u) <= SAME_SPEED * abs(u) or tied(m, plan, w, first, c):
+            alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
+            # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
+            if (near and (pushed or alike)) or tied(m, plan, w, first, c):
                 w.chosen[n_s] = c
                 w.gap[c], w.grounded[c] = 0.0, GROUND
                 n_s += 1
