@@ -1,4 +1,4 @@
-"""Time-stepping with every impulse at its own time within the step: its parameters; see `pieces` for a run, `rubbing` with friction."""
+"""Time-stepping with every impulse at its own time within the step: its parameters; runs: `pieces`, `rubbing`."""
 
 from __future__ import annotations
 

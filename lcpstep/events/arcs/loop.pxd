@@ -6,7 +6,7 @@ from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef Py_ssize_t CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT
+cdef Py_ssize_t STAYS_CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT
 cdef double STILL
 
 

@@ -16,7 +16,7 @@ from typing import Any
 import cython
 
 from lcpstep.events.flight.contact import SLACK
-from lcpstep.events.friction.codes import CLOSED, REVERSE, SLIP, STICK_TANGENT
+from lcpstep.events.friction.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.kernels.status import DONE
 
 if not cython.compiled:
@@ -75,7 +75,7 @@ def begin(s: Arc) -> None:
     """The state at the start of the span: the contact closes, and sticks or slides."""
     rebase(s, s.now)
     s.begun, slip, size = True, s.dz + belt_slip(s), abs(s.dz) + abs(belt_slip(s))
-    note(s, CLOSED)
+    note(s, STAYS_CLOSED)
     slides = abs(slip) > NOISE * size + STILL * (s.atol + s.rtol * size)
     if slides:
         s.direction = 1.0 if slip > 0.0 else -1.0

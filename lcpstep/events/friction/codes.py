@@ -7,6 +7,6 @@ from lcpstep.trajectory import Kind
 # Mode of a contact. One that leans does not slide either, but has all the friction that it can: another one, which
 # sticks, keeps it from sliding
 OPEN, STICKS, SLIDES, LEANS = range(4)
-BEGIN, MOVE, JUMP, DECIDE, OBEY = range(5)  # what comes next
-IMPACT, ACCUMULATION, CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
+BEGIN, MOVE, JUMP, SETTLE, OBEY = range(5)  # what comes next
+IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
 RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import BEGIN, DECIDE, JUMP, MOVE, OPEN
+from lcpstep.events.friction.codes import BEGIN, JUMP, MOVE, OPEN, SETTLE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.events.friction.guards import begin_guards
     from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still, touching
     from lcpstep.events.friction.keep import keep, keep_event
-    from lcpstep.events.friction.modes import decide, obey, take_over, undecided
+    from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
@@ -63,9 +63,9 @@ def occur(s: Rubbing, record: Record, tally: Tally) -> int:
     if s.next == JUMP:
         code = jump(s, record, tally, s.clock.t0)
         if code == DONE:
-            s.next = DECIDE
+            s.next = SETTLE
         return code
-    settles, s.next = s.next == DECIDE, MOVE
+    settles, s.next = s.next == SETTLE, MOVE
     return settle(s, record, tally) if settles else follow(s, record, tally)
 
 
@@ -146,7 +146,7 @@ def look_on(s: Rubbing, t: float) -> int:
     ahead = LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
         s.culprit = -1
-        code = take_over(s)
+        code = adopt_modes(s)
         if code != DONE:
             return code
         if not (s.rates(t, s.y, s.K) and s.step(t, ahead) and measure(s, t + ahead, s.y_new)):
@@ -157,7 +157,7 @@ def look_on(s: Rubbing, t: float) -> int:
         if not undecided(s):
             break
         ahead *= FURTHER
-    code = take_over(s)
+    code = adopt_modes(s)
     for c in range(s.n_c):
         s.new_mode[c] = s.mode[c]
     if code != DONE:

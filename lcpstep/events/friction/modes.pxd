@@ -9,7 +9,7 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, max
 
-cdef Py_ssize_t CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
+cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 cdef double EDGE
 
@@ -28,7 +28,7 @@ cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcep
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(leaning=Py_ssize_t)
-cdef Py_ssize_t take_over(Rubbing s) noexcept nogil
+cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
 @cython.locals(stuck=Py_ssize_t, held=Py_ssize_t)
 cdef void stand_alone(Rubbing s) noexcept nogil
 @cython.locals(stands=bint)

@@ -14,13 +14,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import (
-    CLOSED,
     LEANS,
     OPEN,
     RELEASE,
     REVERSE,
     SLIDES,
     SLIP,
+    STAYS_CLOSED,
     STICK_TANGENT,
     STICKS,
 )
@@ -180,13 +180,13 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
-    code = take_over(s)
+    code = adopt_modes(s)
     if code == DONE:
         tell(s, record, tally, t)
     return code
 
 
-def take_over(s: Rubbing) -> int:
+def adopt_modes(s: Rubbing) -> int:
     """Take over the modes decided, and hold their rows."""
     leaning = 0
     for c in range(s.n_c):
@@ -249,7 +249,7 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
         now = STICKS if now == LEANS else now
         slip = s.velocity[i + s.n_c]
         if (was == OPEN) != (now == OPEN):
-            log(s, record, tally, t, c, RELEASE if now == OPEN else CLOSED, 0.0, s.velocity[i], 0.0)
+            log(s, record, tally, t, c, RELEASE if now == OPEN else STAYS_CLOSED, 0.0, s.velocity[i], 0.0)
         elif was == SLIDES and now == STICKS:
             log(s, record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:

@@ -3,7 +3,7 @@ from lcpstep.events.friction.equations cimport free_motion, measure, measure_row
 from lcpstep.events.friction.guards cimport look
 from lcpstep.events.friction.held cimport hold_modes, pull, right_hand_side
 from lcpstep.events.friction.impact cimport find_free
-from lcpstep.events.friction.modes cimport decide, take_over
+from lcpstep.events.friction.modes cimport decide, adopt_modes
 from lcpstep.events.friction.state cimport GUARDS, Rubbing
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, after, max, whole

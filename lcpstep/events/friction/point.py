@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.friction.guards import look
     from lcpstep.events.friction.held import hold_modes, pull, right_hand_side
     from lcpstep.events.friction.impact import find_free
-    from lcpstep.events.friction.modes import decide, take_over
+    from lcpstep.events.friction.modes import adopt_modes, decide
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, after, max, whole
@@ -57,7 +57,7 @@ def find_modes(s: Rubbing, t: float, y: Doubles, closed: Doubles) -> int:
         return NOT_FINITE
     find_free(s)
     code = decide(s)
-    return take_over(s) if code == DONE else code
+    return adopt_modes(s) if code == DONE else code
 
 
 def hold(s: Any, t: float, x: Any, mode: Any, direction: Any) -> bool:

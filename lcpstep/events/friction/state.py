@@ -40,7 +40,7 @@ class Rubbing(RungeKutta):
     clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
     constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
     plain                        no function of the user's is in it
-    next                         what comes next: BEGIN, MOVE, JUMP, DECIDE or OBEY
+    next                         what comes next: BEGIN, MOVE, JUMP, SETTLE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
     R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  W, S : (n_r, n_r)  Delassus matrix, the same on the joints

@@ -12,7 +12,7 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport clear, copy
 from lcpstep.pointers cimport abs, min
 
-cdef Py_ssize_t ALL, STAGES, DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
+cdef Py_ssize_t ALL, STAGES, SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil

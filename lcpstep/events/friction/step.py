@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import DECIDE, JUMP, LEANS, OBEY, OPEN, STICKS
+from lcpstep.events.friction.codes import JUMP, LEANS, OBEY, OPEN, SETTLE, STICKS
 from lcpstep.kernels.dop853 import ALL, STAGES
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 
@@ -104,7 +104,7 @@ def stop(s: Rubbing, c: int) -> None:
     """The sliding velocity of contact c is zero."""
     find_standing(s)
     s.free[c] = 1
-    s.next = DECIDE
+    s.next = SETTLE
 
 
 def find_standing(s: Rubbing) -> None:

@@ -52,7 +52,7 @@ class Blow:
             )
 
     def late(self, strikes: Any) -> bool:
-        """Whether a contact strikes with another speed than it came with: an impact at the same instant gave it that."""
+        """Whether a contact strikes with another speed than it came with, by an impact at the same instant."""
         R, _, rate, _ = point.rows(self.s, self.t, self.x)
         came, size = R @ self.x[self.n :] + rate, np.max(np.abs(self.v_after - self.x[self.n :]))
         speeds = [(float(e.before), came[self.s.n_j + int(e.contact)]) for e in strikes]

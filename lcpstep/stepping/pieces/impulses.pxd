@@ -25,6 +25,7 @@ cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first) noex
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t first, Py_ssize_t c) noexcept nogil
 cdef bint at_this_instant(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t choose_connected(Work w, Py_ssize_t n_s) noexcept nogil
+cdef void note_hit(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 @cython.locals(ends_in_time=bint)
 cdef bint closes(Model m, Plan plan, Work w, Py_ssize_t c, bint alone) noexcept nogil
 cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil

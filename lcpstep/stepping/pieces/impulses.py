@@ -68,7 +68,9 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
         w.z[k] = w.b[k] = w.p[c] = 0.0
         w.plastic[c] = 0
         if w.status[c] == OPEN:
-            w.plastic[c] = 1 if first != CORNER and closes(m, plan, w, c, n_s == 1) else 0
+            if first != CORNER:
+                note_hit(plan, w, c)
+                w.plastic[c] = 1 if closes(m, plan, w, c, n_s == 1) else 0
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
         elif first == CORNER:
@@ -156,9 +158,8 @@ def choose_connected(w: Work, n_s: int) -> int:
     return n_s
 
 
-def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
-    """Whether the contact that fires is closed: its next hops are too short to be followed."""
-    r = m.restitution[c]
+def note_hit(plan: Plan, w: Work, c: int) -> None:
+    """Count the impact of contact c in this step, and among those at hardly any distance of each other."""
     since = w.sigma - w.last[c]
     w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
     if since > COLLAPSE * plan.h or w.last[c] < 0.0:
@@ -166,6 +167,11 @@ def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
     else:
         w.close_hits[c] += 1
     w.last[c] = w.sigma
+
+
+def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
+    """Whether the contact that fires is closed: its next hops are too short to be followed."""
+    r = m.restitution[c]
     if r == 1.0 or r == 0.0:
         return False
     hits = w.close_hits[c]

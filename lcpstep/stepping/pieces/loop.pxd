@@ -43,7 +43,7 @@ cdef class Steps(Course):
     cdef Py_ssize_t struck(self, double t, Py_ssize_t c) noexcept nogil
     cdef Py_ssize_t begin_interval(self, double t) noexcept nogil
     cdef bint pass_corner(self, double t) noexcept nogil
-    cdef void look_ahead(self, double t) noexcept nogil
+    cdef void next_forces(self, double t) noexcept nogil
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     cdef Py_ssize_t find(self, double t) noexcept nogil
     cdef Py_ssize_t follow(self, double t) noexcept nogil

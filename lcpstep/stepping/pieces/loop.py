@@ -201,7 +201,7 @@ class Steps(Course):
         self.w.end = self.plan.h
         if t + self.plan.h > self.w.high + self.plan.margin:
             self.w.end = max(self.w.high - t, self.w.sigma)
-        self.look_ahead(t + self.w.end)
+        self.next_forces(t + self.w.end)
         return FINISHED
 
     # --- what the orders differ in -----------------------------------------------------------------------------
@@ -210,7 +210,7 @@ class Steps(Course):
         """What is kept of the forces at time t, at which they may jump; False where the mass matrix fails."""
         return True
 
-    def look_ahead(self, t: float) -> None:
+    def next_forces(self, t: float) -> None:
         """What is to be known of the end t of a smooth interval."""
 
     def begin_piece(self, t: float) -> int:

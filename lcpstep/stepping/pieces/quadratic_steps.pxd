@@ -17,7 +17,7 @@ from lcpstep.stepping.pieces.times cimport at_corner, within
 
 cdef class QuadraticSteps(Steps):
     cdef bint pass_corner(self, double t) noexcept nogil
-    cdef void look_ahead(self, double t) noexcept nogil
+    cdef void next_forces(self, double t) noexcept nogil
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     cdef Py_ssize_t find(self, double t) noexcept nogil
     cdef Py_ssize_t follow(self, double t) noexcept nogil

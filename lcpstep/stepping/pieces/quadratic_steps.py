@@ -43,7 +43,7 @@ class QuadraticSteps(Steps):
             turn_with_joints(self.w, within(self.plan, self.w, t))
         return renew_forces(self.m, self.plan, self.w, t)
 
-    def look_ahead(self, t: float) -> None:
+    def next_forces(self, t: float) -> None:
         """Forces, and accelerations of obstacles, at the end of a smooth interval."""
         next_forces(self.m, self.plan, self.w, within(self.plan, self.w, t))
 
