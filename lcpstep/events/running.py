@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.events.general.ends import STATUS
 from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
@@ -37,9 +38,9 @@ class EventRun(Run):
         """End of the interval at hand [s]."""
 
     @property
-    @abstractmethod
     def evaluations(self) -> int:
-        """How often forces were evaluated."""
+        """How often forces were evaluated; never where their motion is known."""
+        return 0
 
     def advance(self, goal: int) -> int:
         """Call the kernel, up to step number `goal`; why it returned."""
@@ -81,6 +82,10 @@ class EventRun(Run):
         self.closed = True
         self.recorder.take()
         return self.recorder.states()
+
+    def status(self, code: int) -> Status:
+        """How the run ended, by what the kernel returned."""
+        return STATUS.get(code) or Status(code)
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    pass
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
 
-DUE, AHEAD, ARRIVED = range(3)
+DUE, AHEAD, ARRIVED = range(3)  # stages
 SLACK = 4  # rows that one round of the loop may need
 
 
@@ -61,10 +60,10 @@ class Events(Course):
 
     Parameters
     ----------
-    record, tally : as above, or nothing where nothing is kept;  room : events that one round may note
+    record, tally : as above;  room : events that one round may note
     """
 
-    def __init__(self, record: Any, tally: Any, room: int) -> None:
+    def __init__(self, record: Record, tally: Tally, room: int) -> None:
         self.record, self.tally = record, tally
         self.most_events, self.most_rows = record.event_capacity - room, record.row_capacity - SLACK
 

@@ -57,11 +57,6 @@ class ArcRun(EventRun):
         show(self.arc)
         return self.arc.state[0], self.arc.state[1]
 
-    @property
-    def evaluations(self) -> int:
-        """Forces are not evaluated: their motion is known."""
-        return 0
-
     def begin(self) -> int:
         """The contact sticks or slides from the start; a code."""
         return self.advance(0)

@@ -80,11 +80,6 @@ class ClosedForm(EventRun):
         """Last known q and v."""
         return self.flight.state[0], self.flight.state[1]
 
-    @property
-    def evaluations(self) -> int:
-        """Forces are not evaluated: their motion is known."""
-        return 0
-
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the flights that start there."""
         complete = self.kept.all or self.kept.on_events

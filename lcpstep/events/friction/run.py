@@ -12,12 +12,12 @@ from lagrangian import Scene
 from lcpstep.events import running
 from lcpstep.events.friction.loop import Course
 from lcpstep.events.friction.smooth import Smooth
-from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
-from lcpstep.events.general.run import FIRST_STEP, MOST_ROWS, Moved, quadrature
+from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES
+from lcpstep.events.general.run import FIRST_STEP, Moved, quadrature, recorder_for
 from lcpstep.events.scan import scan_interval
 from lcpstep.kernels.clock import Clock
 from lcpstep.model import coefficients, models
-from lcpstep.recording import Kept, Recorder, States
+from lcpstep.recording import Kept, States
 from lcpstep.trajectory import Status
 from lcpstep.turns import turns
 
@@ -57,10 +57,7 @@ class FrictionRun(running.EventRun):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         self.system = self.start(scene, method)
-        width = 7, 2 * scene.n_q
-        rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
-        columns = 2 * scene.n_c + scene.n_j
-        recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+        recorder = recorder_for(scene, kept, 2 * scene.n_c + scene.n_j, False)
         super().__init__(method, scene, kept, recorder)
         self.course = Course(self.system, recorder.record, self.tally)
 
@@ -92,10 +89,6 @@ class FrictionRun(running.EventRun):
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""
         return Moved(running.without_impulses(s), self.kept.all, False, self.recorder.dense())
-
-    def status(self, code: int) -> Status:
-        """How the run ended, by what the kernel returned."""
-        return STATUS.get(code) or Status(code)
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events import running
-from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, STATUS
+from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES
 from lcpstep.events.general.loop import Course
 from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
@@ -63,15 +63,19 @@ def mechanism(scene: Scene, m: Model, smooth: Smooth | Watched) -> Mechanism:
     return smooth.mechanism
 
 
+def recorder_for(scene: Scene, kept: Kept, columns: int, constant: bool) -> Recorder:
+    """What is kept, with so many impulses, and the motion after each state: its acceleration, or dense output."""
+    width = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
+    rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
+    return Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+
+
 class General(running.EventRun):
     """A run with any number of contacts and joints; `system`: its state at the start, if made elsewhere."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, system: Mechanism | None = None) -> None:
         self.system = system or start(scene, method)
-        width = (1, scene.n_q) if self.system.constant else (7, 2 * scene.n_q)
-        rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
-        columns = scene.n_c + scene.n_j
-        recorder = Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+        recorder = recorder_for(scene, kept, scene.n_c + scene.n_j, self.system.constant)
         super().__init__(method, scene, kept, recorder)
         self.course = Course(self.system, recorder.record, self.tally)
 
@@ -100,10 +104,6 @@ class General(running.EventRun):
         """States at any time, from the kept ones and the motion from each to the next."""
         F = self.recorder.dense()
         return Moved(running.without_impulses(s), self.kept.all, self.system.constant, F)
-
-    def status(self, code: int) -> Status:
-        """How the run ended, by what the kernel returned."""
-        return STATUS.get(code) or Status(code)
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
