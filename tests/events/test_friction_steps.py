@@ -64,3 +64,12 @@ def test_a_slip_or_a_stop_asks_for_few_forces(tolerance, most):
         run = simulate(scene, EventDriven(tolerance, tolerance), keep=[200.0])
     assert len(run.impacts) > 40
     assert len(calls) < most * len(run.impacts)
+
+
+@pytest.mark.parametrize("omega", [0.5, 3.0, 40.0])
+@pytest.mark.parametrize("beyond", [1e-3, 1e-5])
+def test_a_load_that_passes_the_edge_for_a_moment_within_a_step_slips(omega, beyond):
+    load = Harmonic([0.1, -1.0], sine=[0.2 + beyond, 0.0], omega=omega)
+    run = simulate(on_floor(LinearSystem(np.eye(2), force=load)), EventDriven(1e-6, 1e-6))
+    slip = run.impacts.time[run.impacts.kind == Kind.SLIP][0]
+    assert abs(slip - math.asin(0.2 / (0.2 + beyond)) / omega) < 1e-6

@@ -3,7 +3,7 @@ from lcpstep.events.friction.equations cimport gap_size, measure_friction, measu
 from lcpstep.events.friction.held cimport right_hand_side
 from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
-from lcpstep.events.hybrid.roots cimport CHECKS, COARSE, DEGREE, NONE, convert, first_rise, lower_bound, taylor
+from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, max, min
@@ -18,11 +18,13 @@ cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(found=bint)
 cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
-@cython.locals(fine=bint, evenly=bint, error=double, place=double)
+@cython.locals(fine=bint, error=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
-cdef bint stays_clear(Rubbing s) noexcept nogil
-cdef bint sample(Rubbing s, double h, double a, double b, bint coarse) noexcept nogil
+cdef bint stays_clear(Rubbing s, double h) noexcept nogil
+cdef void find_bows(Rubbing s, double h) noexcept nogil
+cdef double bow(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef bint sample(Rubbing s, double h, double a, double b) noexcept nogil
 cdef bint look_between(Rubbing s, double place, double t) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint rises(Rubbing s, Py_ssize_t g, double place) noexcept nogil

@@ -26,12 +26,10 @@ if not cython.compiled:
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import (
         CHECKS,
-        COARSE,
         DEGREE,
         NONE,
         convert,
         first_rise,
-        lower_bound,
         taylor,
     )
     from lcpstep.kernels.clock import RESOLUTION
@@ -124,15 +122,11 @@ def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
     n, parts, part = GUARDS * s.n_c, 1, 0
     s.guard, s.found = -1, 2.0
-    evenly = s.plain and abs(s.contacts.omega) * h < 1.0  # nothing turns that the motion does not show
+    if s.plain and stays_clear(s, h):
+        return -1
     while part < parts:
         a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
-        if not sample(s, h, a, b, True):
-            return UNKNOWN
-        if evenly and stays_clear(s):
-            part += 1
-            continue
-        if not sample(s, h, a, b, False):
+        if not sample(s, h, a, b):
             return UNKNOWN
         fine = True
         for g in range(n):
@@ -165,21 +159,57 @@ def has(s: Rubbing, g: int) -> bool:
     return which == 0 or mode == STICKS or (which == 1 and mode == SLIDES)
 
 
-def stays_clear(s: Rubbing) -> bool:
-    """Whether no guard can act within the part, as far as its coarse samples tell."""
+def stays_clear(s: Rubbing, h: float) -> bool:
+    """Whether no guard can act within the step: none comes to zero between its values at the ends.
+
+    Of a linear system without functions of the user's, whose guards are linear in the state.
+    """
+    if not look_at_stage(s, 0, s.clock.t0, s.y):
+        return False
+    copy(s.samples, s.value, GUARDS * s.n_c)
+    if not look_at_stage(s, STAGES, s.clock.t0 + h, s.y_new):
+        return False
+    find_bows(s, h)
     for g in range(GUARDS * s.n_c):
-        if not has(s, g):
-            continue
-        if s.armed[g] == 0 or lower_bound(s.scan, after(s.samples, g * SAMPLES)) <= s.band[g]:
+        least = min(s.samples[g], s.value[g]) - bow(s, g)
+        if has(s, g) and (s.armed[g] == 0 or least <= s.band[g]):
             return False
     return True
 
 
-def sample(s: Rubbing, h: float, a: float, b: float, coarse: bool) -> bool:
-    """All guards at the coarse points of the part a .. b of a step, or at the others; False: one is not finite."""
+def find_bows(s: Rubbing, h: float) -> None:
+    """How far the step leads off the line between its ends, at most: states into `seen`, forces into `dv`."""
+    n, turn = s.n_q, 0.125 * (s.contacts.omega * h) * (s.contacts.omega * h)
+    for i in range(2 * n):
+        s.seen[i] = 0.0
+        for k in range(1, 7):
+            s.seen[i] += 0.25 * abs(s.F[2 * n * k + i])
+    for i in range(n):
+        s.dv[i] = turn * (abs(s.contacts.cosine[i]) + abs(s.contacts.sine[i]))
+        for j in range(n):
+            s.dv[i] += abs(s.contacts.K[i * n + j]) * s.seen[j] + abs(s.contacts.C[i * n + j]) * s.seen[n + j]
+
+
+def bow(s: Rubbing, g: int) -> float:
+    """How far guard g leads off that line."""
+    c, n, m = g // GUARDS, s.n_q, s.n_q + s.n_r
+    i, most = s.n_j + c, 0.0
+    if s.mode[c] == OPEN or (s.mode[c] == SLIDES and g % GUARDS == 1):
+        row, bows = (i, s.seen) if s.mode[c] == OPEN else (i + s.n_c, after(s.seen, n))
+        for j in range(n):
+            most += abs(s.R[row * n + j]) * bows[j]
+        return most
+    share = 1.0 if g % GUARDS == 0 else s.mu_s[c]
+    for j in range(n):
+        most += share * abs(s.effects[j * m + n + i]) * s.dv[j]
+        if g % GUARDS > 0:
+            most += abs(s.effects[j * m + n + i + s.n_c]) * s.dv[j]
+    return most
+
+
+def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
+    """All guards at the points of the part a .. b of a step; False where one is not finite."""
     for j in range(SAMPLES):
-        if (j % COARSE == 0 or j > DEGREE) != coarse:
-            continue
         place = a + (b - a) * s.scan.points[j]
         if not look_between(s, place, s.clock.t0 + place * h):
             return False

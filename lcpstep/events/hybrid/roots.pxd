@@ -2,11 +2,11 @@ cimport cython
 from lcpstep.arrays cimport doubles
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, max, min
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, after, max
 
-cdef Py_ssize_t DEGREE, DEPTH, CHECKS, COARSE
-cdef double NONE, MISSED
+cdef Py_ssize_t DEGREE, DEPTH, CHECKS
+cdef double NONE
 
 
 @cython.final
@@ -17,7 +17,6 @@ cdef class Scan:
     cdef double* to_bernstein
     cdef double* at_checks
     cdef double* sample
-    cdef double* cubic
     cdef double* c
     cdef double* half
     cdef double* stack
@@ -26,7 +25,6 @@ cdef class Scan:
 
 
 cdef double convert(Scan scan) noexcept nogil
-cdef double lower_bound(Scan scan, double* sample) noexcept nogil
 cdef (double, double, double) taylor(double* d, double s, double* work) noexcept nogil
 @cython.locals(changes=Py_ssize_t)
 cdef double first_rise(Scan scan, double sign, double level, double start) noexcept nogil

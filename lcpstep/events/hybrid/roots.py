@@ -19,34 +19,31 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.bracket import Bracket
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import Doubles, abs, after, max
 
 DEGREE = 9
 DEPTH = 42  # halvings at most
 NONE = -1.0  # in place of a root
 CHECKS = 2  # further samples, which say whether the polynomial is the guard
-COARSE = 3  # every so many samples have a cubic through them
-MISSED = 100.0  # times what that misses at the checks: what it may miss anywhere
 
 
-def bernstein(s: Any, degree: int = DEGREE) -> Any:
+def bernstein(s: Any) -> Any:
     """The Bernstein polynomials at the points s, a column each."""
-    basis = [math.comb(degree, j) for j in range(degree + 1)]
-    return np.stack([b * s**j * (1.0 - s) ** (degree - j) for j, b in enumerate(basis)], axis=1)
+    basis = [math.comb(DEGREE, j) for j in range(DEGREE + 1)]
+    return np.stack([b * s**j * (1.0 - s) ** (DEGREE - j) for j, b in enumerate(basis)], axis=1)
 
 
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 AT_CHECKS = np.array([0.3819, 0.8137])
 FROM_NODES, FROM_CHECKS = np.linalg.inv(bernstein(NODES)), bernstein(AT_CHECKS)
-CUBIC = np.concatenate([np.linalg.inv(bernstein(NODES[::COARSE], COARSE)), bernstein(AT_CHECKS, COARSE)])
 
 
 class Scan:
     """Sample points, conversion to Bernstein form, and work space; N = DEGREE + 1.
 
     points, sample : (N + CHECKS,)   where the guard is sampled, in [0, 1]; its values there
-    to_bernstein : (N, N);  at_checks : (CHECKS, N);  cubic : (4 + CHECKS, 4)   the same of the cubic
+    to_bernstein : (N, N);  at_checks : (CHECKS, N)
     c, half : (N,)   Bernstein coefficients of the guard; work space
     bracket          in which a single root is sought
     stack : (DEPTH + 3, N);  low, high : (DEPTH + 3,)   polynomials on parts of the interval, and their ends
@@ -62,12 +59,10 @@ class Scan:
             np.zeros(n + CHECKS),
             np.zeros((2, n)),
             np.zeros((DEPTH + 3, n + 2)),
-            CUBIC,
         ]
         self.points, self.to_bernstein = doubles(self.arrays[0]), doubles(self.arrays[1])
         self.at_checks, self.sample = doubles(self.arrays[2]), doubles(self.arrays[3])
         self.c, self.stack = doubles(self.arrays[4]), doubles(self.arrays[5])
-        self.cubic = doubles(self.arrays[6])
         self.half, self.low = after(self.c, n), after(self.stack, (DEPTH + 3) * n)
         self.high = after(self.low, DEPTH + 3)
 
@@ -86,18 +81,6 @@ def convert(scan: Scan) -> float:
             value += scan.at_checks[k * n + j] * scan.c[j]
         worst = max(worst, abs(value - scan.sample[n + k]))
     return worst
-
-
-def lower_bound(scan: Scan, sample: Doubles) -> float:
-    """What a guard stays above, by the cubic through every third of its samples, and the checks."""
-    n, c, worst = COARSE + 1, scan.half, 0.0
-    for j in range(n):
-        c[j] = 0.0
-        for i in range(n):
-            c[j] += scan.cubic[j * n + i] * sample[COARSE * i]
-    for k in range(CHECKS):
-        worst = max(worst, abs(product(scan.cubic, c, n + k, n) - sample[DEGREE + 1 + k]))
-    return min(min(c[0], c[1]), min(c[2], c[3])) - MISSED * worst
 
 
 def taylor(d: Doubles, s: float, work: Doubles) -> tuple[float, float, float]:
