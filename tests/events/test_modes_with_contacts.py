@@ -346,6 +346,24 @@ def test_a_reset_takes_a_resting_body_off_the_floor():
     np.testing.assert_array_equal(run.at(run.switches.time[0]), [2.0, 0.0])
 
 
+def unchanged(t, x, p, out):
+    out[0], out[1] = x[0], x[1]
+
+
+@pytest.mark.parametrize("speed", [1e-2, -1e-2])
+def test_a_reset_within_a_low_hop_leaves_the_hop_its_height(speed):
+    """Lower than the tolerance of places, by 1e-6: it lands with the speed that its whole height gives."""
+    place = 9e-7
+    modes = {"down": Mode(falls, [Guard(later, "again", reset=unchanged)]), "again": Mode(falls)}
+    t = 5e-5
+    x = [place - t * speed, speed]
+    table = LinearContacts([[1.0]], restitution=1.0)
+    run = simulate(ball(modes, "down", x, 3e-3, [9.81, 1.0, t], table), EventDriven(1e-6, 1e-6))
+    hits = run.impacts[run.impacts.kind == Kind.IMPACT]
+    assert len(run.switches) == 1
+    assert hits.before[0] == pytest.approx(-math.sqrt(speed * speed + 2.0 * 9.81 * x[0]), rel=1e-3)
+
+
 def test_a_reset_that_leads_into_the_obstacle_is_named():
     modes = {"down": Mode(falls, [Guard(later, "deep", reset=thrown_down)]), "deep": Mode(falls)}
     run = simulate(ball(modes, "down", [0.0, 0.0], 1.5, [9.81, 1.0, 0.5]), METHOD)

@@ -39,8 +39,7 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
         if s.contact.closed[c] == 1:
             left, right = s.left.multiplier[c], s.right.multiplier[c]
             if right < -noise and s.contact.held_until[c] < s.t0 + b:
-                kind = OPENS
-                tau = a if left <= 0.0 else root(s, MULTIPLIER, c, a, left, b, right)
+                tau, kind = opening(s, c, a, b, left, right), OPENS
         elif s.contact.lands[c] != NONE:
             if a < s.contact.lands[c] <= b:
                 tau, kind = s.contact.lands[c], LANDS
@@ -56,6 +55,15 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
         if tau != NONE and (found == NONE or tau < found):
             found, s.event_contact, s.event_kind = tau, c, kind
     return found
+
+
+def opening(s: Mechanism, c: int, a: float, b: float, left: float, right: float) -> float:
+    """When the multiplier of closed contact c, negative at b, turns so: after the time up to which it is held."""
+    start = max(a, s.contact.held_until[c] - s.t0)
+    if start > a:
+        observe(s, start)
+        left = s.contact.multiplier[c]
+    return start if left <= 0.0 else root(s, MULTIPLIER, c, start, left, b, right)
 
 
 def first_contact(

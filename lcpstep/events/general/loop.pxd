@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.events.general.equations cimport measure
 from lcpstep.events.general.keep cimport keep
 from lcpstep.events.general.modes cimport jump, obey, settle
-from lcpstep.events.general.motion cimport rounding_of_gap, speed_tolerance, touching
+from lcpstep.events.general.motion cimport closed_from
 from lcpstep.events.general.parabolas cimport fly
 from lcpstep.events.general.state cimport BEGIN, ENTERED, JUMP, JUMPED, LOOKED, MOVE, Mechanism, OBEY, SETTLE
 from lcpstep.events.general.step cimport complete, step
@@ -11,7 +11,6 @@ from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs
 
 cdef Py_ssize_t DONE, NOT_FINITE
 
@@ -25,5 +24,4 @@ cdef class Course(Events):
 
 cdef Py_ssize_t occur(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t go_further(Mechanism s, Record record, Tally tally) noexcept nogil
-@cython.locals(still=bint)
 cdef bint begin(Mechanism s) noexcept nogil

@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.events.general.equations import measure
     from lcpstep.events.general.keep import keep
     from lcpstep.events.general.modes import jump, obey, settle
-    from lcpstep.events.general.motion import rounding_of_gap, speed_tolerance, touching
+    from lcpstep.events.general.motion import closed_from
     from lcpstep.events.general.parabolas import fly
     from lcpstep.events.general.state import (
         BEGIN,
@@ -36,7 +36,6 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs
 
 
 class Course(Events):
@@ -106,16 +105,11 @@ def go_further(s: Mechanism, record: Record, tally: Tally) -> int:
 
 
 def begin(s: Mechanism) -> bool:
-    """The state at the start of the span, where gaps that are zero are closed; False where not finite.
-
-    To rounding, or to the tolerance where the gap velocity is zero to it too: a contact that moves is in a hop, and
-    to begin that at the surface would leave it only the height that it has beyond.
-    """
+    """The state at the start of the span, where gaps that are zero are closed; False where not finite."""
     s.find_corners(s.t0)
     if not measure(s, s.t0):
         return False
     for c in range(s.n_c):
-        still = abs(s.contact.speed[c]) <= speed_tolerance(s, c)
-        if s.contact.gap[c] <= (touching(s, c) if still else rounding_of_gap(s, c)):
+        if s.contact.gap[c] <= closed_from(s, c):
             s.contact.gap[c] = 0.0
     return True

@@ -1,3 +1,4 @@
+cimport cython
 from lcpstep.events.general.earliest cimport observe
 from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.dynamics cimport gap_rounding
@@ -12,6 +13,8 @@ cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void arrive(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
+@cython.locals(still=bint)
+cdef double closed_from(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double rounding_of_gap(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double speed_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double least_effect(Mechanism s, Py_ssize_t c, double* x) noexcept nogil

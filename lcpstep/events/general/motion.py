@@ -72,6 +72,16 @@ def touching(s: Mechanism, c: int) -> float:
     return rounding if s.constant else max(rounding, gap_tolerance(s, c))
 
 
+def closed_from(s: Mechanism, c: int) -> float:
+    """The gap below which contact c begins closed: rounding, or the tolerance where it does not move.
+
+    A contact that moves is in a hop, and to begin that at the surface would leave it only the height that it has
+    beyond.
+    """
+    still = abs(s.contact.speed[c]) <= speed_tolerance(s, c)
+    return touching(s, c) if still else rounding_of_gap(s, c)
+
+
 def rounding_of_gap(s: Mechanism, c: int) -> float:
     """What rounding may leave of the gap of contact c, of the way included by which it has come in the last step."""
     way = 0.0

@@ -148,7 +148,7 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
     """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative.
 
     Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
-    c, one looks further.
+    c, one looks further. Where they press it then, it is held up to there: later in the interval it may yet open.
     """
     before, solved, found = s.n_held, True, False
     balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
@@ -166,7 +166,7 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
             found = s.contact.closed[c] == 0
             ahead = min(ahead * FURTHER, 0.5 * (end - tau))
     if s.contact.closed[c] == 1:
-        s.contact.held_until[c] = s.t0 + end
+        s.contact.held_until[c] = s.t0 + (tau + first if s.contact.multiplier[c] > 0.0 else end)
     return solved
 
 

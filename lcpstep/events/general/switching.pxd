@@ -1,6 +1,6 @@
 from lcpstep.events.general.earliest cimport NONE
 from lcpstep.events.general.equations cimport measure
-from lcpstep.events.general.motion cimport touching
+from lcpstep.events.general.motion cimport closed_from, touching
 from lcpstep.events.general.state cimport ENTERED, JUMPED, LOOKED, Mechanism, SWITCH
 from lcpstep.events.hybrid.locate cimport UNKNOWN, find, locate
 from lcpstep.events.hybrid.loop cimport MAX_STALLED, enter, leave

@@ -28,7 +28,7 @@ from lcpstep.kernels.status import (
 if not cython.compiled:
     from lcpstep.events.general.earliest import NONE
     from lcpstep.events.general.equations import measure
-    from lcpstep.events.general.motion import touching
+    from lcpstep.events.general.motion import closed_from, touching
     from lcpstep.events.general.state import ENTERED, JUMPED, LOOKED, SWITCH, Mechanism
     from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
     from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
@@ -97,10 +97,9 @@ def place(s: Mechanism) -> int:
         return NOT_FINITE
     for c in range(s.n_c):
         s.contact.closed[c] = s.contact.carried[c] = 0
-        slack = touching(s, c)
-        if s.contact.gap[c] < -slack:
+        if s.contact.gap[c] < -touching(s, c):
             s.culprit = c
             return INSIDE
-        if s.contact.gap[c] <= slack:
+        if s.contact.gap[c] <= closed_from(s, c):
             s.contact.gap[c] = 0.0
     return DONE
