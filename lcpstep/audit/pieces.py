@@ -25,7 +25,7 @@ from lcpstep.events.flight.run import Flights
 from lcpstep.events.general.run import Moved
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.states import extremes
-from lcpstep.model import model
+from lcpstep.model import looked_at
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.trajectory import Kind, Trajectory
 from lcpstep.turns import turns
@@ -57,7 +57,7 @@ class Pieces:
 
     def __init__(self, run: Trajectory) -> None:
         self.run, self.scene = run, run.scene
-        self.m = getattr(run.dense, "model", None) or model(self.scene)
+        self.m = getattr(run.dense, "model", None) or looked_at(self.scene)
         found = turns(self.scene)
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
