@@ -84,7 +84,8 @@ class Cones:
             middle = np.nan_to_num(d * (half[:, 1] - half[:, 0]) / h[:, None], posinf=0.0, neginf=0.0)
             loose = np.nan_to_num(ROUNDING * np.max(np.abs(half), axis=(1, 2)) / h, posinf=0.0)
         out = np.zeros((len(h), len(self.G)))
-        for velocity, at, noise in ((v[:-1], t[:-1], 0.0), (v[1:], t[1:], 0.0), (middle, t[:-1] + 0.5 * h, loose)):
+        known = (v[:-1], t[:-1], 0.0), (v[1:], t[1:], 0.0), (middle, t[:-1] + 0.5 * h, loose)
+        for velocity, at, noise in known:
             waves = np.outer(np.cos(w * at), self.slip[1]) + np.outer(np.sin(w * at), self.slip[2])
             u = velocity @ self.T.T + self.slip[0] + waves
             size = 1.0 + np.max(np.abs(velocity), axis=1)[:, None] + sum(np.abs(x) for x in self.slip)
@@ -93,7 +94,7 @@ class Cones:
         return out
 
     def guards(self, key: tuple[int, ...]) -> Array | None:
-        """Of one pattern of modes: rows (q, v, 1, waves), (guards, 2 n_q + 1 + WAVES), three a contact; None: unknown.
+        """Of one pattern of modes: rows of what (q, v, 1, waves) count, (n_c, 3, 2 n_q + 1 + WAVES); None: unknown.
 
         key : of every contact 2 where it is open, else its direction
         """
@@ -149,7 +150,9 @@ class Cones:
         for g in range(3):
             row = rows[:, g]
             parts = [along(x, y, row[:, i : i + n]) for x, y, i in ((q, a, 0), (v, j, n))]
-            ends = np.stack([np.sum(row[:, :n] * q[:, k] + row[:, n : 2 * n] * v[:, k], axis=1) for k in (0, -1)])
+            ends = np.stack(
+                [np.sum(row[:, :n] * q[:, k] + row[:, n : 2 * n] * v[:, k], axis=1) for k in (0, -1)]
+            )
             size = np.abs(row[:, 2 * n]) + sum(
                 np.sum(np.abs(row[:, i : i + n]) * x, axis=1) for i, x in ((0, sizes[0]), (n, sizes[1]))
             )
@@ -168,7 +171,7 @@ class Cones:
             error = np.maximum(error, own)
         lower, unknown = np.where(known, lower - error, -np.inf), np.full(len(h), np.inf)
         no = np.zeros(len(h), dtype=bool)
-        return Seen(lower, -unknown, unknown, -unknown, unknown, *at, error, error, no, error)
+        return Seen(lower, -unknown, unknown, -unknown, unknown, at[0], at[1], error, error, no, error)
 
 
 def rates(motion: Polynomials) -> list[Polynomials]:

@@ -33,7 +33,9 @@ Mask = NDArray[np.bool_]
 NODES = 0.5 + 0.5 * np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
 WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 RULE = np.stack([NODES, WEIGHTS])
-SAFETY = 2.0  # what is told of the errors found: motions may part a little, and nodes see no more than they see
+SAFETY = (
+    2.0  # what is told of the errors found: motions may part a little, and nodes see no more than they see
+)
 ROUNDING = 4e-14  # of the positions: what their second differences over a step, times h^2, may be off by
 JUMPS = float(Kind.IMPACT), float(Kind.ACCUMULATION), float(Kind.JAM)
 
@@ -54,7 +56,9 @@ def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: A
     for x in (place, speed, within):
         x[~np.isfinite(x)] = 0.0
     cut = np.ascontiguousarray(cuts)
-    parted = np.flatnonzero(np.searchsorted(cut, t[:-1], side="right") < np.searchsorted(cut, t[1:], side="left"))
+    parted = np.flatnonzero(
+        np.searchsorted(cut, t[:-1], side="right") < np.searchsorted(cut, t[1:], side="left")
+    )
     for x in (place, speed):  # a corner within: its parts are steps of their own, as those beside it
         x[parted] = 0.0
         x[parted] = np.maximum(x[np.maximum(parted - 1, 0)], x[np.minimum(parted + 1, len(x) - 1)])
@@ -91,7 +95,9 @@ class Nodes:
         self.a = a
 
 
-def by_rest(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, k: Any) -> tuple[Array, Array, Array]:
+def by_rest(
+    run: Trajectory, m: Model, motion: Polynomials, closed: Mask, k: Any
+) -> tuple[Array, Array, Array]:
     """The same of pieces with closed contacts or joints, from f - p'': less exact where steps are short."""
     nodes, h = Nodes(motion, k), np.diff(motion.t)[k][:, None]
     off = states.accelerations(m, nodes.t, nodes.q, nodes.v).reshape(nodes.a.shape) - nodes.a

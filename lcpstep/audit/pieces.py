@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -93,7 +94,7 @@ class Pieces:
             self.touched[:-1] |= self.closed
 
     def added_up(self) -> Array | None:
-        """What the steps have added up, (m, n_q), of methods that choose none by their error; see `drift`, `missed`."""
+        """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
         run, dense = self.run, self.run.dense
         if isinstance(dense, Bent):
             return drift(run, self.m, dense.jumps, self.cuts)
@@ -101,17 +102,19 @@ class Pieces:
             return None
         return missed(run, self.m, self.motion, self.closed, self.cuts)
 
+    @functools.cached_property
+    def events(self) -> list[Array]:
+        """The times of every contact's events, between minus and plus infinity."""
+        return [np.concatenate([[-np.inf], self.t[x], [np.inf]]) for x in self.touched.T]
+
     def to_event(self, w: Windows) -> Array:
         """How far windows reach from the nearest event of their contact, in whichever piece it lies [s]."""
-        apart = np.full(len(w.a), np.inf)
-        for c in range(self.scene.n_c):
-            own, times = np.flatnonzero(w.c == c), self.t[self.touched[:, c]]
-            if not (len(own) and len(times)):
-                continue
-            later = np.searchsorted(times, w.b[own])
-            after = np.append(times, np.inf)[later] - w.a[own]
-            before = w.b[own] - np.insert(times, 0, -np.inf)[np.searchsorted(times, w.a[own], side="right")]
-            apart[own] = np.minimum(after, before)
+        apart = np.empty(len(w.a))
+        for c, times in enumerate(self.events):
+            own = w.c == c
+            a, b = w.a[own], w.b[own]
+            after = times[np.searchsorted(times, b)] - a
+            apart[own] = np.minimum(after, b - times[np.searchsorted(times, a, side="right") - 1])
         return apart
 
 

@@ -78,7 +78,9 @@ def test_a_contact_that_would_be_drawn_is_not_certified():
     assert any(x.contact == 0 for x in audit(replace(run, scene=drawn)).windows)
 
 
-@pytest.mark.parametrize("name", ["coulomb-oscillator", "mass-on-belt", "mass-on-shaken-belt", "slipping-wheel"])
+@pytest.mark.parametrize(
+    "name", ["coulomb-oscillator", "mass-on-belt", "mass-on-shaken-belt", "slipping-wheel"]
+)
 def test_scenes_that_rub_along_a_line_are_certified(name):
     assert audit(simulate(scenes.CATALOGUE[name].make(), EventDriven())).share == 1.0
 
