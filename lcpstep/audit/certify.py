@@ -144,17 +144,22 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
         rough = False
         good, lower = (s.gap >= -s.error, s.gap) if np.all(w.closed) else judged(w, s)
         wrong = ((s.at_b < -s.own) & ~w.last) | ((s.at_a < -s.own) & ~w.first)
+        if problem is not p.problem:  # of a run that has its modes from other forces: only said, not taken
+            vain, wrong = wrong, np.zeros(len(w.a), dtype=bool)
         h = w.b - w.a
         drifted = s.error - s.own  # beside an event the motion counts as it was computed
-        good |= at_event(p, w, lower + drifted > -ERRORS * small)
+        if not good.all():
+            good |= at_event(p, w, lower + drifted > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))
         for i in np.flatnonzero(wrong):
             inside = float(w.a[i] if s.at_a[i] < -s.own[i] and not w.first[i] else w.b[i])
             tally.found.append(Found(inside, int(w.c[i]), float(w.a[i])))
         left = ~(good | wrong)
-        vain = left & (
-            in_vain(p, w, s, lower) if isinstance(problem, Flat) else False
-        )  # others: errors shrink
+        if problem is p.problem:  # others than flat ones: errors shrink
+            vain = left & False
+            if isinstance(problem, Flat) and left.any():
+                vain = in_vain(p, w, s, lower)
+        vain = vain & left
         end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
         if np.any(end):
             narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep.audit.motion import Bounds, Polynomials, derivatives
+from lcpstep.audit.motion import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval
 
@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 STILL = 1e-9  # of the velocities: what slides no faster in the middle of a piece sticks
 SINGULAR = 1e-10  # of the largest singular value: contacts that share their forces in several ways
 ROUNDING = 1e-13  # of the numbers that a guard is made of
+NOISE = 4e-15  # of the positions, which velocities are differences of
 WAVES = 4  # cosine and sine of the force, and of the belts
 
 
@@ -59,6 +60,7 @@ class Cones:
         contacts: Any = scene.contacts
         friction, n = contacts.friction, scene.n_c
         self.motion, self.closed, self.error = motion, closed, error
+        self.rates = rates(motion)
         self.M_inverse, self.C, self.K = np.linalg.inv(system.M), np.asarray(system.C), np.asarray(system.K)
         self.G, self.T = np.asarray(contacts.G, dtype=float), np.asarray(friction.tangent, dtype=float)
         self.mu = np.asarray(friction.mu, dtype=float)
@@ -77,12 +79,13 @@ class Cones:
         """Of every contact in every piece: the direction in which it slides, 0 where it sticks, (m, n_c)."""
         t, h, w = self.motion.t, np.diff(self.motion.t), self.omega[1]
         k = np.arange(len(h))
-        half = self.motion.windows(k, t[:-1] + 0.4 * h, t[:-1] + 0.6 * h)[:, [0, -1]]
+        half, d = self.motion.windows(k, t[:-1] + 0.5 * h, t[1:]), 2.0 * self.motion.degree
         with np.errstate(all="ignore"):
-            middle = np.nan_to_num((half[:, 1] - half[:, 0]) / (0.2 * h)[:, None], posinf=0.0, neginf=0.0)
+            middle = np.nan_to_num(d * (half[:, 1] - half[:, 0]) / h[:, None], posinf=0.0, neginf=0.0)
             loose = np.nan_to_num(ROUNDING * np.max(np.abs(half), axis=(1, 2)) / h, posinf=0.0)
         out = np.zeros((len(h), len(self.G)))
-        for velocity, at, noise in ((v[:-1], t[:-1], 0.0), (v[1:], t[1:], 0.0), (middle, t[:-1] + 0.5 * h, loose)):
+        known = (v[:-1], t[:-1], 0.0), (v[1:], t[1:], 0.0), (middle, t[:-1] + 0.5 * h, loose)
+        for velocity, at, noise in known:
             waves = np.outer(np.cos(w * at), self.slip[1]) + np.outer(np.sin(w * at), self.slip[2])
             u = velocity @ self.T.T + self.slip[0] + waves
             size = 1.0 + np.max(np.abs(velocity), axis=1)[:, None] + sum(np.abs(x) for x in self.slip)
@@ -91,7 +94,7 @@ class Cones:
         return out
 
     def guards(self, key: tuple[int, ...]) -> Array | None:
-        """Of one pattern of modes: rows (q, v, 1, waves), (guards, 2 n_q + 1 + WAVES), three a contact; None: unknown.
+        """Of one pattern of modes: rows of what (q, v, 1, waves) count, (n_c, 3, 2 n_q + 1 + WAVES); None: unknown.
 
         key : of every contact 2 where it is open, else its direction
         """
@@ -138,47 +141,68 @@ class Cones:
     def seen(self, w: Windows, *, rough: bool) -> Seen:
         """The smallest guard over windows, by its ends and how it bends in between, or by its own bounds."""
         n, h, (rows, known) = len(self.K), w.b - w.a, self.rows(w)
-        q = self.motion.windows(w.k, w.a, w.b)
-        v = self.motion.degree * np.diff(q, axis=1) / h[:, None, None]
+        q, v, a, j = (x.windows(w.k, w.a, w.b) for x in self.rates)
+        whole = self.motion.t[w.k + 1] - self.motion.t[w.k]
         waves = [wave(x, Interval(w.a, w.b)) for x in self.omega]
         sizes = np.max(np.abs(q), axis=1), np.max(np.abs(v), axis=1)
         lower, at = np.full(len(h), np.inf), np.full((2, len(h)), np.inf)
         error = np.zeros(len(h))
         for g in range(3):
             row = rows[:, g]
-            parts = [derivatives(np.einsum("nki,ni->nk", x, row[:, j : j + n]), h) for x, j in ((q, 0), (v, n))]
-            ends = np.stack([np.sum(row[:, :n] * q[:, k] + row[:, n : 2 * n] * v[:, k], axis=1) for k in (0, -1)])
+            parts = [along(x, y, row[:, i : i + n]) for x, y, i in ((q, a, 0), (v, j, n))]
+            ends = np.stack(
+                [np.sum(row[:, :n] * q[:, k] + row[:, n : 2 * n] * v[:, k], axis=1) for k in (0, -1)]
+            )
             size = np.abs(row[:, 2 * n]) + sum(
-                np.sum(np.abs(row[:, j : j + n]) * x, axis=1) for j, x in ((0, sizes[0]), (n, sizes[1]))
+                np.sum(np.abs(row[:, i : i + n]) * x, axis=1) for i, x in ((0, sizes[0]), (n, sizes[1]))
             )
             spread = np.sum(np.abs(row[:, : 2 * n]), axis=1)
+            noise = NOISE * self.motion.degree / whole * np.sum(np.abs(row[:, n : 2 * n]) * sizes[0], axis=1)
             for k, (cosine, sine, values) in enumerate(waves):
-                a, b = row[:, 2 * n + 1 + 2 * k], row[:, 2 * n + 2 + 2 * k]
-                parts += [scaled(cosine, a), scaled(sine, b)]
-                ends = ends + a * values[0] + b * values[1]
-                size = size + np.abs(a) + np.abs(b)
+                c, s = row[:, 2 * n + 1 + 2 * k], row[:, 2 * n + 2 + 2 * k]
+                parts += [scaled(cosine, c), scaled(sine, s)]
+                ends = ends + c * values[0] + s * values[1]
+                size = size + np.abs(c) + np.abs(s)
             ends = ends + row[:, 2 * n]
-            place, curve = sum(x.place.lo for x in parts) + row[:, 2 * n], sum(x.curve.hi for x in parts)
+            place, curve = sum(x.lo for x, _ in parts) + row[:, 2 * n], sum(y.hi for _, y in parts)
             bent = np.minimum(*ends) - 0.125 * np.maximum(curve, 0.0) * h * h
-            own = self.error[0] * spread + (self.error[1] + ROUNDING) * size
+            own = self.error[0] * spread + (self.error[1] + ROUNDING) * size + noise
             lower, at = np.minimum(lower, np.maximum(place, bent) + own), np.minimum(at, ends)
             error = np.maximum(error, own)
         lower, unknown = np.where(known, lower - error, -np.inf), np.full(len(h), np.inf)
-        no, open_ = np.zeros(len(h), dtype=bool), np.maximum(at, -error)  # nothing is called missed here
-        return Seen(lower, -unknown, unknown, -unknown, unknown, *open_, error, error, no, error)
+        no = np.zeros(len(h), dtype=bool)
+        return Seen(lower, -unknown, unknown, -unknown, unknown, at[0], at[1], error, error, no, error)
 
 
-def wave(omega: float, t: Interval) -> tuple[Bounds, Bounds, Array]:
-    """Cosine and sine of omega t over windows, with their derivatives, and their values (2, 2, n) at both ends."""
+def rates(motion: Polynomials) -> list[Polynomials]:
+    """The motion with its first three derivatives."""
+    found, h = [motion], np.where(np.diff(motion.t) > 0.0, np.diff(motion.t), np.inf)[:, None, None]
+    for _ in range(3):
+        x = found[-1]
+        found.append(Polynomials(x.t, x.degree * np.diff(x.B, axis=1) / h))
+    return found
+
+
+def along(x: Array, bend: Array, row: Array) -> tuple[Interval, Interval]:
+    """Bounds of a row's product with polynomials (n, degree + 1, n_q), and with their second derivatives."""
+    found = []
+    for y in (x, bend):
+        z = np.einsum("nki,ni->nk", y, row)
+        slack = ROUNDING * np.max(np.abs(z), axis=1)
+        found.append(Interval(z.min(axis=1) - slack, z.max(axis=1) + slack))
+    return found[0], found[1]
+
+
+def wave(omega: float, t: Interval) -> tuple[tuple[Interval, Interval], tuple[Interval, Interval], Array]:
+    """Cosine and sine of omega t over windows, each with its second derivative; values (2, 2, n) at both ends."""
     angle = omega * t
     cosine, sine = angle.cos(), angle.sin()
     values = np.stack([[f(omega * x) for x in (t.lo, t.hi)] for f in (np.cos, np.sin)])
-    return (
-        Bounds(cosine, -omega * sine, -omega * omega * cosine),
-        Bounds(sine, omega * cosine, -omega * omega * sine), values,
-    )  # fmt: skip
+    bend = -omega * omega
+    return (cosine, bend * cosine), (sine, bend * sine), values
 
 
-def scaled(x: Bounds, factor: Array) -> Bounds:
-    """The same quantity, times a number of every window."""
-    return Bounds(*[y * Interval(factor, factor) for y in x])
+def scaled(x: tuple[Interval, Interval], factor: Array) -> tuple[Interval, Interval]:
+    """The same bounds, times a number of every window."""
+    own = Interval(factor, factor)
+    return x[0] * own, x[1] * own

@@ -17,8 +17,8 @@ cdef class Curve(Gap):
 
 cdef double casteljau(double* x, Py_ssize_t degree, double share, double* part) noexcept nogil
 cdef void differences(Curve g, double size) noexcept nogil
-@cython.locals(whole=bint, good=bint, drifts=bint, i=Py_ssize_t, n=Py_ssize_t, n_c=Py_ssize_t, n_q=Py_ssize_t, n_cuts=Py_ssize_t,
-               rows=Py_ssize_t, degree=Py_ssize_t, step=Py_ssize_t)
+@cython.locals(whole=bint, good=bint, drifts=bint, i=Py_ssize_t, n=Py_ssize_t, n_c=Py_ssize_t, n_q=Py_ssize_t,
+               n_cuts=Py_ssize_t, rows=Py_ssize_t, degree=Py_ssize_t, step=Py_ssize_t)
 cpdef object clear_curves(
     Curve g, object t, object B, object G, object offset, object obstacle, object absolute, double relative,
     object drift, object touched, object skipped, object cuts, object found

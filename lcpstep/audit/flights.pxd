@@ -13,7 +13,7 @@ cdef Py_ssize_t UNKNOWN, PRESSED
 cdef class Swing(Gap):
     cdef Flight s
     cdef readonly bint swings, known
-    cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bend, fast
+    cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bound, fast
     cdef double size(self, double z, double w) noexcept nogil
     cdef void begin(self, double t, double y, double w) noexcept nogil
 

@@ -30,8 +30,8 @@ ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
 class Swing(Gap):
     """The gap of a flight in closed form.
 
-    amplitude   of the oscillation that is left of a flight, a bound from its start on; with `size`, how large the
-        numbers are that its positions are made of, `bend` and `middle`, between which and beyond G y'' does not go
+    amplitude   of the oscillation that is left of a flight, a bound from its start on; with `most`, how large the
+        numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go
     fast        the largest velocity of what moves by itself
     force_at, force    a time, and the force over the mass then, times G, as it was last asked for
 
@@ -50,7 +50,7 @@ class Swing(Gap):
         self.per_root = 1.0 / sqrt(s.w2 - s.delta * s.delta) if self.swings else 0.0
         self.amplitude, self.force, self.force_at = 0.0, 0.0, nan
         self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
-        self.most, self.bend = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
+        self.most, self.bound = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
         self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
 
     def at(self, tau: float) -> None:
@@ -69,7 +69,7 @@ class Swing(Gap):
             rest, rate = steady(self.s, t)
             self.amplitude = (1.0 + SLACK) * self.size(y - rest - self.height, w - rate)
             self.most = self.amplitude + self.forced + abs(self.height)
-            self.bend = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
+            self.bound = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
 
 
 def clear_flights(
@@ -131,7 +131,7 @@ def at_once(
         size = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h + g.forced
     g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset) + max(abs(s), abs(s_b)))
     g.error += late(max(abs(t), abs(t + h)), g.fast)
-    begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bend, g.middle + g.bend
+    begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bound, g.middle + g.bound
     lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
     if lowest > g.cells.whole_top[0]:
         return True
@@ -153,7 +153,7 @@ def at_once(
     if not (g.swings and g.end_known):
         return False
     fourth = abs(o.G) * (g.amplitude * o.w2 * o.w2 + g.turning * o.Omega * o.Omega)
-    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bend
+    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bound
     low, high = min(a, b) - margin, max(a, b) + margin
     return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
 
@@ -169,7 +169,7 @@ def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
     """The motion from this absolute state on, and how large its fourth derivative can be."""
     leave_from(s, t, y, w)
     fourth = g.amplitude * s.w2 * s.w2 + g.turning * s.Omega * s.Omega
-    g.fourth, g.loose = (1.0 + SLACK) * abs(s.G) * fourth, SLACK * g.bend
+    g.fourth, g.loose = (1.0 + SLACK) * abs(s.G) * fourth, SLACK * g.bound
     if g.swings:
         g.loose += PRESSING * abs(s.G * s.f0)
 

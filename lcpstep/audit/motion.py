@@ -111,14 +111,29 @@ def derivatives(x: Array, h: Array) -> Bounds:
 def by_steps(t: Array, q: Array, F: Array, length: Array) -> Polynomials:
     """The dense output of Runge-Kutta steps, see `rungekutta.RungeKutta.at`; F (m, 7, 2 n_q) after each state."""
     n, degree = q.shape[1], F.shape[1]
+    h, step = np.diff(t), np.where(length > 0.0, length, 1.0)
+    B = q[:-1, None] + np.matmul(_whole(degree), F[:, :, :n])
+    cut = np.flatnonzero(h != step)  # by an event
+    if len(cut):
+        B[cut] = q[cut, None] + np.matmul(_parts(h[cut] / step[cut], degree), F[cut, :, :n])
+    return Polynomials(t, B)
+
+
+@functools.cache
+def _whole(degree: int) -> Array:
+    """From the coefficients of a whole step's dense output to Bernstein's, (degree + 1, degree)."""
+    return _parts(np.ones(1), degree)[0]
+
+
+def _parts(shares: Array, degree: int) -> Array:
+    """The same of these first shares of steps, (m, degree + 1, degree)."""
     x, inverse = _nodes(degree)
-    h = np.where(length > 0.0, length, 1.0)
-    share = x[None, :] * (np.diff(t) / h)[:, None]
-    moved = np.zeros((len(F), degree + 1, n))
+    share, terms = x * shares[:, None], np.empty((len(shares), degree + 1, degree))
+    factor = np.ones(share.shape)
     for k in range(degree):
-        factor = share if k % 2 == 0 else 1.0 - share
-        moved = (moved + F[:, None, degree - 1 - k, :n]) * factor[:, :, None]
-    return Polynomials(t, np.matmul(inverse, q[:-1, None] + moved))
+        factor = factor * (share if k % 2 == 0 else 1.0 - share)
+        terms[:, :, k] = factor
+    return np.asarray(np.matmul(inverse, terms))
 
 
 def parabolas(t: Array, q: Array, v: Array, a: Array) -> Polynomials:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from lcpstep.events.flight.run import Flights
 from lcpstep.events.general.run import Moved
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.states import extremes
-from lcpstep.model import model
+from lcpstep.model import looked_at
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.trajectory import Kind, Trajectory
 from lcpstep.turns import turns
@@ -57,7 +58,7 @@ class Pieces:
 
     def __init__(self, run: Trajectory) -> None:
         self.run, self.scene = run, run.scene
-        self.m = getattr(run.dense, "model", None) or model(self.scene)
+        self.m = getattr(run.dense, "model", None) or looked_at(self.scene)
         found = turns(self.scene)
         self.cuts = repeated(found.stops, self.scene.period, self.scene.t_span)
         self.motion, self.t, mode, error = moved(run, self.m)
@@ -93,7 +94,7 @@ class Pieces:
             self.touched[:-1] |= self.closed
 
     def added_up(self) -> Array | None:
-        """What the steps have added up, (m, n_q), of methods that choose none by their error; see `drift`, `missed`."""
+        """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
         run, dense = self.run, self.run.dense
         if isinstance(dense, Bent):
             return drift(run, self.m, dense.jumps, self.cuts)
@@ -101,17 +102,19 @@ class Pieces:
             return None
         return missed(run, self.m, self.motion, self.closed, self.cuts)
 
+    @functools.cached_property
+    def events(self) -> list[Array]:
+        """The times of every contact's events, between minus and plus infinity."""
+        return [np.concatenate([[-np.inf], self.t[x], [np.inf]]) for x in self.touched.T]
+
     def to_event(self, w: Windows) -> Array:
         """How far windows reach from the nearest event of their contact, in whichever piece it lies [s]."""
-        apart = np.full(len(w.a), np.inf)
-        for c in range(self.scene.n_c):
-            own, times = np.flatnonzero(w.c == c), self.t[self.touched[:, c]]
-            if not (len(own) and len(times)):
-                continue
-            later = np.searchsorted(times, w.b[own])
-            after = np.append(times, np.inf)[later] - w.a[own]
-            before = w.b[own] - np.insert(times, 0, -np.inf)[np.searchsorted(times, w.a[own], side="right")]
-            apart[own] = np.minimum(after, before)
+        apart = np.empty(len(w.a))
+        for c, times in enumerate(self.events):
+            own = w.c == c
+            a, b = w.a[own], w.b[own]
+            after = times[np.searchsorted(times, b)] - a
+            apart[own] = np.minimum(after, b - times[np.searchsorted(times, a, side="right") - 1])
         return apart
 
 

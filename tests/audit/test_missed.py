@@ -1,4 +1,4 @@
-"""What steps of order four, and those with friction, miss: the estimate against closed forms, and what is certified."""
+"""What steps of order four, and with friction, miss: the estimate against closed forms, and certificates."""
 
 import math
 from dataclasses import replace

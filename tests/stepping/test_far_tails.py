@@ -1,4 +1,4 @@
-"""Belts and tables with a pulse whose far tail is next to nothing: rounding is not measured by what vanishes with it."""
+"""Belts and tables with a pulse of far tails: rounding is not measured by what vanishes with them."""
 
 import math
 
