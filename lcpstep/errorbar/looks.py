@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST, STEPS = 200, 600, 3  # breaks besides the events: one in so many steps, between two bounds
-EVEN = 3  # of them one in so many at even times
+LEAST, MOST, NUMBERS = 200, 600, 2400  # breaks besides the events, so many numbers between two bounds
+EVEN = 6  # and one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 MANY = 600  # events; of more only so many are breaks
 JUMP = (
@@ -51,7 +51,7 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)
-    most = min(max(LEAST, run.counts.steps // STEPS), MOST)
+    most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
         return Looks(np.union1d(_telling(run, end, most), even), (True, False), False, True, even)
