@@ -115,7 +115,8 @@ def in_closed_form(scene: Scene) -> bool:
 def _constant(scene: Scene) -> bool:
     """Whether the accelerations of a linear system are constant, and its obstacles stand still."""
     s: Any = scene.system
-    moves = s.frame is not None or (scene.contacts is not None and scene.contacts.motion is not None)
+    c: Any = scene.contacts
+    moves = s.frame is not None or (c is not None and c.motion is not None)
     turns = s.force.omega != 0.0 and any(np.any(x) for x in s.force.terms(scene.n_q)[1:])
     return not (moves or turns or any(abs(x).max() > 0.0 for x in (s.C, s.K)))
 

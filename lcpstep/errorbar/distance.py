@@ -165,12 +165,10 @@ def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: A
     if len(some):
         between = 0.5 * (some[:, 0] + some[:, 1])
         if look.kept[1]:  # the other run is not known there: nor what one jumps by while it waits
-            times = np.clip(
-                np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1]), run.t[0], run.t[-1]
-            )
-            jumps = np.abs(np.diff(_speeds(m, run, times.ravel()), axis=0)).reshape(-1)
-            jumps = np.append(jumps, np.zeros(added.shape[1])).reshape(len(some), 4, -1)
-            apart = np.maximum(jumps[:, 0], jumps[:, 2])
+            both_sides = np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1])
+            speeds = _speeds(m, run, np.clip(both_sides, run.t[0], run.t[-1]).ravel())
+            sides = speeds.reshape(len(some), 4, -1)
+            apart = np.abs(sides[:, 1::2] - sides[:, ::2]).max(axis=1)
         else:
             apart = np.abs(_speeds(m, run, between) - _speeds(m, runs[1], between))
         np.add.at(added, np.searchsorted(t, some[:, 1]), apart * np.diff(some))
