@@ -41,7 +41,7 @@ FAR = 0.03  # the same of event-driven runs that are tighter than usual
 LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
-LONG, ROWS = 4.0, 400  # steps of the event-driven run in an exact one, and such steps in a span at least
+LONG, ROWS = 4.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 

@@ -16,7 +16,7 @@ from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 LEAST, MOST, NUMBERS = 200, 600, 2400  # breaks besides the events, so many numbers between two bounds
-EVEN = 6  # and one in so many at even times
+EVEN = 3  # and one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it are all over (0, 1), and at no step of one size
 MANY = 600  # events; where there are more, breaks are anywhere: between events of a period they tell of one phase
