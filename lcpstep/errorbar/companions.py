@@ -41,7 +41,7 @@ FAR = 0.03  # the same of event-driven runs that are tighter than usual
 LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
 PIECES = 4.0  # of order 4 in a step of the event-driven run
-LONG, ROWS = 4.0, 400  # steps of the event-driven run in an exact one, and such steps in a span at least
+LONG, ROWS = 4.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 
@@ -115,7 +115,8 @@ def in_closed_form(scene: Scene) -> bool:
 def _constant(scene: Scene) -> bool:
     """Whether the accelerations of a linear system are constant, and its obstacles stand still."""
     s: Any = scene.system
-    moves = s.frame is not None or (scene.contacts is not None and scene.contacts.motion is not None)
+    c: Any = scene.contacts
+    moves = s.frame is not None or (c is not None and c.motion is not None)
     turns = s.force.omega != 0.0 and any(np.any(x) for x in s.force.terms(scene.n_q)[1:])
     return not (moves or turns or any(abs(x).max() > 0.0 for x in (s.C, s.K)))
 

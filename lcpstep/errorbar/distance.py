@@ -116,10 +116,11 @@ def distance(
     between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
     between, hidden = (_hidden(x, times, look.kept[0]) for x in (between, left_out))
     out = within(left_out, times)
+    struck = _near(times, runs[1], around) if look.kept[0] else False
     jumping = apart[:, n_q:].copy()
     apart[out, n_q:] = 0.0
     largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * look.nodes] + floor
-    apart[:, n_q:] = jumping[_before(within(hidden, times))] if look.jumps else jumping
+    apart[:, n_q:] = jumping[_before(within(hidden, times) | struck)] if look.jumps else jumping
     integral = _integral(t, apart, look.nodes)
     if look.even is not None:
         integral = _evened(t, apart, integral, look.even)
@@ -142,9 +143,17 @@ def _hidden(intervals: Array, times: Array, alone: bool) -> Array:
     return intervals[np.diff(np.searchsorted(times, intervals))[:, 0] <= HIDDEN]
 
 
+def _near(times: Array, run: Trajectory, around: float) -> NDArray[np.bool_]:
+    """Times so near to an event of a run that whether it has passed is rounding."""
+    events = np.concatenate([[-math.inf], run.impacts["time"], [math.inf]])
+    k = np.searchsorted(events, times)
+    return np.asarray(np.minimum(times - events[k - 1], events[k] - times) <= around)
+
+
 def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Places of the last times before each that are not left out."""
-    return np.asarray(np.maximum.accumulate(np.where(out, 0, np.arange(len(out)))))
+    """Places of the last times before each that are not left out; of the first one where there is none."""
+    last = np.maximum.accumulate(np.where(out, -1, np.arange(len(out))))
+    return np.asarray(np.where(last < 0, np.argmin(out), last))
 
 
 def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: Array, around: float) -> Array:
@@ -156,12 +165,10 @@ def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: A
     if len(some):
         between = 0.5 * (some[:, 0] + some[:, 1])
         if look.kept[1]:  # the other run is not known there: nor what one jumps by while it waits
-            times = np.clip(
-                np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1]), run.t[0], run.t[-1]
-            )
-            jumps = np.abs(np.diff(_speeds(m, run, times.ravel()), axis=0)).reshape(-1)
-            jumps = np.append(jumps, np.zeros(added.shape[1])).reshape(len(some), 4, -1)
-            apart = np.maximum(jumps[:, 0], jumps[:, 2])
+            both_sides = np.repeat(some, 2, axis=1) + around * np.array([-1, 1, -1, 1])
+            speeds = _speeds(m, run, np.clip(both_sides, run.t[0], run.t[-1]).ravel())
+            sides = speeds.reshape(len(some), 4, -1)
+            apart = np.abs(sides[:, 1::2] - sides[:, ::2]).max(axis=1)
         else:
             apart = np.abs(_speeds(m, run, between) - _speeds(m, runs[1], between))
         np.add.at(added, np.searchsorted(t, some[:, 1]), apart * np.diff(some))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -24,8 +23,11 @@ Array = NDArray[np.float64]
 Found = list[tuple[Companion, Trajectory]]
 LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
 STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
-PART = 0.125  # of the span, in which a run that takes so long [s] is held against the best companion first
-LASTING, SAVED = 0.01, 0.7  # of its time: a best companion that takes longer is worth a looser one
+PART, MANY_STEPS = (
+    0.125,
+    20_000,
+)  # of the span of a run in so many steps, that is held against the best one first
+SAVED = 0.7  # of its forces: a best companion that evaluates more is worth a looser one
 SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse
 
@@ -45,30 +47,22 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
         return unknown(run, "only one state was kept")
     start, end = float(run.t[0]), _reached(run)
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
+    error = None
+    if every and run.counts.steps > MANY_STEPS and isinstance(run.method, (Moreau, Located)):
+        soon, error = _soon(run, seconds, wide)
+        if soon is not None:
+            return soon
     look: Looks | None = None
     known: dict[Companion, Trajectory | None] = {}
     bar, reach, clear = unknown(run, "no companion"), start, True
-    error = None
-    steps = isinstance(run.method, (Moreau, Located))
-    if every and seconds > LASTING and steps and not in_closed_form(run.scene):
-        begin = time.process_time()
-        soon = _soon(run, seconds, wide)
-        if soon is not None and soon.reason:
-            return soon
-        dear = (time.process_time() - begin) / PART > SAVED * seconds
-        error = soon.position.sup if soon is not None and dear else 0.0
     for group in companions(run, error):
         for c in group:
             if c not in known:
                 look = look or (looks(run, run, every, end) if c.seen or not every else None)
                 known[c] = followed(c, scene, _kept(look, every), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
-        if (
-            known[group[0]] is None
-            or not found
-            or _reach(found) < reach
-            or (_reach(found) == reach and clear)
-        ):
+        told = len(found) > 0 and known[group[0]] is not None
+        if not told or _reach(found) < reach or (_reach(found) == reach and clear):
             continue
         bar, reach = against(run, every, found, wide=wide, look=look), _reach(found)
         clear = group[0].tells(run, bar)
@@ -77,15 +71,25 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     return bar
 
 
-def _soon(run: Trajectory, seconds: float, wide: Array | None) -> ErrorBar | None:
-    """The bar over a first part of a long run, None where it is not known; its reason is that of the whole, or ""."""
+def _soon(run: Trajectory, seconds: float, wide: Array | None) -> tuple[ErrorBar | None, float | None]:
+    """The bar of a long run where it ends within its first part; else the error there, or what is none.
+
+    The error is what a looser companion is chosen by: 0 where the best one has less to do than the run.
+    """
+    if in_closed_form(run.scene) and not isinstance(run.method, Moreau):  # the best is cheap then
+        return None, None
     start, end = float(run.t[0]), _reached(run)
     part = replace(run.scene, t_span=(start, start + PART * (end - start)))
     best = Companion(BEST)
     x = followed(best, part, Kept(1, False, np.zeros(0)), seconds)
     if x is None or x.status != Status.DONE:
-        return None
-    return against(run, True, [(best, x)], wide=wide, goes_on=True)
+        return None, None
+    bar = against(run, True, [(best, x)], wide=wide, goes_on=True)
+    if bar.reason:
+        return bar, None
+    work = max(run.counts.force_evaluations, run.counts.steps)
+    dear = x.counts.force_evaluations / PART > SAVED * work
+    return None, bar.position.sup if dear else 0.0
 
 
 def _kept(look: Looks | None, every: bool) -> Kept:

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST, STEPS = 200, 600, 3  # breaks besides the events: one in so many steps, between two bounds
-EVEN = 3  # of them one in so many at even times
+LEAST, MOST, NUMBERS = 200, 600, 2400  # breaks besides the events, so many numbers between two bounds
+EVEN = 3  # and one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
-MANY = 600  # events; of more only so many are breaks
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it are all over (0, 1), and at no step of one size
+MANY = 600  # events; where there are more, breaks are anywhere: between events of a period they tell of one phase
 JUMP = (
     10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
 )
@@ -51,14 +52,20 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)
-    most = min(max(LEAST, run.counts.steps // STEPS), MOST)
+    most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
         return Looks(np.union1d(_telling(run, end, most), even), (True, False), False, True, even)
     events, even = event_times(run, other), np.linspace(float(run.t[0]), end, most // EVEN)
-    some = events if len(events) <= MANY else events[:: 1 + len(events) // MANY]
+    many = len(events) > MANY
+    some = uneven(float(run.t[0]), end, MANY) if many else events
     t = np.unique(np.concatenate([even, some, _after(some, run, most), _telling(run, end, most)]))
-    return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, len(some) < len(events))
+    return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, many)
+
+
+def uneven(start: float, end: float, n: int) -> Array:
+    """Times all over a span in the ratio of no period."""
+    return start + (end - start) * np.sort(np.mod(GOLDEN * np.arange(1, n + 1), 1.0))
 
 
 def seen(look: Looks, end: float) -> Looks:

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, LinearSystem, Scene
+from lcpstep.errorbar.looks import uneven
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-BETWEEN = 300  # states between steps
-GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # multiples of it are even in (0, 1), and at no step of one size
+FEW = 4000  # steps, which are run again instead: that tells more
+BETWEEN = 600  # states between steps
 
 
 def widened(method: Any, scene: Scene, kept: Kept) -> Kept:
@@ -26,8 +27,9 @@ def widened(method: Any, scene: Scene, kept: Kept) -> Kept:
     if rubs or scene.n_j > 0 or (method.order == 2 and (method.tolerance is None or _plain(scene))):
         return kept
     start, end = scene.t_span
-    share = np.sort(np.mod(GOLDEN * np.arange(1, BETWEEN + 1), 1.0))
-    return replace(kept, times=np.append(start, start + (end - start) * share))
+    if method.tolerance is None and end - start < FEW * method.h:
+        return kept
+    return replace(kept, times=np.append(start, uneven(start, end, BETWEEN)))
 
 
 def _plain(scene: Scene) -> bool:

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.judge.draw import draw
 from lagrangian import Scene, scenes
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errorbar import companions, estimate
+from lcpstep.errorbar.distance import _before
 from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
 from lcpstep.recording import Kept
 from lcpstep.stepping.pieces.run import Again
@@ -47,7 +49,7 @@ def test_states_between_steps_change_nothing_of_a_run(name):
     start, end = scene.t_span
     scene = replace(scene, t_span=(start, start + 0.2 * (end - start)))
     for method in DEAR:
-        method = replace(method, h=min(method.h, 0.01 * (end - start)))
+        method = replace(method, h=min(method.h, 4e-5 * (end - start)))
         kept = widened(method, scene, ALL)
         if kept is ALL or (method.order == "exact" and not companions.in_closed_form(scene)):
             continue
@@ -65,10 +67,10 @@ def test_states_between_steps_change_nothing_of_a_run(name):
 @pytest.mark.parametrize(
     ("scene", "method", "runs"),
     [
-        (scenes.impact_oscillator(t_end=20.0), Located(1e-2, 4), 2),  # none for states between steps
+        (scenes.impact_oscillator(t_end=20.0), Located(4e-3, 4), 2),  # none for states between steps
         (scenes.impact_oscillator(t_end=20.0), EventDriven(), 2),
         (scenes.bouncing_ball(t_end=2.0), Located(1e-2), 2),  # one companion is enough in closed form
-        (scenes.double_pendulum(t_end=2.0), Located(2e-3, 4), 2),
+        (scenes.double_pendulum(t_end=2.5), Located(5e-4, 4), 2),
     ],
     ids=str,
 )
@@ -81,7 +83,9 @@ def test_a_bar_takes_one_run_besides(monkeypatch, scene, method, runs):
 def test_the_bar_of_a_long_run_that_ends_early_takes_a_companion_over_a_part_alone(monkeypatch):
     scene, ends = scenes.rocking_block(t_end=100.0), []
     run = simulate(scene, Moreau(5e-3))
+    monkeypatch.setattr(estimate, "MANY_STEPS", 10**9)
     whole = estimate.error_bar(run, True, 0.0)
+    monkeypatch.setattr(estimate, "MANY_STEPS", 10_000)
     original = EventDriven.run
 
     def noted(self, scene, *more):
@@ -89,26 +93,36 @@ def test_the_bar_of_a_long_run_that_ends_early_takes_a_companion_over_a_part_alo
         return original(self, scene, *more)
 
     monkeypatch.setattr(EventDriven, "run", noted)
-    soon = estimate.error_bar(run, True, 1.0)
+    soon = estimate.error_bar(run, True, 0.0)
     assert soon.reason
     assert whole.until == pytest.approx(soon.until, rel=0.1)
     assert max(ends) == pytest.approx(estimate.PART * 100.0)
 
 
-def test_looks_are_fewer_in_a_short_run_and_tell_the_same():
+def test_looks_are_as_many_as_tell_the_error():
     scene = scenes.impact_oscillator(t_end=20.0)
-    short, long = (simulate(scene, Located(h), error=True).error for h in (2e-2, 1e-3))
-    assert len(short.t) < 0.8 * len(long.t)
     t = np.linspace(0.0, 20.0, 20_001)
-    for h, bar in ((2e-2, short), (1e-3, long)):
-        true = np.abs(simulate(scene, Located(h)).at(t)[0] - scene.exact(t)[0])
-        assert bar.position.sup == pytest.approx(np.max(true), rel=0.05)
-        assert bar.position.l1 == pytest.approx(np.trapezoid(true[:, 0], t), rel=0.05)
+    for h in (2e-2, 1e-3):
+        run = simulate(scene, Located(h), error=True)
+        true = np.abs(run.at(t)[0] - scene.exact(t)[0])
+        assert run.error.position.sup == pytest.approx(np.max(true), rel=0.05)
+        assert run.error.position.l1 == pytest.approx(np.trapezoid(true[:, 0], t), rel=0.05)
+
+
+def test_what_happens_at_the_start_alone_adds_nothing_to_the_integrals():
+    """Beads that come to rest against each other at once, by many impacts: other ones in the companion."""
+    d = draw(270623, 20)
+    run = simulate(d.scene(), Located(d.length / 5000.0, 4), error=True)
+    assert run.error.velocity.l1 < 1e-9
+
+
+def test_times_left_out_count_as_the_last_before():
+    assert _before(np.array([True, True, False, True, False, True])).tolist() == [2, 2, 2, 2, 4, 4]
 
 
 @pytest.mark.parametrize("method", [Located(5e-2), EventDriven(), Located(1e-1, 4)], ids=str)
 def test_of_many_events_a_part_tells_the_integrals(method, monkeypatch):
-    scene = scenes.elastic_ball(t_end=400.0)
+    scene = scenes.elastic_ball(t_end=2000.0)
     whole = simulate(replace(scene, q0=1.0 + 1e-7), method)
     few = estimate.against(
         whole, True, [(companions.Companion(EventDriven()), simulate(scene, EventDriven()))]
@@ -120,4 +134,4 @@ def test_of_many_events_a_part_tells_the_integrals(method, monkeypatch):
     )
     assert len(few.t) < len(all_of_them.t)
     assert few.velocity.l1 == pytest.approx(all_of_them.velocity.l1, rel=0.25)
-    assert few.position.l1 == pytest.approx(all_of_them.position.l1, rel=0.1)
+    assert few.position.l1 == pytest.approx(all_of_them.position.l1, rel=0.25)
