@@ -1,6 +1,7 @@
 """Tests of what is built are tests of its sources: refused where these have changed since.
 
-Drawn cases are the same at every run, so that a change is judged by itself; `--hypothesis-profile=random` draws others.
+Drawn cases are the same at every run, so that a change is judged by itself; `--hypothesis-profile=random` draws
+others.
 """
 
 import importlib.machinery

@@ -97,7 +97,9 @@ def test_the_woodpecker_through_impacts_sticking_slip_and_release(t_end):
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6), st.booleans())
-@example(221638, True)  # among the last of endless impacts one throws the other contact in at the same instant
+@example(
+    221638, True
+)  # among the last of endless impacts one throws the other contact in at the same instant
 def test_random_blocks_and_discs(seed, rough):
     scene = block(seed)
     if not rough:
