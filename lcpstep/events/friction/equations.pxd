@@ -1,12 +1,14 @@
 cimport cython
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
 from lcpstep.kernels.linear cimport positive_definite
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t LEANS, SLIDES, STICKS
+cdef double UNTOLD
 
 cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil
@@ -22,6 +24,7 @@ cdef void measure_velocities(Rubbing s, double* v) noexcept nogil
 cdef double size_of(Rubbing s, Py_ssize_t i, double* v) noexcept nogil
 cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
+@cython.locals(own=bint)
 cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil

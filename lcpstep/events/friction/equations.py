@@ -12,10 +12,13 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
     from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max
+
+UNTOLD = 4.0  # roundings of a time: what of it cannot be told
 
 
 def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
@@ -155,10 +158,15 @@ def gap_tolerance(s: Rubbing, c: int) -> float:
 
 
 def lift(s: Rubbing, c: int) -> None:
-    """Put q onto the surface of contact c, which it misses by no more than the tolerance."""
-    i = s.n_j + c
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance.
+
+    Along its own way where a time cannot tell the difference, so that gaps that close at one instant, as those of two
+    corners of a block, go on closing together.
+    """
+    i, g, u = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c]
+    own = s.rate[i] == 0.0 and u < 0.0 and abs(g) <= -UNTOLD * RESOLUTION * (abs(s.clock.t0) + s.length) * u
     for j in range(s.n_q):
-        s.q[j] -= s.MR[i * s.n_q + j] * s.gap[i] / s.W[i * s.n_r + i]
+        s.q[j] -= s.v[j] * g / u if own else s.MR[i * s.n_q + j] * g / s.W[i * s.n_r + i]
     s.gap[i] = 0.0
 
 

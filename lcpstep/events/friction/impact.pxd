@@ -13,7 +13,7 @@ from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after, inf, min
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
-cdef double SEEN, STILL, TOGETHER
+cdef double SEEN, STILL, LATE, TOGETHER
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(hit=bint)
