@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.trajectory import Trajectory
+from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
 LEAST, MOST, NUMBERS = 200, 600, 2400  # breaks besides the events, so many numbers between two bounds
@@ -59,7 +59,8 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
     events, even = event_times(run, other), np.linspace(float(run.t[0]), end, most // EVEN)
     many = len(events) > MANY
     some = uneven(float(run.t[0]), end, MANY) if many else events
-    t = np.unique(np.concatenate([even, some, _after(some, run, most), _telling(run, end, most)]))
+    between = _after(some, run, most), _left_out(run, most)
+    t = np.unique(np.concatenate([even, some, *between, _telling(run, end, most)]))
     return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, many)
 
 
@@ -92,6 +93,17 @@ def _after(events: Array, run: Trajectory, most: int) -> Array:
     some = np.concatenate([run.t[:1], events[:: 1 + len(events) // most], run.t[-1:]])
     halves = 0.5 ** np.arange(1, 2 + min(GRADES, most // len(some)))
     return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
+
+
+def _left_out(run: Trajectory, most: int) -> Array:
+    """The middle of the hops that the run no longer follows where chattering ends: there they are highest."""
+    log, found = run.impacts, [np.zeros(0)]
+    for c in np.unique(log["contact"]):
+        own = log[log["contact"] == c]
+        ends = np.flatnonzero(own["kind"][1:] == Kind.ACCUMULATION)
+        found.append(0.5 * (own["time"][ends] + own["time"][ends + 1]))
+    t = np.concatenate(found)
+    return t[:: 1 + len(t) // most]
 
 
 def event_times(run: Trajectory, other: Trajectory) -> Array:

@@ -135,3 +135,16 @@ def test_of_many_events_a_part_tells_the_integrals(method, monkeypatch):
     assert len(few.t) < len(all_of_them.t)
     assert few.velocity.l1 == pytest.approx(all_of_them.velocity.l1, rel=0.25)
     assert few.position.l1 == pytest.approx(all_of_them.position.l1, rel=0.25)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+def test_hops_that_are_no_longer_followed_are_in_the_bar_of_many_events(tolerance):
+    """Where chattering ends, the run keeps to the table, and the motion hops on for a few microseconds."""
+    scene = replace(scenes.chattering_table(), t_span=(0.0, 40.0))
+    run = simulate(scene, EventDriven(tolerance, tolerance), error=True)
+    true = simulate(scene, EventDriven(1e-13, 1e-13))
+    t = np.unique(np.concatenate([true.impacts.time, np.linspace(0.0, 40.0, 4001)]))
+    t = np.sort(np.concatenate([t, 0.5 * (t[1:] + t[:-1])]))
+    error = np.max(np.abs(run.at(t)[0] - true.at(t)[0]))
+    assert len(run.impacts) > 1000
+    assert 0.5 * error < np.max(run.error.position.largest) < 2.0 * error
