@@ -38,7 +38,8 @@ cdef void look(Model m, Plan plan, Work w, double t, double tau) noexcept nogil
 cdef double between(
     Model m, Plan plan, Work w, Py_ssize_t c, double t, double low, double high
 ) noexcept nogil
-@cython.locals(wanted=bint)
+@cython.locals(wanted=bint, taken=bint)
 cdef Py_ssize_t move(Model m, Plan plan, Work w, Record record, double t, double tau, bint to_end) noexcept nogil
-cdef void take_back(Plan plan, Work w, Record record, double t) noexcept nogil
+@cython.locals(taken=bint)
+cdef bint take_back(Plan plan, Work w, Record record, double t) noexcept nogil
 cdef bint penetrates(Plan plan, Work w) noexcept nogil

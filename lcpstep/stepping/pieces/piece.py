@@ -217,11 +217,12 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
         keep_times(w, record, now, end)
     elif wanted:
         remember(w)
+    taken = False
     if tau > 0.0:
         if not advance(m, plan, w, within(plan, w, now), tau):
             return NOT_FINITE
         if not (plan.plain or plan.trapezoidal):
-            take_back(plan, w, record, now + tau)
+            taken = take_back(plan, w, record, now + tau)
         for c in range(w.n_c):
             w.grounded[c] = 0
     w.sigma = w.end if to_end else w.sigma + tau
@@ -238,7 +239,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
                 respond(m, w)
             if not land(m, plan, w, record, now, tau):
                 return LCP_FAILED
-            if penetrates(plan, w):
+            if taken or penetrates(plan, w):
                 put_on_surface(m, plan, w, now + tau)
             measure(m, plan, w, now + tau)
     if wanted and not plan.plain:
@@ -248,14 +249,17 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
     return FINISHED
 
 
-def take_back(plan: Plan, w: Work, record: Record, t: float) -> None:
-    """Contacts let go at the base, that have not risen when their velocity points back, have never left.
+def take_back(plan: Plan, w: Work, record: Record, t: float) -> bool:
+    """Contacts let go at the base, that have not risen when their velocity points back, have never left: if any.
 
     The acceleration of the base lets them go; of what it grows to within the piece it tells nothing.
     """
+    taken = False
     for c in range(w.n_c):
         if w.grounded[c] == LEFT and w.status[c] == OPEN and w.gap[c] <= plan.slack and w.rate[c] < 0.0:
             stick(w, record, c, t)
+            taken = True
+    return taken
 
 
 def penetrates(plan: Plan, w: Work) -> bool:
