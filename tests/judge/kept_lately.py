@@ -229,4 +229,14 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven-loose",),
     ),
+    # The step ended before the impact that was located at its very end
+    "an impact at the end of a step, late in time": (
+        Description(
+            M=((0.722, 0.0), (0.0, 1.41)), q0=(-0.827, -0.431), v0=(0.0, 0.0), t_span=(43500.0, 43598.559), h=0.141,
+            G=((0.198, 0.98), (-0.64, 0.769)), offset=(0.5861259999999999, -0.197841), restitution=(0.0, 0.66),
+            constant=(-0.3198081423246304, -0.07688651711846006), general=True, spread=0.812, pendulum=0.17,
+            b=(1.93, 0.464), family="groove",
+        ),
+        ("located-4",),
+    ),
 }  # fmt: skip

@@ -1,6 +1,6 @@
 from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, MODE, Record
+from lcpstep.kernels.record cimport LEAD, MODE, TIME, Record
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport after, max, min
 from lcpstep.stepping.pieces.smooth cimport refactor, settle_state

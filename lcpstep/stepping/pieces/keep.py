@@ -7,7 +7,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, MODE, Record
+    from lcpstep.kernels.record import LEAD, MODE, TIME, Record
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import after, max, min
     from lcpstep.stepping.pieces.smooth import refactor, settle_state
@@ -74,7 +74,12 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
 
 
 def keep(w: Work, record: Record, t: float, jump: float) -> None:
-    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here."""
+    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here.
+
+    An event at the very end of a step may round to a time after it, which is that of the step's end then.
+    """
+    if record.row > 0:
+        t = max(t, record.last_row()[TIME])
     if record.take_back(t):
         row = after(record.rows, record.row * record.row_size)
         jump = max(jump, row[MODE])
