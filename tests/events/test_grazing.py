@@ -86,3 +86,30 @@ def test_an_oscillator_that_grazes_its_stop_is_seen_wherever_the_touch_falls(pha
     m = simulate(scene, EventDriven())
     assert m.status is Status.DONE
     assert np.all(scene.contacts.G[0, 0] * m.q + scene.contacts.offset > -1e-14)
+
+
+@pytest.mark.parametrize("start", [0.0, -3.0, -0.001, 1.0, 17.0, 300.0])
+@pytest.mark.parametrize("gap", [0.3, 0.0, -0.2])
+def test_a_mass_on_a_spring_comes_back_to_its_wall_once_a_period(start, gap):
+    """Beyond the wall the spring would bring it back as fast as it came: a period on, where the scan looks.
+
+    m y'' + k (y - gap) = 0, the wall at 0: with restitution e the flight from the wall lasts 2 (pi - phi) / omega,
+    tan phi = u / (omega gap), and less than that where the spring presses it to the wall.
+    """
+    k, e, u = 0.12, 0.34, 0.45
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=k, force=k * gap), contacts=LinearContacts(G=1.0, restitution=e), q0=0.0,
+        v0=u, t_span=(start, start + 220.0),
+    )  # fmt: skip
+    omega, times, t = math.sqrt(k), [], 0.0
+    while True:
+        t += 2.0 * (math.pi - math.atan2(u, omega * gap)) / omega
+        if t > 220.0 or u < 1e-7:
+            break
+        times.append(t)
+        u *= e
+    m = simulate(scene, EventDriven())
+    struck = m.impacts[m.impacts.kind == Kind.IMPACT]
+    if gap > 0.0:
+        assert len(struck) == len(times)
+    np.testing.assert_allclose(struck.time[:8] - start, times[:8], rtol=0, atol=1e-10)
