@@ -39,7 +39,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, after, inf, min
 
-ROUNDS = 5000  # problems of impacts at one instant
+ROUNDS = 1000  # problems of impacts at one instant
 SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
 TOGETHER = 1e-3  # of the tolerance of a gap
 LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
