@@ -269,15 +269,17 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
     """
     t0, change = s.clock.t0, 0.0
     tau = min(s.found * h, longest)
+    if tau <= 0.0:
+        return 0.0
     for k in range(REFINEMENTS + 1):
-        if tau <= 0.0:
-            return 0.0
         if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
             return UNKNOWN
         change = missing(s, g)
         if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
             break
-        tau = min(max(tau + change, 0.0), longest)
+        if tau + change <= 0.0:  # where it has begun: of a way this short the polynomial knows more than secants
+            break
+        tau = min(tau + change, longest)
     if not s.complete(t0, tau):
         return UNKNOWN
     return creep(s, g, tau, change, longest) if abs(change) <= NEAR * tau else tau
