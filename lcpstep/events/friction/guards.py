@@ -277,7 +277,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         change = missing(s, g)
         if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
             break
-        if tau + change <= 0.0:  # where it has begun: of a way this short the polynomial knows more than secants
+        if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
             break
         tau = min(tau + change, longest)
     if not s.complete(t0, tau):
