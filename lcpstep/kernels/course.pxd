@@ -13,6 +13,12 @@ cdef class Course:
     cdef Py_ssize_t move(self) noexcept nogil
 
 
+cdef class Stepwise(Course):
+    cdef double t0
+    cdef Py_ssize_t first, last
+    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
+
+
 cdef class Events(Course):
     cdef Record record
     cdef Tally tally

@@ -51,6 +51,21 @@ class Course:
         return DONE
 
 
+class Stepwise(Course):
+    """The same over steps of one size.
+
+    t0, first, last   time at which a step begins, its number, and that of the step to stop before
+    """
+
+    def __init__(self) -> None:
+        self.t0, self.first, self.last = 0.0, 0, 0
+
+    def take(self, t0: float, first: int, last: int) -> int:
+        """Steps up to last - 1, step `first` beginning at t0; says why it returned."""
+        self.t0, self.first, self.last = t0, first, last
+        return self.go_on(last)
+
+
 class Events(Course):
     """The same from event to event, of what has a record and a tally.
 

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics cimport external_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -22,16 +22,15 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.times cimport just_after, within
 
 
-cdef class Steps(Course):
+cdef class Steps(Stepwise):
     cdef public Plan plan
     cdef readonly Model m
     cdef readonly Work w
     cdef readonly Record record
     cdef bint gliding, ends
-    cdef double tau, t0
-    cdef Py_ssize_t found, first, last
+    cdef double tau
+    cdef Py_ssize_t found
     cdef Py_ssize_t start(self, double t) noexcept
-    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)
     cdef Py_ssize_t move(self) noexcept nogil

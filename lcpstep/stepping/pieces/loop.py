@@ -11,7 +11,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
     from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -77,14 +77,13 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     return FINISHED
 
 
-class Steps(Course):
+class Steps(Stepwise):
     """The loop over steps, and over the pieces of motion in a step; how a piece begins and goes on is an order's own.
 
     tau      how long the piece at hand is,
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
-    t0, first, last   time at which a step begins, its number, and that of the step to stop before
 
     Parameters
     ----------
@@ -92,10 +91,10 @@ class Steps(Course):
     """
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
+        super().__init__()
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
         self.tau, self.found = 0.0, NOBODY
-        self.t0, self.first, self.last = 0.0, 0, 0
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
@@ -114,11 +113,6 @@ class Steps(Course):
         """`take`, called from Python."""
         with cython.nogil:
             return self.take(t0, first, last)
-
-    def take(self, t0: float, first: int, last: int) -> int:
-        """Steps w.steps .. last - 1, step `first` beginning at t0; says why it returned."""
-        self.t0, self.first, self.last = t0, first, last
-        return self.go_on(last)
 
     def stage(self, goal: int) -> int:
         """Whether there are steps to be taken."""

@@ -1,4 +1,4 @@
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
+from lcpstep.kernels.course cimport AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle, total_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
@@ -13,18 +13,15 @@ cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
 cdef double LATE
 
 
-cdef class Steps(Course):
+cdef class Steps(Stepwise):
     cdef public Plan plan
     cdef readonly Model m
     cdef readonly State s
     cdef readonly Rows rows
     cdef readonly Record record
     cdef bint external, solved, single
-    cdef double t0
-    cdef Py_ssize_t first, last
     cpdef begin(self, double t, double side)
     cpdef Py_ssize_t run(self, double t0, Py_ssize_t first, Py_ssize_t last, bint solved)
-    cdef Py_ssize_t take(self, double t0, Py_ssize_t first, Py_ssize_t last) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     cdef Py_ssize_t move(self) noexcept nogil
 

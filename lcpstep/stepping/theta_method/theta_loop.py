@@ -8,7 +8,7 @@ from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
+    from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
     from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
@@ -20,12 +20,11 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.theta_step import take_step
 
 
-class Steps(Course):
+class Steps(Stepwise):
     """The loop over steps.
 
     external   the contacts' problems are handed out (NEED_LCP)
     solved     one of them has been solved
-    t0, first, last   time at which a step begins, its number, and that of the step to stop before
 
     Parameters
     ----------
@@ -33,8 +32,9 @@ class Steps(Course):
     """
 
     def __init__(self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, external: bool) -> None:
+        super().__init__()
         self.m, self.plan, self.s, self.rows, self.record, self.external = m, plan, s, rows, record, external
-        self.solved, self.t0, self.first, self.last = False, 0.0, 0, 0
+        self.solved = False
         single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
         self.single = single and rows.n == 1 and not rows.projected
 
@@ -47,11 +47,6 @@ class Steps(Course):
         self.solved = solved
         with cython.nogil:
             return self.take(t0, first, last)
-
-    def take(self, t0: float, first: int, last: int) -> int:
-        """Steps s.steps .. last - 1, step `first` beginning at t0; says why it returned."""
-        self.t0, self.first, self.last = t0, first, last
-        return self.go_on(last)
 
     def stage(self, goal: int) -> int:
         """Whether there are steps to be taken."""
