@@ -12,5 +12,6 @@ cdef class Clock:
     cdef Py_ssize_t n_corners
     cdef double after(self, double tau) noexcept nogil
     cdef void start_at(self, double t) noexcept nogil
+    cdef double untold(self, double length) noexcept nogil
     cdef double inside(self, double t) noexcept nogil
     cdef void find_corners(self, double t) noexcept nogil

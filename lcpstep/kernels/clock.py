@@ -59,6 +59,10 @@ class Clock:
         self.t0 = t
         self.t0_rest, self.rest = self.rest, 0.0
 
+    def untold(self, length: float) -> float:
+        """What cannot be told of a time at most `length` after the base: some roundings."""
+        return 4.0 * RESOLUTION * (abs(self.t0) + length)
+
     def inside(self, t: float) -> float:
         """A time moved off the ends of its smooth interval, where accelerations may jump."""
         margin = NUDGE * max(abs(t), self.scale)

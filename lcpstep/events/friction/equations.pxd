@@ -1,14 +1,12 @@
 cimport cython
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
-from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
 from lcpstep.kernels.linear cimport positive_definite
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t LEANS, SLIDES, STICKS
-cdef double UNTOLD
 
 cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil

@@ -12,13 +12,10 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
     from lcpstep.kernels.linear import positive_definite
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max
-
-UNTOLD = 4.0  # roundings of a time: what of it cannot be told
 
 
 def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
@@ -164,7 +161,7 @@ def lift(s: Rubbing, c: int) -> None:
     corners of a block, go on closing together.
     """
     i, g, u = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c]
-    own = s.rate[i] == 0.0 and u < 0.0 and abs(g) <= -UNTOLD * RESOLUTION * (abs(s.clock.t0) + s.length) * u
+    own = s.rate[i] == 0.0 and u < 0.0 and abs(g) <= -s.clock.untold(s.length) * u
     for j in range(s.n_q):
         s.q[j] -= s.v[j] * g / u if own else s.MR[i * s.n_q + j] * g / s.W[i * s.n_r + i]
     s.gap[i] = 0.0

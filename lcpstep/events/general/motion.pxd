@@ -5,7 +5,6 @@ from lcpstep.kernels.dynamics cimport gap_rounding
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef double UNTOLD
 
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil

@@ -11,8 +11,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
-UNTOLD = 4.0 * 2.0**-52  # of a time: what of it cannot be told
-
 
 def rebase(s: Mechanism, t: float) -> None:
     """Begin a new piece at time t with the state q, v."""
@@ -47,7 +45,7 @@ def arrive(s: Mechanism, c: int) -> None:
     So gaps that close at one instant, as in the apex of a wedge along which a body slides, go on closing together.
     """
     g, u = s.contact.gap[c], s.contact.speed[c]
-    if s.contact.rate[c] == 0.0 and u < 0.0 and abs(g) <= -UNTOLD * (abs(s.t0) + s.length) * u:
+    if s.contact.rate[c] == 0.0 and u < 0.0 and abs(g) <= -s.untold(s.length) * u:
         for j in range(s.n_q):
             s.q[j] -= s.v[j] * g / u
         for d in range(s.n_c):
