@@ -44,12 +44,12 @@ def to_observer_form(f: PiecewiseLinearMap) -> Array:
         raise NotContinuous(gap)
     A, C = np.asarray(f.A_minus), np.asarray(f.C)
     d = len(C)
-    O = np.array([C @ np.linalg.matrix_power(A, k) for k in range(d)])  # noqa: E741
-    if np.linalg.cond(O) > 1.0 / np.finfo(float).eps:
+    observability = np.array([C @ np.linalg.matrix_power(A, k) for k in range(d)])
+    if np.linalg.cond(observability) > 1.0 / np.finfo(float).eps:
         raise LcpStepError("the map has no canonical form: its observability matrix is singular")
     coefficients = np.poly(A)
     T = sum(coefficients[k] * np.eye(d, k=-k) for k in range(d))
-    return np.asarray(T @ O)
+    return np.asarray(T @ observability)
 
 
 class NormalForm(NamedTuple):

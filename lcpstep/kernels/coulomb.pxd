@@ -1,6 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport clear
+from lcpstep.kernels.vectors cimport clear, copy
 from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport abs, max, min

@@ -28,7 +28,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.vectors import clear
+    from lcpstep.kernels.vectors import clear, copy
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, abs, max, min
@@ -135,8 +135,7 @@ def solve_three_rows(c: ContactProblem, n_a: int, n_f: int) -> bool:
         c.W[(m + f) * n + k], c.W[(m + f) * n + T] = 2.0 * mu, -1.0
     if solve_small(c.W, c.b, c.z, n, c.work) != SOLVED:
         return False
-    for i in range(m):
-        c.impulse[i] = c.z[i]
+    copy(c.impulse, c.z, m)
     for f in range(n_f):
         k, T = c.carrier[f], n_a + f
         limit = c.mu[c.ids[k]] * c.z[k]
@@ -160,8 +159,7 @@ def solve_four_rows(c: ContactProblem, n_a: int, n_f: int) -> bool:
             c.W[(m + f) * n + m + g] = c.mobility[(n_a + f) * m + n_a + g]
     if solve_small(c.W, c.b, c.z, n, c.work) != SOLVED:
         return False
-    for i in range(n_a):
-        c.impulse[i] = c.z[i]
+    copy(c.impulse, c.z, n_a)
     for f in range(n_f):
         limit = c.mu[c.ids[c.carrier[f]]] * c.z[c.carrier[f]]
         c.impulse[n_a + f] = max(-limit, min(limit, c.z[n_a + f] - c.z[m + f]))
@@ -187,8 +185,7 @@ def solve_sliding(c: ContactProblem, n_a: int, n_f: int) -> bool:
             c.W[i * n_a + k] -= c.mobility[i * m + T] * friction
     if solve_small(c.W, c.b, c.z, n_a, c.work) != SOLVED:
         return False
-    for i in range(n_a):
-        c.impulse[i] = c.z[i]
+    copy(c.impulse, c.z, n_a)
     for f in range(n_f):
         k, T = c.carrier[f], n_a + f
         c.impulse[T] = -c.mu[c.ids[k]] * c.z[k] if c.rate[T] > 0.0 else c.mu[c.ids[k]] * c.z[k]

@@ -97,7 +97,10 @@ def test_a_small_value_that_grows_before_it_turns_is_no_root():
 
 def test_no_digits_are_sought_in_the_rounding_of_a_function():
     """As of a gap that is the difference of two positions a million times larger."""
-    f = lambda x: (1e6 + (math.exp(x) - 2.0)) - 1e6  # noqa: E731
+
+    def f(x: float) -> float:
+        return (1e6 + (math.exp(x) - 2.0)) - 1e6
+
     for guess in (math.nan, math.log(2.0) + 1e-12):
         r, places = sought(f, math.exp, "newton", spanned=False, guess=guess)
         assert r.x == pytest.approx(math.log(2.0), abs=1e-9)
