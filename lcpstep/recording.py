@@ -67,6 +67,10 @@ class Kept:
         """Whether nothing but states at given times is kept."""
         return self.every == 0 and not self.on_events
 
+    def of_steps(self, n: int) -> int:
+        """How many of n steps are kept for their number."""
+        return n // self.every if self.every > 0 else 0
+
 
 def in_order(events: Array, end: float) -> Array:
     """Events in the order of time, within the span; those of one time in the order in which they were noted.

@@ -23,10 +23,8 @@ Array = NDArray[np.float64]
 Found = list[tuple[Companion, Trajectory]]
 LOST = 0.5  # of the size of the motion: a run that far off tells nothing of where the motion is
 STILL = 1e-9  # of the speed of a motion: jumps below it are rounding
-PART, MANY_STEPS = (
-    0.125,
-    20_000,
-)  # of the span of a run in so many steps, that is held against the best one first
+PART = 0.125  # of the span, that is held against the best companion first
+MANY_STEPS = 20_000  # of a run, from which on that is done
 SAVED = 0.7  # of its forces: a best companion that evaluates more is worth a looser one
 SHORT = 1e-9  # of the span: impacts of one contact that follow each other faster are one
 ROUNDING = 8 * float(np.finfo(float).eps)  # of a time or an impulse

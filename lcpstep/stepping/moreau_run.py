@@ -48,8 +48,7 @@ class MoreauRun(StepRun):
         portion = min(PORTION, STATES * kept.every) if kept.every > 0 else PORTION
         # A portion keeps at most its steps, the given times, and the first and last state.
         room = (STATES if kept.every > 0 else PORTION) + len(kept.times) + 2
-        steps = number(scene.t_span, method.h)
-        expected = 1 + steps // kept.every if kept.every > 0 else len(kept.times)
+        expected = 1 + kept.of_steps(number(scene.t_span, method.h)) + len(kept.times)
         recorder = Recorder(scene.n_q, self.rows.n, kept, room, expected=expected)
         super().__init__(method, scene, kept, recorder, portion)
         size = largest(scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0))

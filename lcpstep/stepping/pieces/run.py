@@ -42,7 +42,7 @@ class LocatedRun(StepRun):
         joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
-        steps = number(scene.t_span, method.h) // kept.every if kept.every > 0 else 0
+        steps = kept.of_steps(number(scene.t_span, method.h))
         room, columns = PORTION + len(kept.times) + 8, scene.n_c + scene.n_j
         recorder = Recorder(scene.n_q, columns, kept, room, expected=steps + steps // 16 + 64)  # and events
         super().__init__(method, scene, kept, recorder, PORTION)
