@@ -135,7 +135,7 @@ class LocatedRun(StepRun):
     def states(self) -> States:
         """All states kept; a step that failed may have left its numbers behind."""
         s = super().states()
-        fine = np.isfinite(s.q).all(axis=1) & np.isfinite(s.v).all(axis=1)
+        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
         if fine.all() and np.isfinite(self.state).all():
             return s
         s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
