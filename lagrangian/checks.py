@@ -6,11 +6,12 @@ import math
 import operator
 import sys
 from collections.abc import Callable, Mapping
-from types import CellType, FunctionType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from lagrangian.plain import python
 
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
@@ -217,26 +218,6 @@ def said(error: BaseException) -> str:
     if "read-only" in str(error):
         return f"{error}; q, v and p are not the callback's to change"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-
-
-def python(f: Any, callers: tuple[Any, ...] = ()) -> Any:
-    """A callback in plain Python, also where the user has compiled it or what it calls: numpy checks all indices."""
-    f = getattr(f, "py_func", f)
-    if not isinstance(f, FunctionType):
-        return f
-    callers = (*callers, f)
-    names = {name: f.__globals__.get(name) for name in f.__code__.co_names}
-    fast = {name: python(g, callers) for name, g in names.items() if getattr(g, "py_func", f) not in callers}
-    cells = [cell for cell in f.__closure__ or () if hasattr(cell.cell_contents, "py_func")]
-    if not fast and not cells:
-        return f
-    closure = tuple(
-        CellType(python(cell.cell_contents, callers)) if cell in cells else cell
-        for cell in f.__closure__ or ()
-    )
-    copy = FunctionType(f.__code__, f.__globals__ | fast, f.__name__, f.__defaults__, closure)
-    copy.__kwdefaults__ = f.__kwdefaults__
-    return copy
 
 
 def numbers(parameters: Mapping[str, Any]) -> list[Any]:

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lagrangian.checks import Array, Callback, python, read_only
+from lagrangian.checks import Array, Callback, read_only
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.derivatives import Direction, Known, Relation, State, compare
+from lagrangian.plain import python
 from lagrangian.system import LinearSystem
 
 if TYPE_CHECKING:

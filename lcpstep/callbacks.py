@@ -27,13 +27,17 @@ SECOND_ORDER, FIRST_ORDER = 5, 4  # arguments of f(t, q, v, p, out) and f(t, x, 
 OPTIONS = {"error_model": "numpy", "boundscheck": True}
 # Numba reads and writes through these without looking at the length of the array: `boundscheck` does not reach into
 # its own implementations of functions of numpy
-UNCHECKED = {"flat", "take_along_axis", "carray", "farray", "as_strided", "bincount", "delete"}
+UNCHECKED = {
+    "flat", "take_along_axis", "carray", "farray", "as_strided", "bincount", "delete", "getitem_unchecked",
+}  # fmt: skip
 TOLD: WeakSet[Any] = WeakSet()  # functions that a warning was given for
 REGISTRY: dict[Any, Any] = {}  # the warnings themselves, as Python remembers them
 MADE: dict[Any, Any] = {}  # C functions by what they were made from
 STARRED = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 PLACE = re.compile(r'File "(.+)", line (\d+)|(?:at|from) (\S+) \((\d+)\)')  # as numba names it
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+HEADINGS = ("Failed in nopython mode", "- Resolution failure for")  # of numba's pages, above what went wrong
+AGAIN = re.compile(r"(?:,? defined at|\. Raised from) \S+ \(\d+\)$")  # the place, which is told anyway
 
 
 class UncompiledCallback(UserWarning):
@@ -217,7 +221,10 @@ def _callee(f: FunctionType, nrt: bool, dependencies: str) -> Any:
     """A function that callbacks call, its indices checked as theirs; made anew where what it reads has changed."""
     import numba
 
-    return numba.njit(nogil=True, _nrt=nrt, **OPTIONS)(_twin(f, nrt, f"callee {OPTIONS} {nrt}"))
+    from lcpstep.guarded import CalleeCompiler
+
+    options = OPTIONS | {"nogil": True, "_nrt": nrt, "pipeline_class": CalleeCompiler}
+    return numba.njit(**options)(_twin(f, nrt, f"callee {OPTIONS} {nrt}"))
 
 
 def _read(f: FunctionType) -> list[Any]:
@@ -235,12 +242,12 @@ def _explained(error: Exception, code: CodeType) -> NotCompiled:
     """From numba's pages of explanation: the reason, and the line that it names last."""
     text = COLOURS.sub("", str(error)) or type(error).__name__
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    said = [line for line in lines if not line.startswith("Failed in nopython mode")] or lines
-    reason = said[0]
+    said = [line for line in lines if not line.startswith(HEADINGS)] or lines
+    reason = AGAIN.sub("", said[0])
     shown_call = next((line[3:].strip() for line in said if line.startswith(">>>")), "")
     if reason.endswith("signature:") and shown_call:
         reason = f"no compiled form of {shown_call}"
-        if "setitem(readonly" in shown_call:
+        if "(readonly array" in shown_call and "Cannot modify readonly array" in text:
             reason = "it writes into an array that it may only read (q, v, p and global arrays)"
     places = [(a or c, int(b or d)) for a, b, c, d in PLACE.findall(text)]
     own = [line for file, line in places if os.path.basename(file) == os.path.basename(code.co_filename)]

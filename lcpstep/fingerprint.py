@@ -25,7 +25,10 @@ def with_twins(f: FunctionType, twins: Mapping[FunctionType, Any], variant: str)
     Its name carries a fingerprint of all that its machine code depends on, and of which variant this is, for machine
     code is linked and kept on disk by name: two variants must never share one.
     """
-    named = {name: twins[g] for name, g in callees(f)}
+    named: dict[str, Any] = {}
+    for name, g in callees(f):
+        first, *path = name.split(".")
+        named[first] = _with_member(named.get(first, f.__globals__.get(first)), path, twins[g])
     around = zip(f.__code__.co_freevars, f.__closure__ or (), strict=True)
     closure = tuple(CellType(named[name]) if name in named else cell for name, cell in around)
     copy = FunctionType(f.__code__, {**f.__globals__, **named}, f.__name__, f.__defaults__, closure)
@@ -35,13 +38,38 @@ def with_twins(f: FunctionType, twins: Mapping[FunctionType, Any], variant: str)
     return copy
 
 
+def _with_member(module: Any, path: list[str], twin: Any) -> Any:
+    """The twin, or a copy of the module that a path leads through to it."""
+    if not path:
+        return twin
+    copy = ModuleType(module.__name__)
+    copy.__dict__.update(vars(module))
+    setattr(copy, path[0], _with_member(getattr(module, path[0]), path[1:], twin))
+    return copy
+
+
 def callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
-    """Functions that f names, whether as globals or in the function around it; those with twins already as well."""
+    """Functions that f names, whether as globals or in the function around it; those with twins already as well.
+
+    Of modules that f names ("mine.helper") those that the user has compiled: numba takes no others.
+    """
     named = [(name, f.__globals__.get(name)) for name in global_names(f)]
     for name, g in [*named, *cells(f)]:
         g = getattr(g, "py_func", g)
         if isinstance(g, FunctionType):
             yield name, g
+    for name in names_read(f):
+        if "." in name and isinstance(g := getattr(_member(f, name), "py_func", None), FunctionType):
+            yield name, g
+
+
+def _member(f: FunctionType, name: str) -> Any:
+    """What a name with dots stands for, where it leads through modules only; None otherwise."""
+    first, *path = name.split(".")
+    value = f.__globals__.get(first)
+    for attribute in path:
+        value = getattr(value, attribute, None) if isinstance(value, ModuleType) else None
+    return value
 
 
 def cells(f: FunctionType) -> Iterator[tuple[str, Any]]:
@@ -128,11 +156,12 @@ def value_text(value: Any) -> str:
     if isinstance(value, np.ndarray) and value.dtype != object:
         return f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
     if isinstance(value, tuple):
-        return str([value_text(item) for item in value])
+        functions = [x.py_func for x in value if isinstance(getattr(x, "py_func", None), FunctionType)]
+        return str([value_text(item) for item in value] + list(map(dependencies, functions)))
     if isinstance(value, (bool, int, float, complex, str, np.generic, type(None))):
         return repr(value)
     if isinstance(value, (ModuleType, type, FunctionType, BuiltinFunctionType, np.ufunc)):
         return value.__name__
     if isinstance(getattr(value, "py_func", None), FunctionType):
-        return dependencies(value.py_func)
+        return value.py_func.__name__  # one of `reached`, or in a tuple
     return f"{UNKNOWN} {id(value)}"

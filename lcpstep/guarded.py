@@ -25,10 +25,11 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
 from numba.core.lowering import Lower
-from numba.core.typed_passes import NativeLowering
+from numba.core.typed_passes import NativeLowering, NopythonTypeInference
 from numba.np.arrayobj import make_array, populate_array
 
 from lcpstep.faults import Fault, note
+from lcpstep.writing import RefuseWriting
 
 ALL_ONES = 0xFF  # the bytes of a not-a-number
 NOTE = "lcpstep_note"  # the symbol under which machine code finds `_note`
@@ -105,12 +106,23 @@ class LowerWrapped(NativeLowering):
         return Wrapped
 
 
-class Compiler(CompilerBase):
+class CalleeCompiler(CompilerBase):
+    """Compiler of functions that callbacks call."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Numba's pipeline, and a look at what is written into."""
+        pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        pipeline.add_pass_after(RefuseWriting, NopythonTypeInference)
+        pipeline.finalize()
+        return [pipeline]
+
+
+class Compiler(CalleeCompiler):
     """Compiler of a callback."""
 
     def define_pipelines(self) -> list[Any]:
-        """Numba's pipeline but for the step of lowering."""
-        pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        """The same but for the step of lowering."""
+        (pipeline,) = super().define_pipelines()
         pipeline.add_pass_after(LowerWrapped, NativeLowering)
         pipeline.passes = [(step, text) for step, text in pipeline.passes if step is not NativeLowering]
         pipeline.finalize()

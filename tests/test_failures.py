@@ -1,6 +1,7 @@
 """What goes wrong during a run: named, with time and state, and without losing what was computed before."""
 
 import math
+import re
 from dataclasses import replace
 from importlib.metadata import metadata
 
@@ -448,3 +449,20 @@ def test_a_step_that_does_not_converge_is_a_status_with_the_part_before():
     assert "smaller h" in m.message
     assert "t = 0" in m.message
     assert m.t[-1] < 1.0
+
+
+@pytest.mark.parametrize("keep", [10**6, "impacts", [0.1], [0.9]], ids=str)
+@pytest.mark.parametrize("method", METHODS)
+def test_what_was_computed_before_a_failure_is_told_whatever_is_kept(method, keep):
+    with pytest.raises(SimulationError) as caught:
+        simulate(Scene(System(1, 1.0, bad_force), 1.0, 0.0, (0.0, 1.0), FLOOR), method, keep=keep)
+    m = caught.value.trajectory
+    t, q, v = (float(x) for x in re.findall(r"at t = (\S+) s, q = \[(\S+)\], v = \[(\S+)\]", m.message)[-1])
+    assert 0.28 <= t <= 0.3 + 1e-9
+    assert v == pytest.approx(-8.0 * t, abs=1e-9)
+    assert q == pytest.approx(1.0 - 4.0 * t**2, abs=4.0 * 1e-2 * t)  # to order h for theta = 0
+    if isinstance(keep, list):
+        assert m.t.tolist() == [x for x in keep if x < t]
+    else:
+        assert m.t[-1] == pytest.approx(t, abs=1e-8)
+        assert (m.q[-1, 0], m.v[-1, 0]) == (q, v)

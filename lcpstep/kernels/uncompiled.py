@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.checks import python, read_only, said
+from lagrangian.checks import read_only, said
+from lagrangian.plain import python
 from lcpstep.faults import Callback, Fault, name_of, note
 from lcpstep.functions import require
 

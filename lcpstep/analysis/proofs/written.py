@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 from flint import arb
 
-from lagrangian import checks
+from lagrangian.checks import said
+from lagrangian.plain import python
 from lcpstep.analysis.proofs.errors import NotProved
 from lcpstep.analysis.proofs.obstacles import Formula
 
@@ -137,7 +138,7 @@ class Written:
         except Exception as error:  # the user's code may raise anything
             raise NotProved(
                 f"{self.name}: {self.function.__qualname__!r} ({self._place(error)}) cannot be enclosed: "
-                f"{checks.said(error)}"
+                f"{said(error)}"
             ) from error
 
     def _place(self, error: BaseException) -> str:
@@ -149,7 +150,7 @@ class Written:
 
 def on_series(name: str, f: Any) -> FunctionType:
     """A callback that computes with `Series`: the same code, other functions."""
-    plain = checks.python(f)
+    plain = python(f)
     if not isinstance(plain, FunctionType):
         raise NotProved(f"{name}: {f!r} is no Python function, and cannot be enclosed")
     names = {key: _replaced(x) for key, x in plain.__globals__.items() if key in plain.__code__.co_names}

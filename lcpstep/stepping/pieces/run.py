@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -24,7 +24,7 @@ from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.pieces.state import Plan
 from lcpstep.stepping.step_run import StepRun
 from lcpstep.stepping.steps import number
-from lcpstep.trajectory import Counts, Status
+from lcpstep.trajectory import Counts, Status, Trajectory
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -135,12 +135,26 @@ class LocatedRun(StepRun):
     def states(self) -> States:
         """All states kept; a step that failed may have left its numbers behind."""
         s = super().states()
-        if np.isfinite(s.q).all() and np.isfinite(s.v).all():
+        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
+        if fine.all() and np.isfinite(self.state).all():
             return s
-        n = int(np.argmin(np.isfinite(s.q).all(axis=1) & np.isfinite(s.v).all(axis=1)))
-        if n > 0:
-            self.finite = float(s.t[n - 1]), s.q[n - 1], s.v[n - 1]
-        return States(*(x[:n] for x in s))
+        s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
+        if len(s.t):
+            self.finite = float(s.t[-1]), s.q[-1], s.v[-1]
+        m = self.before_failing()
+        if m is not None and (self.finite is None or m.t[-1] > self.finite[0]):
+            self.finite = float(m.t[-1]), m.q[-1], m.v[-1]
+            if not self.kept.given:
+                s = s.and_then(*self.finite, m.impulse[-1], 1.0)
+        return s
+
+    def before_failing(self) -> Trajectory | None:
+        """Another run up to the step that failed; None where its beginning is kept."""
+        begin, t = self.scene.t_span[0], self.t0 + self.plan.h * (self.work.steps - 1 - self.first)
+        if self.control is not None or self.kept.all or not t > begin:
+            return None
+        scene = replace(self.scene, t_span=(begin, t))
+        return type(self)(self.method, scene, Kept.parse("impacts", scene.t_span)).finish(lambda now: None)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time: from the kept ones where these tell, by another run where they do not.
