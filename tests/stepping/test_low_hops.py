@@ -1,4 +1,4 @@
-"""`Located` "exact" where gaps are as small as the rounding of positions: chattering, and a wall that is just touched."""
+"""`Located` "exact" where gaps are as small as the rounding of positions: chattering, and a wall just touched."""
 
 import mpmath
 import numpy as np
