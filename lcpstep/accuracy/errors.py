@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import Matching, match_impacts
+from lcpstep.gauss import gauss
 from lcpstep.kernels import states
 from lcpstep.model import model
 
@@ -33,7 +34,7 @@ MOST = 100_000  # instants looked at, about, however fine the grids, and those a
 BESIDE = 2  # instants on either side of every jump or bend that are looked at in any case
 BENDS = 5000  # of the velocity, the sharpest
 ROUNDING = 8 * np.finfo(float).eps  # of a time
-NODES = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])  # of Gauss' rule with two points, exact for cubics
+NODES, _ = gauss(2)
 
 
 class Motion(Protocol):

@@ -23,6 +23,7 @@ from lcpstep.audit.drift import frequency
 from lcpstep.audit.motion import Polynomials, basis
 from lcpstep.audit.quadrature import errors
 from lcpstep.audit.sums import add_up, changes
+from lcpstep.gauss import gauss
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
 from lcpstep.model import models
@@ -30,8 +31,7 @@ from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-NODES = 0.5 + 0.5 * np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)])
-WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
+NODES, WEIGHTS = gauss(3)
 RULE = np.stack([NODES, WEIGHTS])
 SAFETY = (
     2.0  # what is told of the errors found: motions may part a little, and nodes see no more than they see

@@ -52,7 +52,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
             return soon
     look: Looks | None = None
     known: dict[Companion, Trajectory | None] = {}
-    bar, reach, clear = unknown(run, "no companion"), start, True
+    bar, reach, clear = None, start, True
     for group in companions(run, error):
         for c in group:
             if c not in known:
@@ -66,7 +66,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
         clear = group[0].tells(run, bar)
         if reach >= end and clear:
             break
-    return bar
+    return bar or unknown(run, "no companion")
 
 
 def _soon(run: Trajectory, seconds: float, wide: Array | None) -> tuple[ErrorBar | None, float | None]:
@@ -178,8 +178,9 @@ def against(
 def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Array]:
     """Errors of times and impulses, one for each row of the log."""
     times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))
-    known = ((pairs.stop <= until) & ~pairs.weak)[pairs.of_row]
-    rows, pair = pairs.rows[known], pairs.of_row[known]
+    of_row = pairs.of_row
+    known = ((pairs.stop <= until) & ~pairs.weak)[of_row]
+    rows, pair = pairs.rows[known], of_row[known]
     times[rows] = pairs.time[pair] + ROUNDING * np.max(np.abs(run.t))
     impulses[rows] = pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
     return times, impulses

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.gauss import gauss
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
@@ -25,7 +26,7 @@ JUMP = (
 )
 TINY = float(np.finfo(float).tiny)
 GRADES = 12  # times an interval after an event is halved towards it
-GAUSS = 0.5 + 0.5 / math.sqrt(3.0) * np.array([-1.0, 1.0])
+GAUSS, _ = gauss(2)
 BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 
 
@@ -97,8 +98,8 @@ def _after(events: Array, run: Trajectory, most: int) -> Array:
 
 def _left_out(run: Trajectory, most: int) -> Array:
     """The middle of the hops that the run no longer follows where chattering ends: there they are highest."""
-    log, found = run.impacts, [np.zeros(0)]
-    for c in np.unique(log["contact"]):
+    log, found = np.asarray(run.impacts), [np.zeros(0)]
+    for c in np.unique(log["contact"][log["kind"] == Kind.ACCUMULATION]):
         own = log[log["contact"] == c]
         ends = np.flatnonzero(own["kind"][1:] == Kind.ACCUMULATION)
         found.append(0.5 * (own["time"][ends] + own["time"][ends + 1]))
@@ -108,7 +109,8 @@ def _left_out(run: Trajectory, most: int) -> Array:
 
 def event_times(run: Trajectory, other: Trajectory) -> Array:
     """When anything happened in either run."""
-    return np.unique(np.concatenate([x.impacts["time"] for x in (run, other)]))
+    logs = (np.asarray(x.impacts) for x in (run, other))  # record arrays look their fields up slowly
+    return np.unique(np.concatenate([log["time"] for log in logs]))
 
 
 def brief(run: Trajectory, other: Trajectory, span: float) -> Array:

@@ -13,8 +13,9 @@ from lcpstep.events import running
 from lcpstep.events.friction.loop import Course
 from lcpstep.events.friction.smooth import Smooth
 from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES
-from lcpstep.events.general.run import FIRST_STEP, Moved, quadrature, recorder_for
+from lcpstep.events.general.run import FIRST_STEP, QUADRATURE, Moved, recorder_for
 from lcpstep.events.scan import scan_interval
+from lcpstep.gauss import gauss
 from lcpstep.kernels.clock import Clock
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, States
@@ -45,7 +46,7 @@ def start(
     s = kind(
         contacts, joints, tangents, coefficients(scene), tangential,
         friction is not None and friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol,
-        *quadrature(), *more,
+        *gauss(QUADRATURE), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +17,7 @@ from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
 from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
+from lcpstep.gauss import gauss
 from lcpstep.kernels.model import Model
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
@@ -38,13 +38,6 @@ def is_constant(m: Model, joints: Model) -> bool:
     return bool(m.linear and m.flat and joints.flat and still and not forced)
 
 
-@functools.cache
-def quadrature() -> tuple[Array, Array]:
-    """Gauss' nodes and weights on [0, 1]."""
-    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
-    return 0.5 * (1.0 + nodes), 0.5 * weights
-
-
 def start(scene: Scene, method: Any) -> Mechanism:
     """The state at the start of the span; `method` has rtol and atol."""
     return mechanism(scene, model(scene), Smooth(2 * scene.n_q, scene.n_q, method.rtol, method.atol))
@@ -58,7 +51,7 @@ def mechanism(scene: Scene, m: Model, smooth: Smooth | Watched) -> Mechanism:
     smooth.next_step = FIRST_STEP * scan
     corners = () if constant else turns(scene).stops
     smooth.mechanism = Mechanism(
-        m, joints, scene.n_j, constant, smooth, scan, scene.t_span, corners, scene.period, *quadrature()
+        m, joints, scene.n_j, constant, smooth, scan, scene.t_span, corners, scene.period, *gauss(QUADRATURE)
     )
     return smooth.mechanism
 

@@ -18,7 +18,7 @@ from lcpstep.stepping.pieces.polynomial cimport (
     NODES, WEIGHTS, Polynomial, acceleration, biases, expand, force_at, on_surface, state_at,
 )
 from lcpstep.stepping.pieces.polynomial_forces cimport UNDECIDED, load
-from lcpstep.stepping.pieces.scan cimport NOWHERE, first_landing, first_release
+from lcpstep.stepping.pieces.scan cimport LOW, NOWHERE, first_landing, first_release, hop_at, is_low
 from lcpstep.stepping.pieces.smooth cimport measure, newton_step, put_on_surface, refactor, respond, settle_state
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport idle, release, stick, turn
@@ -41,6 +41,9 @@ cdef bint too_short(Plan plan, Work w, double now) noexcept nogil
 cdef void lose_force(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t follow(
     Model m, Plan plan, Work w, Polynomial z, Record record, double t, double tau, bint ends
+) noexcept nogil
+cdef double carried(
+    Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c
 ) noexcept nogil
 cdef void slide(Model m, Work w, double t) noexcept nogil
 @cython.locals(again=bint)

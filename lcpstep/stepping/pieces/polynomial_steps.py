@@ -44,7 +44,7 @@ if not cython.compiled:
         state_at,
     )
     from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
-    from lcpstep.stepping.pieces.scan import NOWHERE, first_landing, first_release
+    from lcpstep.stepping.pieces.scan import LOW, NOWHERE, first_landing, first_release, hop_at, is_low
     from lcpstep.stepping.pieces.smooth import (
         measure,
         newton_step,
@@ -164,6 +164,7 @@ def follow(
     copy(w.v, z.v, w.n_q)
     for c in range(w.n_c):
         w.grounded[c] = 0
+        z.gap_to[c] = carried(m, plan, w, z, now, tau, c)
     measure(m, plan, w, now + tau)
     if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
         if not plan.constant:
@@ -173,7 +174,21 @@ def follow(
         put_on_surface(m, plan, w, now + tau)
         slide(m, w, within(plan, w, now + tau))
         measure(m, plan, w, now + tau)
+    for c in range(w.n_c):
+        if z.gap_to[c] > plan.slack:
+            w.gap[c] = z.gap_to[c]
     return FINISHED
+
+
+def carried(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> float:
+    """A low gap at tau after the base t of the piece, finer than positions tell; 0 where they tell enough.
+
+    A landing that follows in another piece would be late by their rounding over its speed, which grows in chattering.
+    """
+    if w.status[c] == CLOSED or not is_low(plan, w, tau, c):
+        return 0.0
+    mean, _ = hop_at(m, plan, w, z, t, tau, c)
+    return tau * mean if tau * mean <= LOW * plan.slack else 0.0
 
 
 def slide(m: Model, w: Work, t: float) -> None:

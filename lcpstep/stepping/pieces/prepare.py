@@ -57,7 +57,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     trapezoidal = m.linear and scene.n_j == 0
     stiff = bool(trapezoidal and (np.any(a["C"]) or np.any(a["K"])))
     unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
-    moving, stops = m.motion.given or m.carried, turns(scene).stops
+    moving, stops, most = m.motion.given or m.carried, turns(scene).stops, longest(scene, m, method)
     constant = bool(trapezoidal and m.flat)
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     if trapezoidal:
@@ -74,26 +74,26 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": stiff,
         "steady": bool(trapezoidal and not stiff and unforced),
         "plain": bool(trapezoidal and m.flat and not moving), "constant": constant, "small": n_q <= SMALL,
-        "slack": ROUNDING * size(scene, m, method), "per_step": method.max_per_step,
+        "slack": ROUNDING * size(scene, m, method, min(method.h, most)), "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
-        "exact": method.order == "exact", "longest": longest(scene, m, method),
+        "exact": method.order == "exact", "longest": most,
         "corners": np.array(stops, dtype=np.float64), "period": scene.period,
         "margin": MARGIN * t_scale if len(stops) else 0.0,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip
 
 
-def size(scene: Scene, m: Model, method: Located) -> float:
-    """Lengths at hand at the start [m]: places, offsets, and what moves in a step; rounding is measured against it.
+def size(scene: Scene, m: Model, method: Located, h: float) -> float:
+    """Lengths at hand at the start [m]: places, offsets, what moves in a piece of length h: what rounding is of.
 
     1 where nothing is there yet, and where gaps are functions, of which nothing is known but the places. By a
     tolerance steps are shorter than h; what they may be wrong by is no gap.
     """
     own = largest(scene.q0, m.arrays["offset"], method.h * np.asarray(scene.v0))
     if m.flat:
-        own = max(own, displacement(scene, m, min(method.h, longest(scene, m, method))))
+        own = max(own, displacement(scene, m, h))
     if m.flat and method.tolerance is None:
-        own = max(own, driven(scene, m, method))
+        own = max(own, driven(scene, m, method, h))
     if method.tolerance is not None:
         own = max(own, min(1.0, NO_GAP * method.tolerance / ROUNDING))
     return own or 1.0
@@ -108,9 +108,8 @@ def displacement(scene: Scene, m: Model, h: float) -> float:
     return found if math.isfinite(found) else 0.0
 
 
-def driven(scene: Scene, m: Model, method: Located) -> float:
-    """How far forces push in a step, as stiff springs let them [m]; harmonic ones at their largest."""
-    h = min(method.h, longest(scene, m, method))
+def driven(scene: Scene, m: Model, method: Located, h: float) -> float:
+    """How far forces push in a time h, as stiff springs let them [m]; harmonic ones at their largest."""
     q0, v0 = (np.array(x, dtype=float) for x in (scene.q0, scene.v0))
     a = Point(m).acceleration(scene.t_span[0], q0, v0)
     if m.linear:

@@ -1,5 +1,6 @@
 cimport cython
 from libc.math cimport isfinite
+from lcpstep.kernels.dynamics cimport moves
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, max, min
@@ -10,20 +11,22 @@ from lcpstep.stepping.pieces.polynomial cimport NODES, Polynomial, WEIGHTS, cont
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef Py_ssize_t NOWHERE, PARTS, PROBES
-cdef double SOON
+cdef double BRIEF, LOW, SOON
 cdef (double, double) gap_at(
     Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c
 ) noexcept nogil
 cdef (double, double) hop_at(
     Model m, Plan plan, Work w, Polynomial z, double t, double tau, Py_ssize_t c
 ) noexcept nogil
+cdef bint is_low(Plan plan, Work w, double tau, Py_ssize_t c) noexcept nogil
+cdef double height_terms(Model m, Work w, Polynomial z, Py_ssize_t c) noexcept nogil
 cdef double landing(
-    Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c, bint hop
+    Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c, bint low
 ) noexcept nogil
 cdef double lowest(
     Model m, Plan plan, Work w, Polynomial z, double t, double a, double b, Py_ssize_t c
 ) noexcept nogil
-@cython.locals(hop=bint, rests=bint, touches=bint)
+@cython.locals(hop=bint, fine=bint, rests=bint, touches=bint)
 cdef (Py_ssize_t, double) first_landing(
     Model m, Plan plan, Work w, Polynomial z, double t, double end
 ) noexcept nogil

@@ -1,8 +1,9 @@
 """Events on a polynomial piece of motion, as kernels: the first gap that closes, the first contact that opens.
 
 The piece is divided into intervals in which each gap velocity changes its sign at most once; so a gap that falls to
-zero and returns within an interval is found at its lowest point. A hop that began on the surface is followed by the
-mean of its gap velocity, g / tau, which keeps all digits.
+zero and returns within an interval is found at its lowest point; what is there but rounding is a touch. A gap that is
+small beside what it is made of, as in a hop that began on the surface, is followed by the mean of its velocity,
+g = g_0 + tau mean, which keeps all digits.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import cython
 if not cython.compiled:
     from math import isfinite
 
+    from lcpstep.kernels.dynamics import moves
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, max, min
@@ -25,6 +27,8 @@ NOWHERE = -2
 PARTS = 4  # intervals of a piece
 PROBES = 4  # of contact forces
 SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
+LOW = 1e9  # times the slack: rounding of positions is much of gaps below it
+BRIEF = 1.0 / 32.0  # of the longest piece: the mean velocity of so short a time is exact to rounding
 
 
 def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
@@ -34,25 +38,42 @@ def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c
 
 
 def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
-    """Mean of a gap velocity over (0, tau), and its slope."""
-    mean = 0.0
+    """A low gap at tau after the base of the piece, over tau, and its slope."""
+    mean, base = 0.0, max(w.gap[c], 0.0) / tau
     for k in range(4):
         _, u = gap_at(m, plan, w, z, t, NODES[k] * tau, c)
         mean += WEIGHTS[k] * u
     _, u = gap_at(m, plan, w, z, t, tau, c)
-    return mean, (u - mean) / tau
+    return base + mean, (u - mean - base) / tau
+
+
+def is_low(plan: Plan, w: Work, tau: float, c: int) -> bool:
+    """Whether rounding of positions is much of a gap up to tau after the base, and not of its mean velocity."""
+    if not plan.exact or tau > BRIEF * plan.longest:
+        return False
+    return max(w.gap[c], abs(w.rate[c]) * tau) <= LOW * plan.slack
+
+
+def height_terms(m: Model, w: Work, z: Polynomial, c: int) -> float:
+    """What a flat gap is made of in the state last asked for, signs left aside; 0 of a curved one."""
+    if not m.flat:
+        return 0.0
+    size = abs(m.offset[c]) + (abs(m.motion_now[3 * c]) if moves(m) else 0.0)
+    for i in range(w.n_q):
+        size += abs(w.G_try[c * w.n_q + i] * z.q[i])
+    return size
 
 
 def landing(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int, hop: bool
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int, low: bool
 ) -> float:
-    """Where gap c falls to zero in (a, b]: positive at a, or on its way up, and not positive at b."""
+    """Where gap c, which may stay low, falls to zero in (a, b]: positive at a, or on its way up, and not at b."""
     guess = b
-    if hop and w.half[c] < 0.0:
+    if low and w.gap[c] <= 0.0 and w.half[c] < 0.0:
         guess = min(b, -w.rate[c] / w.half[c])
     w.bracket.begin(a, b, True, guess)
     while w.bracket.seek(2.0 * EPS * w.bracket.x):
-        if hop:
+        if low:
             f, slope = hop_at(m, plan, w, z, t, w.bracket.x, c)
         else:
             f, slope = gap_at(m, plan, w, z, t, w.bracket.x, c)
@@ -90,12 +111,13 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
             if w.status[c] != OPEN:
                 continue
             hop = w.gap[c] <= 0.0 and z.gap_from[c] <= plan.slack
-            if hop and z.gap_to[c] <= plan.slack:  # finer than positions tell
+            fine = hop or is_low(plan, w, b, c)
+            if fine and z.gap_to[c] <= plan.slack:  # finer than positions tell
                 mean, _ = hop_at(m, plan, w, z, t, b, c)
                 z.gap_to[c] = b * mean
-                if w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
+                if hop and w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
                     continue  # what has been let go a moment ago
-            low = b
+            low, touches = b, False
             if z.gap_to[c] > 0.0:
                 if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
                     continue
@@ -103,9 +125,10 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
                 g, _ = gap_at(m, plan, w, z, t, low, c)
                 if g > 0.0:
                     continue
+                touches = g >= -EPS * height_terms(m, w, z, c)
             start = max(a, SOON * end) if w.grounded[c] == LEFT else a
             rests = hop and start == 0.0 and w.rate[c] <= 0.0
-            tau = 0.0 if rests else landing(m, plan, w, z, t, start, low, c, hop)
+            tau = low if touches else 0.0 if rests else landing(m, plan, w, z, t, start, low, c, fine)
             if tau < first or found == NOBODY:
                 found, first = c, tau
         if found != NOBODY:
