@@ -79,7 +79,8 @@ REFUSALS: dict[str, Refusal] = {
     ),
     "sparse-stronge": Refusal(
         "friction", "Moreau with more than 2000 sparse coordinates", "Stronge's law",
-        "contacts strike in turn, each through the mobility of all, which is never formed", "law='moreau' or 'newton'",
+        "contacts strike in turn, each through the mobility of all, which is never formed",
+        "law='moreau' or 'newton'",
     ),
     "sparse-tangents": Refusal(
         "friction", "Moreau with more than 2000 sparse coordinates", "tangents that are callbacks",
@@ -132,7 +133,7 @@ REFUSALS: dict[str, Refusal] = {
 
 
 def refused(key: str, scene: Any = None, argument: str = "") -> LcpStepError:
-    """The error of a refusal, to be raised; `scene` has the feature, as its `argument` where that is not the list's."""
+    """The error of a refusal, to be raised; `scene` has the feature, `argument` is it where the list has another."""
     r = REFUSALS[key]
     having = "" if scene is None else f", as {scene.name!r} has"
     return LcpStepError(

@@ -15,7 +15,7 @@ from lcpstep.stepping.steps import check_steps
 
 if TYPE_CHECKING:
     from lcpstep.recording import Kept
-    from lcpstep.stepping.step_run import StepRun
+    from lcpstep.stepping.sparse import SparseRun
     from lcpstep.trajectory import Trajectory
 
 
@@ -86,7 +86,7 @@ class Moreau:
 
         return MoreauRun(self, scene, kept).finish(progress)
 
-    def by_sparse_steps(self, scene: Scene) -> type[StepRun] | None:
+    def by_sparse_steps(self, scene: Scene) -> type[SparseRun] | None:
         """The run by sparse steps, where they know all that is asked for; None where dense steps take the scene.
 
         Raises LcpStepError where it is too large for those.

@@ -77,7 +77,10 @@ class Stiction:
             modes, p = point.modes, point.p
 
     def note(self, coupled: Coupled, problem: Problem, point: Point, u: Array, rebound: Any) -> None:
-        """Which contacts do not slide at the end of a step; u, rebound : (n_c,)   with what velocity; what impacts add."""
+        """Which contacts do not slide at the end of a step.
+
+        u, rebound : (n_c,)   their sliding velocities then; what restitution has added to those of the problem
+        """
         size = self.rates(coupled, problem, point)[1]
         still = ((point.modes == STICK) & (rebound == 0.0)) | (np.abs(u) <= AT_REST * size)
         pressed = point.p[coupled.n_j : coupled.n_j + coupled.n_c] > 0.0
