@@ -23,12 +23,12 @@ from lagrangian.system import Harmonic
 from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
-from lcpstep.errors import LcpStepError
 from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.function import Functions
 from lcpstep.kernels.uncompiled import CalledBack
+from lcpstep.refusals import refused
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
@@ -45,10 +45,7 @@ def dense(name: str, matrix: Any) -> Array:
     if not hasattr(matrix, "toarray"):
         return np.array(matrix)
     if max(matrix.shape) > LARGEST_DENSE:
-        raise LcpStepError(
-            f"{name}: this method works with dense matrices, and one of shape {matrix.shape} would need "
-            f"{8e-9 * matrix.shape[0] * matrix.shape[1]:.1f} GB; Moreau takes sparse linear systems as they are"
-        )
+        raise refused("dense", argument=name)
     return np.ascontiguousarray(matrix.toarray())
 
 

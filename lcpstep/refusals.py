@@ -59,13 +59,36 @@ REFUSALS: dict[str, Refusal] = {
         "tolerance", "Moreau with another solver than 'lemke'", "a tolerance",
         "an attempt is three steps that the loop solves itself", "lcp='lemke'",
     ),
+    "dense": Refusal(
+        "matrix", "a method by dense matrices (all but the sparse steps of Moreau)",
+        "sparse matrices of more than 2000 rows or columns",
+        "a dense one of that size takes gigabytes, and what is made of it the cube of its rows", "Moreau",
+    ),
     "sparse-tolerance": Refusal(
-        "tolerance", "Moreau with sparse matrices", "a tolerance",
+        "tolerance", "Moreau with more than 2000 sparse coordinates", "a tolerance",
         "every other step size has matrices of its own to factorise", "steps of one size",
     ),
     "sparse-solver": Refusal(
-        "lcp", "Moreau with sparse matrices", "another solver",
+        "lcp", "Moreau with more than 2000 sparse coordinates", "another solver",
         "its contact problem is never formed: a saddle point problem is solved in its place", "lcp='lemke'",
+    ),
+    "sparse-projected": Refusal(
+        "projected", "Moreau with more than 2000 sparse coordinates", "projected=True",
+        "what moves positions back acts through the mobility of all rows, which is never formed",
+        "projected=False and a smaller h",
+    ),
+    "sparse-stronge": Refusal(
+        "friction", "Moreau with more than 2000 sparse coordinates", "Stronge's law",
+        "contacts strike in turn, each through the mobility of all, which is never formed",
+        "law='moreau' or 'newton'",
+    ),
+    "sparse-tangents": Refusal(
+        "friction", "Moreau with more than 2000 sparse coordinates", "tangents that are callbacks",
+        "a callback fills out a dense matrix", "a constant sparse tangent",
+    ),
+    "sparse-joints": Refusal(
+        "joints", "Moreau with more than 2000 sparse coordinates", "curved joints without `pattern`",
+        "where their Jacobian has entries is not known, and it would be a dense matrix", "Joints(pattern=...)",
     ),
     "modes-method": Refusal(
         "method", "Moreau, Located", "systems with modes",
@@ -75,6 +98,11 @@ REFUSALS: dict[str, Refusal] = {
     "modes-audit": Refusal(
         "audit", "EventDriven with audit=True", "systems with modes",
         "bounds of guards along the motion are not known, as they are of gaps", "audit=False",
+    ),
+    "modes-error": Refusal(
+        "error", "simulate with error=True", "systems with modes",
+        "an error bar is the distance from another method, and one alone runs systems with modes",
+        "two tolerances",
     ),
     "modes-friction": Refusal(
         "contacts", "EventDriven of systems with modes", "friction",
@@ -104,12 +132,12 @@ REFUSALS: dict[str, Refusal] = {
 }  # fmt: skip
 
 
-def refused(key: str, scene: Any = None) -> LcpStepError:
-    """The error of a refusal, to be raised; `scene` has the feature."""
+def refused(key: str, scene: Any = None, argument: str = "") -> LcpStepError:
+    """The error of a refusal, to be raised; `scene` has the feature, `argument` is it where the list has another."""
     r = REFUSALS[key]
     having = "" if scene is None else f", as {scene.name!r} has"
     return LcpStepError(
-        f"{r.argument}: {r.method} does not treat {r.feature}{having}: {r.reason}; take {r.instead}"
+        f"{argument or r.argument}: {r.method} does not treat {r.feature}{having}: {r.reason}; take {r.instead}"
     )
 
 

@@ -153,14 +153,9 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
     from lcpstep.stepping.moreau import is_sparse
 
     if isinstance(scene, HybridScene):
-        raise LcpStepError(
-            f"error: expected a scene without modes, got {scene.name!r}; there is one method for those with modes"
-        )
+        raise refused("modes-error", scene)
     if is_sparse(scene) and scene.n_q > LARGEST_DENSE:
-        raise LcpStepError(
-            f"error: expected at most {LARGEST_DENSE} coordinates, got {scene.n_q} of {scene.name!r}: distances are "
-            f"measured with dense matrices"
-        )
+        raise refused("dense", scene, argument="error")
     if not isinstance(method, KNOWN):
         names = ", ".join(x.__name__ for x in KNOWN)
         raise LcpStepError(f"error: expected one of the methods {names}, got {method!r}")

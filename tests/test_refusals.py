@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, Surface, scenes
+from lagrangian import Coulomb, Joints, LinearContacts, LinearSystem, Scene, Surface, scenes
 from lcpstep import EventDriven, LcpStepError, Located, Moreau, simulate
 from lcpstep.analysis.hybrid_variation import monodromy as hybrid_monodromy
 from lcpstep.analysis.variation import monodromy
@@ -19,12 +19,28 @@ PAGE = Path(__file__).parent.parent / "docs" / "choosing.md"
 EXACT = Located(1e-2, "exact")
 
 
-def sparse(**more):
-    """Two masses whose matrices are sparse."""
+def sparse(n=2001, joints=None, **more):
+    """Masses whose matrices are sparse; those of `more` beside their first coordinate are of a friction."""
+    first, along = (scipy.sparse.csr_array(([1.0], ([0], [k])), shape=(1, n)) for k in (0, 1))
+    friction = Coulomb(0.3, more.pop("tangent", along), **more) if more else None
     return Scene(
-        system=LinearSystem(scipy.sparse.eye_array(2, format="csr")), contacts=LinearContacts([[1.0, 0.0]]),
-        q0=[1.0, 1.0], v0=[0.0, 0.0], t_span=(0.0, 1.0), **more,
+        system=LinearSystem(scipy.sparse.eye_array(n, format="csr")), q0=np.ones(n), v0=np.zeros(n),
+        contacts=LinearContacts(first, friction=friction), t_span=(0.0, 1.0), joints=joints,
     )  # fmt: skip
+
+
+def along_the_second(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 1] = 1.0
+
+
+def on_a_circle(t, q, v, p, out):
+    out[0] = 0.5 * (q[0] * q[0] + q[1] * q[1]) - 1.0
+
+
+def its_row(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 0], out[0, 1] = q[0], q[1]
 
 
 def moving(t, q, v, p, out):
@@ -78,6 +94,12 @@ ASKED = {
     "solver-tolerance": lambda: Moreau(1e-2, lcp="pgs", tolerance=1e-3),
     "sparse-tolerance": lambda: simulate(sparse(), Moreau(1e-2, tolerance=1e-3)),
     "sparse-solver": lambda: simulate(sparse(), Moreau(1e-2, lcp="pgs")),
+    "sparse-projected": lambda: simulate(sparse(), Moreau(1e-2, projected=True)),
+    "sparse-stronge": lambda: simulate(sparse(law="stronge"), Moreau(1e-2)),
+    "sparse-tangents": lambda: simulate(sparse(tangent=along_the_second), Moreau(1e-2)),
+    "sparse-joints": lambda: simulate(sparse(joints=Joints(1, on_a_circle, its_row)), Moreau(1e-2)),
+    "dense": lambda: simulate(sparse(), EventDriven()),
+    "modes-error": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(), error=True),
     "modes-method": lambda: simulate(scenes.bilinear_oscillator(), Moreau(1e-2)),
     "modes-audit": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(audit=True)),
     "modes-friction": lambda: simulate(with_friction(), EventDriven()),
@@ -93,8 +115,24 @@ def test_what_is_refused_is_raised_in_the_words_of_the_list(key):
     with pytest.raises((LcpStepError, ValueError)) as error:
         ASKED[key]()
     said, line = str(error.value), REFUSALS[key]
-    for word in (line.argument + ": ", line.method, line.feature, line.reason, line.instead):
+    argument = "M" if key == "dense" else line.argument
+    for word in (argument + ": ", line.method, line.feature, line.reason, line.instead):
         assert word in said
+
+
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-2, tolerance=1e-3), Moreau(1e-2, lcp="pgs"), Moreau(1e-2, projected=True)]
+)
+def test_sparse_scenes_that_are_small_take_dense_steps_for_what_sparse_ones_do_not_know(method):
+    scene = scenes.column(n=3, restitution=0.5, t_end=0.5)
+    system, contacts = scene.system, scene.contacts
+    system = LinearSystem(scipy.sparse.csr_array(system.M), force=system.force)
+    as_sparse = replace(
+        scene, system=system, contacts=replace(contacts, G=scipy.sparse.csr_array(contacts.G))
+    )
+    a, b = simulate(as_sparse, method), simulate(scene, method)
+    assert as_sparse.system.sparse
+    np.testing.assert_array_equal(a.q, b.q)
 
 
 def test_every_line_of_the_list_is_asked_for():

@@ -69,6 +69,10 @@ class Coefficients:
                 self.wrong, self.slip = c, u[c]
         return self.wrong < 0
 
+    def measured(self, t: float, q: Any, u: Any) -> Any:
+        """`measure` from Python: the coefficients (2, n_c) of what slides and of what sticks, or None."""
+        return self.numbers[:2].copy() if self.measure(t, doubles(q), doubles(u)) else None
+
     def fault(self) -> str:
         """Which coefficient is none, in words; "" if all are."""
         if self.wrong < 0:

@@ -15,6 +15,7 @@ from lcpstep.stepping.steps import check_steps
 
 if TYPE_CHECKING:
     from lcpstep.recording import Kept
+    from lcpstep.stepping.sparse import SparseRun
     from lcpstep.trajectory import Trajectory
 
 
@@ -77,20 +78,38 @@ class Moreau:
         check_steps(self.h, scene.t_span, longest=self.tolerance is not None)
         if self.lcp != "lemke" and self.beyond_contacts(scene):
             raise refused("solver-beyond-contacts", scene)
-        if is_sparse(scene) and not self.beyond_contacts(scene):
-            from lcpstep.stepping import sparse
-
-            if self.tolerance is not None:
-                raise refused("sparse-tolerance", scene)
-            return sparse.SparseRun(self, scene, kept).finish(progress)
-        if is_sparse(scene) and self.tolerance is None and not self.projected:
-            from lcpstep.stepping import sparse_coupled
-
-            if sparse_coupled.takes(scene):
-                return sparse_coupled.CoupledRun(self, scene, kept).finish(progress)
+        if is_sparse(scene):
+            sparse_run = self.by_sparse_steps(scene)
+            if sparse_run is not None:
+                return sparse_run(self, scene, kept).finish(progress)
         from lcpstep.stepping.moreau_run import MoreauRun
 
         return MoreauRun(self, scene, kept).finish(progress)
+
+    def by_sparse_steps(self, scene: Scene) -> type[SparseRun] | None:
+        """The run by sparse steps, where they know all that is asked for; None where dense steps take the scene.
+
+        Raises LcpStepError where it is too large for those.
+        """
+        from lcpstep.model import LARGEST_DENSE
+        from lcpstep.stepping import sparse, sparse_coupled
+
+        unknown = ""
+        if self.tolerance is not None:
+            unknown = "sparse-tolerance"
+        elif self.lcp not in sparse.SOLVERS:
+            unknown = "sparse-solver"
+        elif self.projected:
+            unknown = "sparse-projected"
+        elif self.beyond_contacts(scene):
+            unknown = sparse_coupled.unknown(scene)
+        if unknown and scene.n_q > LARGEST_DENSE:
+            raise refused(unknown, scene)
+        if unknown:
+            return None
+        if not self.beyond_contacts(scene):
+            return sparse.SparseRun
+        return sparse_coupled.CoupledRun if sparse_coupled.takes(scene) else None
 
 
 def is_sparse(scene: Scene) -> bool:

@@ -24,7 +24,6 @@ from lagrangian import Scene, checks
 from lcpstep.kernels.layout import LEAD, LENGTH, MODE, TIME
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
-from lcpstep.refusals import refused
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
@@ -45,8 +44,6 @@ class SparseRun(StepRun):
     """One run of a sparse scene; see `moreau`, whose rules for steps, kept states and endings it obeys."""
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
-        if method.lcp not in SOLVERS:
-            raise refused("sparse-solver", scene)
         n_q, n_c = scene.n_q, scene.n_c
         frictional = scene.contacts is not None and scene.contacts.friction is not None
         n = n_c * (2 if frictional else 1) + scene.n_j

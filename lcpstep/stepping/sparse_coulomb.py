@@ -192,7 +192,7 @@ class Coupled:
 
     def factor(self, problem: Problem, modes: Any) -> Solve:
         """Solver for the modes; the one used last is kept."""
-        key = modes.tobytes() + problem.rough.tobytes()
+        key = b"".join(x.tobytes() for x in (modes, problem.rough, problem.mu))
         if self.kept is None or self.kept[0] != key:
             held = self.held(problem, modes)
             diagonal = np.where(held, self.proximal, 1.0)

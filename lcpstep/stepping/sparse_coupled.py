@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Harmonic, Joints, Scene
+from lagrangian import Joints, Scene
 from lcpstep.lcp.factor import factoriser
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
 from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
+from lcpstep.stepping.sparse_stiction import Stiction
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS
 from lcpstep.trajectory import Status
 
@@ -53,11 +54,10 @@ class CoupledRun(SparseRun):
 
         n_c, contacts, T = scene.n_c, scene.contacts, csr_array((scene.n_c, scene.n_q))
         friction = None if contacts is None else contacts.friction
-        self.mu, self.slip, self.tangent_restitution = np.zeros(n_c), np.zeros(n_c), np.zeros(n_c)
+        self.stiction, self.tangent_restitution = Stiction(scene, friction), np.zeros(n_c)
         if contacts is not None and friction is not None:
             given: Any = friction.tangent
             T = csr_array(given)
-            self.mu, self.slip = np.array(friction.mu), np.array(friction.slip)
             self.tangent_restitution = friction.tangential(contacts.restitution)
         self.T, self.abs_T, self.frictional = T, abs(T), friction is not None
         self.joints, self.modes = JointRows(scene), np.zeros(n_c, dtype=np.int64)
@@ -74,7 +74,11 @@ class CoupledRun(SparseRun):
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
         v_free = self.v + step.A_solve(r)
-        rates, sizes = self.rates(step, v_free, active, s_t)
+        rough, sliding = active & self.stiction.rough, self.T @ self.v + self.stiction.slip(t)
+        if rough.any() and not self.stiction.measure(t, self.q, sliding):
+            return self.v, Status.NOT_FINITE
+        slip = self.stiction.slip(t_next)
+        rates, sizes, impact = self.rates(step, v_free, active, s_t, sliding, slip)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
         J_start, _ = self.joints.at(t, self.q, self.v)
         v, speeds = self.v, np.abs(v_free)
@@ -88,8 +92,8 @@ class CoupledRun(SparseRun):
             if not np.all(np.isfinite(b)):
                 return v, Status.NOT_FINITE
             self.problems += bool(active.any())
-            problem = Problem(b, size, active, active & (self.mu > 0.0), self.mu, np.max(speeds))
-            point = step.coupled.solve(problem, modes, p)
+            problem = Problem(b, size, active, rough, self.stiction.mu, np.max(speeds))
+            point = self.stiction.solve(step.coupled, problem, modes, p, sliding, impact)
             if not point.solved:
                 return v, Status.JOINTS_FAILED if point.joints > CONTRADICTION else Status.LCP_FAILED
             modes, p, before = point.modes, point.p, v
@@ -107,26 +111,31 @@ class CoupledRun(SparseRun):
             left > (np.abs(data - J_start).max(initial=0.0) * most) ** 2
         ):  # what joints turn by is granted
             return v, Status.JOINTS_FAILED
+        rebound = impact * self.tangent_restitution * sliding
+        self.stiction.note(step.coupled, problem, point, self.T @ v + slip, rebound)
         self.modes, self.active = modes, active
         p_J, p_N, p_T = np.split(p, (self.joints.n, self.joints.n + len(s_t)))
         self.rows_p, self.p = p, np.maximum(p_N, 0.0)
         self.impulse += np.concatenate([self.p, *([p_T] if self.frictional else []), p_J])
         return v, Status.DONE
 
-    def rates(self, step: Any, v_free: Array, active: Any, s_t: Array) -> tuple[Array, Array]:
-        """Rates of normals and tangents at v_free and what restitution adds to them; the sizes of their terms."""
-        e, speeds, rough = self.equations, np.abs(v_free), active & (self.mu > 0.0)
-        b = [e.G @ v_free - s_t, self.T @ v_free + self.slip]
-        sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(self.slip)]
+    def rates(
+        self, step: Any, v_free: Array, active: Any, s_t: Array, sliding: Array, slip: Array
+    ) -> tuple[Array, Array, bool]:
+        """Rates of normals and tangents at v_free with what restitution adds, sizes of terms; is there an impact?
+
+        sliding, slip : (n_c,)   sliding velocities at the start of the step, and those of v = 0 at its end
+        """
+        e, speeds, rough = self.equations, np.abs(v_free), active & self.stiction.rough
+        b = [e.G @ v_free - s_t, self.T @ v_free + slip]
+        sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
         if rough.any():
             b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
         largest = step.saddle.abs_G.max(axis=1).toarray().ravel() if len(s_t) else s_t
         slow = np.abs(b[0] - self.u) + ROUNDING * largest * np.max(np.abs(self.v))
-        impact = rough.any() and np.any(active & (self.u < -slow))
-        rebound = [e.restitution * self.u, impact * self.tangent_restitution * (self.T @ self.v + self.slip)]
-        return np.concatenate(b) + np.concatenate(rebound), np.concatenate(sizes) + np.abs(
-            np.concatenate(rebound)
-        )
+        impact = bool(rough.any() and np.any(active & (self.u < -slow)))
+        added = np.concatenate([e.restitution * self.u, impact * self.tangent_restitution * sliding])
+        return np.concatenate(b) + added, np.concatenate(sizes) + np.abs(added), impact
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
@@ -137,15 +146,22 @@ class CoupledRun(SparseRun):
             )
         if code == Status.NEWTON_FAILED:
             return f"the joints' rows did not converge within {MAX_ITERATIONS} steps {self.where}; try a smaller h"
+        if code == Status.NOT_FINITE and self.stiction.kernel.fault():
+            return f"{self.stiction.kernel.fault()} {self.where}"
         return super().why(code)
+
+
+def unknown(scene: Scene) -> str:
+    """What these steps do not know of a sparse scene's joints and friction, as in `lcpstep.refusals`; "" if all."""
+    joints, contacts = scene.joints, scene.contacts
+    friction = None if contacts is None else contacts.friction
+    if friction is not None and friction.law == "stronge":
+        return "sparse-stronge"
+    if friction is not None and callable(friction.tangent):
+        return "sparse-tangents"
+    return "sparse-joints" if isinstance(joints, Joints) and joints.pattern is None else ""
 
 
 def takes(scene: Scene) -> bool:
     """Whether a sparse scene is large, and its joints and its friction are of the kind that these steps know."""
-    joints, contacts = scene.joints, scene.contacts
-    friction = None if contacts is None else contacts.friction
-    known = friction is None or not (
-        callable(friction.mu) or callable(friction.tangent) or friction.mu_s is not None
-        or friction.law == "stronge" or isinstance(friction.slip, Harmonic)
-    )  # fmt: skip
-    return known and scene.n_q > FEW and (not isinstance(joints, Joints) or joints.pattern is not None)
+    return scene.n_q > FEW and not unknown(scene)

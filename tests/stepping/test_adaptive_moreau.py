@@ -199,9 +199,9 @@ def test_bad_tolerances_are_named(bad):
 def test_what_takes_steps_of_one_size_only_says_so():
     with pytest.raises(LcpStepError, match="lemke"):
         Moreau(0.1, lcp="qp", tolerance=1e-4)
-    many = LinearSystem(sparse.eye_array(3))
+    many = LinearSystem(sparse.eye_array(3000))
     with pytest.raises(LcpStepError, match="sparse"):
-        simulate(Scene(many, np.ones(3), np.zeros(3), (0.0, 1.0)), Moreau(0.1, tolerance=1e-4))
+        simulate(Scene(many, np.ones(3000), np.zeros(3000), (0.0, 1.0)), Moreau(0.1, tolerance=1e-4))
 
 
 @pytest.mark.slow

@@ -1,11 +1,14 @@
 """Large sparse systems with joints and friction: the dense steps, closed forms, energy, and what has no answer."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import sparse
 
-from lagrangian import Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
-from lcpstep import Moreau, energy, simulate
+from lagrangian import Coulomb, Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
+from lcpstep import Moreau, SimulationError, energy, simulate
 from lcpstep.stepping import sparse_coupled
 from lcpstep.trajectory import Status
 
@@ -24,7 +27,7 @@ def made_dense(s):
         joints = Joints(s.n_j, joints.gap, joints.as_contacts().jacobian, bias=joints.bias)
     elif joints is not None:
         joints = LinearJoints(joints.G.toarray(), joints.offset, joints.motion)
-    friction = None if f is None else Coulomb(f.mu, f.tangent.toarray(), f.slip, f.restitution, law=f.law)
+    friction = None if f is None else Coulomb(f.mu, f.tangent.toarray(), f.slip, f.restitution, f.mu_s, f.law)
     return Scene(
         system=LinearSystem(s.system.M.toarray(), s.system.C.toarray(), s.system.K.toarray(), s.system.force),
         contacts=LinearContacts(c.G.toarray(), c.offset, c.restitution, c.motion, friction),
@@ -50,6 +53,26 @@ def coupled_masses(seed, friction=True, joints=True):
     )  # fmt: skip
 
 
+def falling(t, q, u, p, out):
+    """Stribeck's coefficient: 0.6 at rest, 0.2 far from it."""
+    for c in range(len(out)):
+        out[c] = 0.2 + 0.4 * math.exp(-abs(u[c]) / 0.2)
+
+
+def swaying(n):
+    """Belts that run to and fro."""
+    return Harmonic(np.full(n, -0.1), np.full(n, 0.3), np.full(n, 0.2), 9.0)
+
+
+def rubbing(s, mu=0.2, **friction):
+    """The scene with another friction."""
+    c = s.contacts
+    contacts = LinearContacts(
+        c.G, c.offset, c.restitution, c.motion, Coulomb(mu, c.friction.tangent, **friction)
+    )
+    return replace(s, contacts=contacts)
+
+
 SAME = {
     "chain of 5": (scenes.hinged_chain(n=5, t_end=0.4), 0.5),
     "chain of 5, thrown up": (scenes.hinged_chain(n=5, restitution=0.3, t_end=0.4), 1.0),
@@ -58,7 +81,12 @@ SAME = {
     "joints and friction": (coupled_masses(1), 0.5),
     "friction": (coupled_masses(2, joints=False), 0.5),
     "joints": (coupled_masses(3, friction=False), 1.0),
-}
+    "what sticks has more": (rubbing(coupled_masses(2, joints=False), mu_s=0.5), 0.5),
+    "what sticks has more, slides without": (rubbing(coupled_masses(1), 0.0, mu_s=0.5), 0.5),
+    "masses on swaying belts": (rubbing(coupled_masses(2, joints=False), mu_s=0.5, slip=swaying(12)), 0.5),
+    "chain, Stribeck": (rubbing(scenes.hinged_chain(n=5, t_end=0.4), falling), 1.0),
+    "masses, Stribeck and Newton": (rubbing(coupled_masses(1), falling, mu_s=0.9, law="newton"), 0.5),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SAME)
@@ -73,6 +101,43 @@ def test_the_sparse_run_is_the_dense_run(name):
     assert a.friction_impulse.shape == b.friction_impulse.shape
     assert a.joint_impulse.shape == b.joint_impulse.shape
     np.testing.assert_allclose(a.joint_drift, b.joint_drift, rtol=0, atol=1e-10)
+
+
+def thousand_blocks(**friction):
+    """A thousand blocks on a belt, each on a spring of its own."""
+    n = 1000
+    rows = np.arange(n)
+    up, along = (sparse.csr_array((np.ones(n), (rows, 2 * rows + i)), shape=(n, 2 * n)) for i in (1, 0))
+    return Scene(
+        system=LinearSystem(sparse.eye_array(2 * n), K=sparse.diags_array(np.tile([1.0, 0.0], n)),
+                            force=Harmonic(constant=np.tile([0.0, -1.0], n))),
+        contacts=LinearContacts(up, friction=Coulomb(0.6, along, slip=-0.2, **friction)),
+        q0=np.zeros(2 * n), v0=np.tile([0.2, 0.0], n), t_span=(0.0, 8.0),
+    )  # fmt: skip
+
+
+def test_a_thousand_blocks_on_a_belt_stick_and_slip_as_one_does():
+    """Carried to x = mu_s, round an arc of a circle, and carried again: `scenes.stick_slip_belt`."""
+    exact = scenes.stick_slip_belt(belt=0.2, mu=0.6, mu_s=1.0).exact
+    t = np.linspace(0.5, 8.0, 16)
+    run = simulate(thousand_blocks(mu_s=1.0), Moreau(0.01), keep=t)
+    assert run.status == Status.DONE
+    q = exact(t)[0][:, :1]
+    assert np.ptp(q) > 0.8
+    assert np.max(np.abs(run.q[:, ::2] - q)) < 0.02
+    assert np.ptp(run.q[:, ::2], axis=1).max() < 1e-12
+
+
+def test_a_coefficient_that_is_none_is_named():
+    def wrong(t, q, u, p, out):
+        for c in range(len(out)):
+            out[c] = 0.3 - 0.5 * t
+
+    scene = rubbing(coupled_masses(2, joints=False), wrong)
+    with pytest.raises(
+        SimulationError, match=r"friction.mu: expected coefficients >= 0, got -0.\d+ of contact"
+    ):
+        simulate(replace(scene, t_span=(0.0, 0.9)), Moreau(1e-3))
 
 
 def test_impulses_that_are_unique_are_those_of_the_dense_run():

@@ -1,0 +1,93 @@
+"""Coefficients of friction in steps of large sparse systems: the law of `kernels.stiction`, on whole vectors.
+
+What stuck before a step has mu_s as long as that keeps it from sliding, what slides has mu, and sticks with mu_s
+where it would turn about within the step; each contact changes to and fro once at most.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Coulomb, Harmonic, Scene
+from lcpstep.model import coefficients
+from lcpstep.stepping.sparse_coulomb import Coupled, Point, Problem
+from lcpstep.stepping.sparse_path import STICK
+
+Array = NDArray[np.float64]
+AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; this and the next: `kernels.stiction`
+SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
+
+
+class Stiction:
+    """The coefficients of all contacts at the state last measured, and which of the contacts stick.
+
+    mu, mu_s : (n_c,)   of what slides, and of what sticks
+    rough : (n_c,)      contacts that have any friction, or may have
+    sticks : (n_c,)     contacts that the last step kept from sliding
+    """
+
+    def __init__(self, scene: Scene, friction: Coulomb | None) -> None:
+        n_c = scene.n_c
+        self.kernel, self.given = coefficients(scene), None if friction is None else friction.slip
+        self.varies, self.sticks = bool(self.kernel.varies), np.zeros(n_c, dtype=bool)
+        self.mu, self.mu_s = np.zeros((2, n_c))
+        if not self.varies:
+            self.measure(scene.t_span[0], np.array(scene.q0), np.zeros(n_c))
+        self.rough = self.varies | (self.mu_s > 0.0)
+
+    def slip(self, t: float) -> Array:
+        """Sliding velocities at v = 0."""
+        given: Any = self.given
+        if isinstance(given, Harmonic):
+            return given.at(t, len(self.mu))
+        return np.zeros(len(self.mu)) if given is None else np.asarray(given)
+
+    def measure(self, t: float, q: Array, u: Array) -> bool:
+        """The coefficients at the sliding velocities u; False where one is negative or no number."""
+        measured = self.kernel.measured(t, q, np.where(self.sticks, 0.0, u))
+        if measured is None:
+            return False
+        self.mu, self.mu_s = measured
+        return True
+
+    def solve(
+        self, coupled: Coupled, problem: Problem, modes: Any, p: Array, sliding: Array, impact: bool
+    ) -> Point:
+        """The answer with the coefficients that fit it; those of `problem` do not count.
+
+        sliding : (n_c,)   sliding velocities at the start of the step;  impact : whether contacts strike in it
+        """
+        tried = np.where(self.sticks, STICKS, SLIDES)
+        mu = self.mu if impact else np.where(self.sticks, self.mu_s, self.mu)
+        while True:
+            point = coupled.solve(problem._replace(mu=mu), modes, p)
+            if impact or not self.kernel.two or not point.solved:
+                return point
+            u, size = self.rates(coupled, problem, point)
+            slips = (point.modes > STICK) & (np.abs(u) > AT_REST * size)
+            gives_way = slips & (tried == STICKS)
+            turns = slips & (tried == SLIDES) & (u * sliding <= 0.0)
+            if not np.any(gives_way | turns):
+                return point
+            tried = np.where(gives_way, GIVES_WAY, np.where(turns, STICKS, tried))
+            mu = np.where(gives_way, self.mu, np.where(turns, self.mu_s, mu))
+            modes, p = point.modes, point.p
+
+    def note(self, coupled: Coupled, problem: Problem, point: Point, u: Array, rebound: Any) -> None:
+        """Which contacts do not slide at the end of a step.
+
+        u, rebound : (n_c,)   their sliding velocities then; what restitution has added to those of the problem
+        """
+        size = self.rates(coupled, problem, point)[1]
+        still = ((point.modes == STICK) & (rebound == 0.0)) | (np.abs(u) <= AT_REST * size)
+        pressed = point.p[coupled.n_j : coupled.n_j + coupled.n_c] > 0.0
+        self.sticks = problem.rough & pressed & still
+
+    def rates(self, coupled: Coupled, problem: Problem, point: Point) -> tuple[Array, Array]:
+        """Sliding velocities at an answer, and the sizes of their terms."""
+        T = slice(coupled.n_r - coupled.n_c, None)
+        u = (coupled.R @ point.x + problem.b)[T]
+        return u, (problem.size + coupled.abs_R @ (point.size_x / coupled.diagonal))[T]
