@@ -55,6 +55,7 @@ cdef class Rubbing(RungeKutta):
     cdef double* multiplier
     cdef double* impulse
     cdef double* account
+    cdef double* instant
     cdef double* shifted_rate
     cdef double* counted
     cdef double* total
