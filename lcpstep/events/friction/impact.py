@@ -224,8 +224,10 @@ def close(s: Rubbing, c: int) -> None:
             s.mode[d] = STICKS if s.mode[d] != OPEN and s.coefficients.rough[d] == 1 else s.mode[d]
         hold_modes(s)
     copy(s.account, s.impulse, s.n_r)
+    copy(s.seen, s.v, s.n_q)
     stop_rows(s)
-    keep_in_cone(s, c)
+    if leaves_cone(s, c):
+        take_back(s, c)
     put_on_account(s)
     measure_velocities(s, s.v)
     find_free(s)
@@ -240,20 +242,28 @@ def slides_on(s: Rubbing, i: int, slip: float) -> bool:
     return (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
 
 
-def keep_in_cone(s: Rubbing, c: int) -> None:
-    """Give contact c, just stopped, no more friction than belongs to all the impulses of its normal at this instant.
-
-    An impact that would stop the sliding has less than a sliding one, and the end of chattering takes back of a
-    sliding one: what is beyond the cone would do work.
-    """
-    i = s.n_j + s.n_c + c
+def leaves_cone(s: Rubbing, c: int) -> bool:
+    """Whether contact c, just stopped, has more friction at this instant than belongs to what its normal has had."""
     normal, friction = s.impulse[c] - s.instant[c], s.impulse[s.n_c + c] - s.instant[s.n_c + c]
-    most = s.mu[c] * normal
-    if normal > 0.0 and abs(friction) > most:
-        s.mode[c], s.direction[c] = SLIDES, -1.0 if friction > 0.0 else 1.0
-        if hold_modes(s):
-            apply(s, i, -s.direction[c] * most - friction)
-            stop_rows(s)
+    return normal < 0.0 or abs(friction) > (1.0 + NOISE) * s.mu_s[c] * normal
+
+
+def take_back(s: Rubbing, c: int) -> None:
+    """Stop contact c from before in another way: of its impact so much that none is left, in its own proportion.
+
+    An impact whose restitution turns the sliding has other friction than the sliding that it leaves; Moreau's law is
+    plastic then. A friction beyond the cone would do work.
+    """
+    normal, friction = s.account[c] - s.instant[c], s.account[s.n_c + c] - s.instant[s.n_c + c]
+    if normal <= 0.0:
+        return
+    mode, direction, s.mode[c] = s.mode[c], s.direction[c], SLIDES
+    s.direction[c] = -friction / (s.mu[c] * normal) if s.mu[c] > 0.0 else direction
+    if hold_modes(s):
+        copy(s.v, s.seen, s.n_q)
+        copy(s.impulse, s.account, s.n_r)
+        stop_rows(s)
+    s.mode[c], s.direction[c] = mode, direction
 
 
 def touching(s: Rubbing, c: int) -> float:
