@@ -55,6 +55,7 @@ class Rubbing(RungeKutta):
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
     terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
+    paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
         never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
@@ -116,7 +117,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (13 + ALL) * r + (n + r + 1) * (n + r))
+        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (14 + ALL) * r + 1 + (n + r + 1) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -142,7 +143,8 @@ class Rubbing(RungeKutta):
         self.impulse = after(self.change, r)
         self.account = after(self.impulse, r)
         self.instant = after(self.account, r)
-        self.shifted_rate = after(self.instant, r)
+        self.paces, self.paced = after(self.instant, r), 0
+        self.shifted_rate = after(self.paces, r + 1)
         self.counted = after(self.shifted_rate, r)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
