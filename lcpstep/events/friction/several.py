@@ -23,7 +23,7 @@ CLEARLY = 1e-9  # relative: forces and accelerations that are less may be zero
 
 
 def opened_or_closed(c: ContactProblem, n: int) -> int:
-    """The first of n sliding contacts that carries a force by one answer alone, of that in `impulse` and another; -1."""
+    """The first of n sliding contacts with a force by one alone of two answers, `impulse` and another; or -1."""
     if n < 2 or n > MOST or is_sure(c, n):
         return -1
     for pressed in range(1 << n):

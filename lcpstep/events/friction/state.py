@@ -117,7 +117,9 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (14 + ALL) * r + 1 + (n + r + 1) * (n + r))
+        self.table = np.zeros(
+            11 * n + n * n + 3 * r * n + 3 * r * r + (14 + ALL) * r + 1 + (n + r + 1) * (n + r)
+        )
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
