@@ -18,6 +18,34 @@ def test_runs_end_create_no_energy_and_are_those_of_small_steps(first, law):
         assert not wrong, f"scene {seed}: {wrong}"
 
 
+@pytest.mark.parametrize("seed", [5000060, 6000335, 6001137])
+def test_sliding_slower_than_the_tolerance_does_not_feed_a_chattering(seed):
+    wrong, end = complaints(seed)
+    assert not wrong
+    assert end == "DONE"
+
+
+@pytest.mark.parametrize("seed", [2311362, 2312078, 5000449, 6000132, 6001004, 6000468])
+def test_the_end_of_a_chattering_creates_no_energy(seed):
+    """Walls and belts move; in 6000468 the other contact slides fast, and is not stopped with the one that hopped."""
+    wrong, _ = complaints(seed)
+    assert not wrong
+
+
+def test_two_sliding_contacts_with_several_answers_are_named():
+    """A block on belts that run against each other may stay, or tip over either foot."""
+    scene = draw(5000929)
+    c = scene.contacts
+    D = np.vstack([c.G, c.friction.tangent])
+    M, force = scene.system.M, scene.system.force
+    slip = c.friction.tangent @ scene.v0 + c.friction.slip
+    b = D @ np.linalg.solve(M, np.array(force.constant) + np.array(force.cosine) - scene.system.C @ scene.v0)
+    assert len(answers(D @ np.linalg.solve(M, D.T), b, c.friction.mu, np.sign(slip))) == 3
+    run = simulate(scene, EventDriven())
+    assert run.status == Status.PAINLEVE_INDETERMINATE
+    assert "beside what else is held" in run.message
+
+
 @pytest.mark.parametrize("seed", [37, 482, 725])
 def test_what_has_no_solution_is_said(seed):
     """Walls close on a body that friction holds between them, or belts pull it in; in 37 it meets them in turn."""

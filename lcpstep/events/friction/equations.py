@@ -118,11 +118,11 @@ def measure_gaps(s: Rubbing, t: float, y: Doubles) -> None:
 
 
 def measure_velocities(s: Rubbing, v: Doubles) -> None:
-    """Velocities R v + rate of all rows; `terms` of contacts grow to their rounding."""
+    """Velocities R v + rate of all rows; `terms` of contacts and tangents grow to their rounding."""
     for i in range(s.n_r):
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
-    for c in range(s.n_c):
-        s.terms[c] = max(s.terms[c], NOISE * size_of(s, s.n_j + c, v))
+    for i in range(2 * s.n_c):
+        s.terms[i] = max(s.terms[i], NOISE * size_of(s, s.n_j + i, v))
 
 
 def size_of(s: Rubbing, i: int, v: Doubles) -> float:

@@ -32,7 +32,12 @@ cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(slow=bint)
 cdef bint is_over(Rubbing s, Py_ssize_t c, double u, double height) noexcept nogil
+@cython.locals(rough=bint)
 cdef void close(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef bint slides_on(Rubbing s, Py_ssize_t i, double slip) noexcept nogil
+cdef bint leaves_cone(Rubbing s, Py_ssize_t c) noexcept nogil
+@cython.locals(direction=double, mode=Py_ssize_t)
+cdef void take_back(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double touching(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void find_touching(Rubbing s) noexcept nogil
 cdef void forget_terms(Rubbing s) noexcept nogil

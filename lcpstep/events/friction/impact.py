@@ -138,6 +138,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     if record.full(4 * s.n_c + 4):
         return BUFFER_FULL
     hit, first = s.culprit, -1
+    copy(s.instant, s.impulse, s.n_r)
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
         s.free[c] = 1
@@ -164,10 +165,15 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 
 
 def find_free(s: Rubbing) -> None:
-    """Which closed contacts have no sliding velocity; the direction of the others."""
+    """Which closed contacts have no sliding velocity; the direction of the others.
+
+    What an impact keeps from sliding it leaves without speed but for rounding. Beside the hops of a chattering slower
+    sliding than the tolerance is no rest: to stop it would feed hops of that size without end.
+    """
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
-        s.free[c] = 1 if abs(s.velocity[i]) <= still(s, i) else 0
+        least = s.terms[s.n_c + c] if s.rounds > 0 else still(s, i)
+        s.free[c] = 1 if abs(s.velocity[i]) <= least else 0
         if s.free[c] == 1:
             s.velocity[i] = 0.0
         else:
@@ -208,23 +214,56 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
 def close(s: Rubbing, c: int) -> None:
     """Take the velocity of contact c, which slides on as before, unless that stops it."""
     i = s.n_j + s.n_c + c
-    slip = s.velocity[i]
+    slip, rough = s.velocity[i], s.coefficients.rough[c] == 1
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = SLIDES if s.coefficients.rough[c] == 0 or abs(slip) > still(s, i) else STICKS
-    if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1 and hold_modes(s):
-        copy(s.dv, s.v, s.n_q)
-        constrain(s, s.dv, s.rate)
-        if (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip <= 0.0:
-            s.mode[c] = STICKS
+    s.mode[c] = SLIDES if not rough or abs(slip) > still(s, i) else STICKS
+    if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
+        s.mode[c] = STICKS
     if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
         for d in range(s.n_c):
             s.mode[d] = STICKS if s.mode[d] != OPEN and s.coefficients.rough[d] == 1 else s.mode[d]
         hold_modes(s)
     copy(s.account, s.impulse, s.n_r)
+    copy(s.seen, s.v, s.n_q)
     stop_rows(s)
+    if leaves_cone(s, c):
+        take_back(s, c)
     put_on_account(s)
     measure_velocities(s, s.v)
     find_free(s)
+
+
+def slides_on(s: Rubbing, i: int, slip: float) -> bool:
+    """Whether what the modes hold can be stopped, and leaves row i its direction of sliding."""
+    if not hold_modes(s):
+        return False
+    copy(s.dv, s.v, s.n_q)
+    constrain(s, s.dv, s.rate)
+    return (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
+
+
+def leaves_cone(s: Rubbing, c: int) -> bool:
+    """Whether contact c, just stopped, has more friction at this instant than belongs to what its normal has had."""
+    normal, friction = s.impulse[c] - s.instant[c], s.impulse[s.n_c + c] - s.instant[s.n_c + c]
+    return normal < 0.0 or abs(friction) > (1.0 + NOISE) * s.mu_s[c] * normal
+
+
+def take_back(s: Rubbing, c: int) -> None:
+    """Stop contact c from before in another way: of its impact so much that none is left, in its own proportion.
+
+    An impact whose restitution turns the sliding has other friction than the sliding that it leaves; Moreau's law is
+    plastic then. A friction beyond the cone would do work.
+    """
+    normal, friction = s.account[c] - s.instant[c], s.account[s.n_c + c] - s.instant[s.n_c + c]
+    if normal <= 0.0:
+        return
+    mode, direction, s.mode[c] = s.mode[c], s.direction[c], SLIDES
+    s.direction[c] = -friction / (s.mu[c] * normal) if s.mu[c] > 0.0 else direction
+    if hold_modes(s):
+        copy(s.v, s.seen, s.n_q)
+        copy(s.impulse, s.account, s.n_r)
+        stop_rows(s)
+    s.mode[c], s.direction[c] = mode, direction
 
 
 def touching(s: Rubbing, c: int) -> float:
@@ -245,6 +284,6 @@ def find_touching(s: Rubbing) -> None:
 def forget_terms(s: Rubbing) -> None:
     """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
     s.rounds = 0
-    for c in range(s.n_c):
-        s.terms[c] = 0.0
+    copy(s.instant, s.impulse, s.n_r)
+    clear(s.terms, 2 * s.n_c)
     measure_velocities(s, after(s.y, s.n_q))

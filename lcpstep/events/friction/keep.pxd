@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.record cimport LEAD, LENGTH, Record
 from lcpstep.kernels.tally cimport Tally

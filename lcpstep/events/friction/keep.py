@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import LEAD, LENGTH, Record
     from lcpstep.kernels.tally import Tally
@@ -42,7 +42,8 @@ def pay(s: Rubbing, c: int) -> None:
     """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it."""
     i = s.n_c + c
     normal, friction = s.impulse[c] + s.owed[c], s.impulse[i] + s.owed[s.n_c + c]
-    if normal >= 0.0 and abs(friction) <= s.mu_s[c] * normal:
+    noise = NOISE * (abs(s.impulse[i]) + abs(s.owed[i]))
+    if normal >= 0.0 and abs(friction) <= s.mu_s[c] * normal + noise:
         s.impulse[c], s.impulse[i] = normal, friction
         s.owed[c] = s.owed[s.n_c + c] = 0.0
 

@@ -2,6 +2,7 @@ cimport cython
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
 from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
+from lcpstep.events.friction.several cimport opened_or_closed
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record

@@ -31,6 +31,7 @@ if not cython.compiled:
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
+    from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.record import Record
@@ -83,7 +84,7 @@ def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
 
 
 def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
-    """Solve; a sliding contact whose own mobility is not positive has no answer, or two."""
+    """Solve; a sliding contact whose own mobility is not positive has no answer, or two; so may several together."""
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
@@ -95,7 +96,10 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
             return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
     if not solve_contacts(s.problem, n_a, n_f):
         return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
-    return PAINLEVE_INDETERMINATE if jams >= 0 else DONE
+    other = opened_or_closed(s.problem, n_a) if jams < 0 and n_f == 0 else -1
+    if other >= 0:
+        s.culprit = s.problem.ids[other]
+    return PAINLEVE_INDETERMINATE if jams >= 0 or other >= 0 else DONE
 
 
 def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:

@@ -115,10 +115,11 @@ class FrictionRun(running.EventRun):
     def paradox(self, code: int) -> str:
         """Painleve's paradox in words: the contact, and the coefficient of friction from which on it occurs."""
         c = int(self.system.culprit)
-        critical = self.system.critical_friction(c)
-        limit = f" (critical at this state: {critical:.9g})" if critical > 0.0 else ""
+        mu, critical = self.system.coefficient(c), self.system.critical_friction(c)
+        alone = critical > 0.0 and mu >= (1.0 - 1e-9) * critical
+        limit = f" (critical at this state: {critical:.9g})" if alone else " beside what else is held"
         words = {
             Status.PAINLEVE_INCONSISTENT: "no force keeps it from passing the surface",
             Status.PAINLEVE_INDETERMINATE: "it may as well stay closed as open",
         }[Status(code)]
-        return f"contact {c} slides with mu = {self.system.coefficient(c):g}{limit}, and {words}"
+        return f"contact {c} slides with mu = {mu:g}{limit}, and {words}"

@@ -24,7 +24,7 @@ cdef class Rubbing(RungeKutta):
     cdef public Py_ssize_t next, culprit, jams, rounds
     cdef readonly bint in_turn, yields
     cdef readonly double t_end, scan_length
-    cdef Py_ssize_t guard
+    cdef Py_ssize_t guard, paced
     cdef double found, slope
     cdef bint constant, moving, plain, measured, mapped, risen
     cdef double* nodes
@@ -55,6 +55,8 @@ cdef class Rubbing(RungeKutta):
     cdef double* multiplier
     cdef double* impulse
     cdef double* account
+    cdef double* instant
+    cdef double* paces
     cdef double* shifted_rate
     cdef double* counted
     cdef double* total

@@ -53,8 +53,9 @@ class Rubbing(RungeKutta):
     mode, was_mode, new_mode : (n_c,)    OPEN, STICKS, SLIDES; as last told; as decided, but not yet obeyed
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
-    terms : (n_c,)               size of the terms of a gap velocity, at the impacts of one instant
+    terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
+    paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
     held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
     effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
         never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
@@ -67,7 +68,7 @@ class Rubbing(RungeKutta):
     jams                         how often it did;  rounds    problems of impacts at this instant
     problem                      the complementarity problem at hand, of an impact or of forces
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
-    account : (n_r,)             `impulse` before the end of chattering adds to it, see `owed`
+    account, instant : (n_r,)    `impulse` before the end of chattering adds to it, see `owed`; before this instant
     guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch
     culprit                      contact or joint that a failure is about, or -1
 
@@ -116,7 +117,9 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(11 * n + n * n + 3 * r * n + 3 * r * r + (12 + ALL) * r + (n + r + 1) * (n + r))
+        self.table = np.zeros(
+            11 * n + n * n + 3 * r * n + 3 * r * r + (14 + ALL) * r + 1 + (n + r + 1) * (n + r)
+        )
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
         self.a = after(self.a_free, n)
@@ -141,14 +144,16 @@ class Rubbing(RungeKutta):
         self.change = after(self.x, r)
         self.impulse = after(self.change, r)
         self.account = after(self.impulse, r)
-        self.shifted_rate = after(self.account, r)
+        self.instant = after(self.account, r)
+        self.paces, self.paced = after(self.instant, r), 0
+        self.shifted_rate = after(self.paces, r + 1)
         self.counted = after(self.shifted_rate, r)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
         self.effect = after(self.loads, ALL * r)
         self.multiplier = after(self.effect, n)
         self.effects = after(self.multiplier, r)
-        self.per_contact = np.zeros(8 * n_c)
+        self.per_contact = np.zeros(9 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking
         self.tangential = doubles(self.given)
@@ -156,9 +161,9 @@ class Rubbing(RungeKutta):
         self.was_direction = after(self.direction, n_c)
         self.new_direction = after(self.direction, 2 * n_c)
         self.terms = after(self.direction, 3 * n_c)
-        self.before = after(self.direction, 4 * n_c)
-        self.owed = after(self.direction, 5 * n_c)
-        self.slip = after(self.direction, 7 * n_c)
+        self.before = after(self.direction, 5 * n_c)
+        self.owed = after(self.direction, 6 * n_c)
+        self.slip = after(self.direction, 8 * n_c)
         self.marks = np.zeros(7 * n_c + r, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)

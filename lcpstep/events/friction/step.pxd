@@ -16,6 +16,7 @@ cdef Py_ssize_t ALL, STAGES, SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_
 cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef void change_pace(Rubbing s) noexcept nogil
 cdef bint of_force(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t arrive(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil

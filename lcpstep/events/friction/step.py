@@ -32,6 +32,8 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step, which ends at the first event within it; what comes next into `next`. A status."""
     t0, border = s.clock.t0, min(s.t_end, s.clock.high)
     s.culprit = -1
+    if s.n_held != s.paced:
+        change_pace(s)
     code = s.take_step(t0, min(border - t0, s.scan_length), s.scan_length)
     if code != DONE:
         return PAINLEVE_INCONSISTENT if s.culprit >= 0 and code != STEP_TOO_SMALL else code
@@ -53,6 +55,14 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         return NOT_FINITE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
     return arrive(s, g) if code == DONE else code
+
+
+def change_pace(s: Rubbing) -> None:
+    """Go on with the step that was next when as many rows were held: what sticks allows others than what slides."""
+    s.paces[s.paced] = s.next_step
+    if s.paces[s.n_held] > 0.0:
+        s.next_step = s.paces[s.n_held]
+    s.paced = s.n_held
 
 
 def of_force(s: Rubbing, g: int) -> bool:
