@@ -12,7 +12,7 @@ RODS = [EventDriven(), Located(0.01, 4), Located(0.01, tolerance=1e-4), Located(
 
 
 def series(m, v0, r):
-    """Impulses of the wall struck first and of the other: |v| (1 + r_1) and r_1 |v| (1 + r_2), times 1, r_1 r_2, .."""
+    """Impulses of the wall struck first and of the other: |v| (1 + r_1) and r_1 |v| (1 + r_2), over 1 - r_1 r_2."""
     ratio = r[0] * r[1]
     return m * abs(v0) * np.array([1.0 + r[0], r[0] * (1.0 + r[1])]) / (1.0 - ratio)
 

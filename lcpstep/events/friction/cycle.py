@@ -1,4 +1,4 @@
-"""Impacts without end at one instant that repeat in proportion, as kernels: they are summed. See `kernels.recurrence`.
+"""Impacts at one instant that repeat in proportion without end, as kernels: their sum. See `kernels.recurrence`.
 
 With rho the ratio of two turns, what a turn changes of any velocity comes rho / (1 - rho) times more.
 """
@@ -28,7 +28,7 @@ def look_back(s: Rubbing) -> None:
 
 
 def recurs(s: Rubbing) -> float:
-    """The ratio in which the speeds of all contacts struck since have returned, if what is left can be summed; or 0."""
+    """The ratio in which the speeds of all contacts struck since have returned, where the rest can be summed; or 0."""
     n_j = s.n_j
     for i in range(s.n_r):
         s.turn_impulse[i] = s.impulse[i] - s.turn_start[i]

@@ -66,7 +66,7 @@ class Rubbing(RungeKutta):
     risen                        the guard found has been above its band before it falls through zero
     jams                         how often it did;  rounds    problems of impacts at this instant
     problem                      the complementarity problem at hand, of an impact or of forces
-    turn_velocity, turn_start : (n_r,)   velocities, and `impulse`, a number of impacts ago;  turn_impulse   since then
+    turn_velocity, turn_start : (n_r,)   velocities, and `impulse`, some impacts ago;  turn_impulse   since then
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
     account : (n_r,)             `impulse` before the end of chattering adds to it, see `owed`
     guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch

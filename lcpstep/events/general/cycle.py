@@ -1,4 +1,4 @@
-"""Impacts without end at one instant that repeat in proportion, as kernels: they are summed. See `kernels.recurrence`."""
+"""Impacts at one instant that repeat in proportion without end, as kernels: their sum. See `kernels.recurrence`."""
 
 from __future__ import annotations
 

@@ -72,8 +72,8 @@ def arrive(s: Mechanism, c: int) -> bool:
 def has_room(s: Mechanism, c: int, g: float) -> bool:
     """Whether contact c, whose gap `lift` has taken from g to zero, leaves room; where it was led astray q goes back.
 
-    By h = |(G' - G) dq| / |G dq|: Newton's step leads towards a zero where h <= 1/2. Beyond that a parabola that bends
-    downwards, as in the middle of a bowl, has none if g < 0, and if g > 0 no more height above g than g. Source of h:
+    By h = |(G' - G) dq| / |G dq|: Newton's step leads towards a zero where h <= 1/2. Beyond that a parabola that
+    bends downwards, as in the middle of a bowl, has none if g < 0, and if g > 0 rises by no more than g. Source of h:
     L. Kantorovich, Functional analysis and applied mathematics, Uspekhi Matematicheskikh Nauk 3 (1948).
     """
     i = s.n_j + c
