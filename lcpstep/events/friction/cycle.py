@@ -28,7 +28,7 @@ def look_back(s: Rubbing) -> None:
 
 
 def recurs(s: Rubbing) -> float:
-    """The ratio in which the speeds of all contacts struck since have returned, where the rest can be summed; or 0."""
+    """The ratio in which the speeds of all contacts struck since have returned, where the rest can be summed."""
     n_j = s.n_j
     for i in range(s.n_r):
         s.turn_impulse[i] = s.impulse[i] - s.turn_start[i]
