@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.events.friction.cycle cimport look_back, recurs, sum_up
 from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure, measure_velocities, size_of
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
 from lcpstep.events.friction.keep cimport log, put_on_account
@@ -8,6 +9,7 @@ from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.recurrence cimport looks_back
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after, inf, min
@@ -22,7 +24,7 @@ cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) 
 @cython.locals(share=double, own=bint)
 cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f, bint plastic) noexcept nogil
 cdef void strike_with(
-    Rubbing s, Record record, Tally tally, double t, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t jammed
+    Rubbing s, Record record, Tally tally, double t, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t jammed, bint plastic
 ) noexcept nogil
 @cython.locals(done=bint)
 cdef Py_ssize_t jam(Rubbing s, Record record, Tally tally, double t) noexcept nogil

@@ -19,6 +19,7 @@ from lcpstep.events.general.ends import NO_IMPULSES
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
+    from lcpstep.events.friction.cycle import look_back, recurs, sum_up
     from lcpstep.events.friction.equations import (
         apply,
         gap_size,
@@ -35,6 +36,7 @@ if not cython.compiled:
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.recurrence import looks_back
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, after, inf, min
@@ -49,7 +51,8 @@ STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Impacts until no contact on its surface approaches; those that are left without speed are closed.
 
-    Impacts that go to and fro without end, in a wedge that closes, end in a plastic one of all contacts that touch.
+    Impacts that go to and fro are summed where they fade in proportion; those that do not, as in a wedge that closes,
+    end in a plastic one of all contacts that touch.
     """
     while s.rounds < 2 * ROUNDS:
         if not approaches(s):
@@ -57,9 +60,15 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
             return DONE
         if record.full(4 * s.n_c + 4):
             return BUFFER_FULL
-        s.rounds += 1
-        if not strike(s, record, tally, t, s.rounds > ROUNDS):
-            return NO_IMPULSES
+        ratio = recurs(s) if s.rounds > 0 else 0.0
+        if ratio > 0.0:
+            sum_up(s, record, tally, t, ratio)
+        else:
+            if looks_back(s.rounds):
+                look_back(s)
+            s.rounds += 1
+            if not strike(s, record, tally, t, s.rounds > ROUNDS):
+                return NO_IMPULSES
     return TOO_MANY_EVENTS
 
 
@@ -91,12 +100,17 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) ->
     fill(s, n_a, n_f)
     if not find_impulses(s, n_a, n_f, plastic):
         return False
-    strike_with(s, record, tally, t, n_a, n_f, -1)
+    strike_with(s, record, tally, t, n_a, n_f, -1, plastic)
     return True
 
 
-def strike_with(s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int) -> None:
-    """Apply the impulses found, and close or open the contacts by the velocities that they leave."""
+def strike_with(
+    s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int, plastic: bool
+) -> None:
+    """Apply the impulses found, and close or open the contacts by the velocities that they leave.
+
+    A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
+    """
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])
     hold_joints(s)
@@ -107,6 +121,8 @@ def strike_with(s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
             kind = JAM if c == jammed else IMPACT
+            if plastic and s.contacts.restitution[c] > 0.0:
+                kind = ACCUMULATION
             log(s, record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
 
@@ -158,7 +174,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     if not (done and s.problem.impulse[first] > 0.0):
         return PAINLEVE_INCONSISTENT
     s.jams += 1
-    strike_with(s, record, tally, t, n_a, n_f, hit)
+    strike_with(s, record, tally, t, n_a, n_f, hit, False)
     clear(s.problem.slow, s.n_c)
     s.next = JUMP
     return DONE

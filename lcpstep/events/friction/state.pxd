@@ -14,7 +14,7 @@ cdef double NOISE
 
 
 cdef class Rubbing(RungeKutta):
-    cdef object rule, table, per_contact, given, marks, looks, arms
+    cdef object turn, rule, table, per_contact, given, marks, looks, arms
     cdef readonly Model contacts, joints, tangents
     cdef readonly Clock clock
     cdef readonly ContactProblem problem
@@ -57,6 +57,9 @@ cdef class Rubbing(RungeKutta):
     cdef double* account
     cdef double* instant
     cdef double* paces
+    cdef double* turn_velocity
+    cdef double* turn_start
+    cdef double* turn_impulse
     cdef double* shifted_rate
     cdef double* counted
     cdef double* total

@@ -67,6 +67,7 @@ class Rubbing(RungeKutta):
     risen                        the guard found has been above its band before it falls through zero
     jams                         how often it did;  rounds    problems of impacts at this instant
     problem                      the complementarity problem at hand, of an impact or of forces
+    turn_velocity, turn_start : (n_r,)   velocities, and `impulse`, some impacts ago;  turn_impulse   since then
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
     account, instant : (n_r,)    `impulse` before the end of chattering adds to it, see `owed`; before this instant
     guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch
@@ -178,6 +179,10 @@ class Rubbing(RungeKutta):
         self.value = doubles(self.looks)
         self.band = after(self.value, GUARDS * n_c)
         self.samples = after(self.band, GUARDS * n_c)
+        self.turn = np.zeros(3 * r)
+        self.turn_velocity = doubles(self.turn)
+        self.turn_start = after(self.turn_velocity, r)
+        self.turn_impulse = after(self.turn_start, r)
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
 

@@ -4,7 +4,7 @@ from lcpstep.events.general.held cimport constrain, hold_contacts, is_held, righ
 from lcpstep.events.general.impact cimport apply, speed_noise
 from lcpstep.events.general.keep cimport log
 from lcpstep.events.general.motion cimport gap_tolerance, speed_tolerance
-from lcpstep.events.general.parabolas cimport accumulation, hop
+from lcpstep.events.general.parabolas cimport accumulation
 from lcpstep.events.general.state cimport Mechanism, NOISE
 from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.record cimport Record
@@ -21,7 +21,7 @@ cdef void stop(Mechanism s) noexcept nogil
 @cython.locals(low=bint)
 cdef bint throws_off(Mechanism s) noexcept nogil
 cdef bint drives_others(Mechanism s) noexcept nogil
-cdef void owe(Mechanism s, double until) noexcept nogil
+cdef void owe(Mechanism s) noexcept nogil
 cdef void hand_on(Mechanism s) noexcept nogil
 @cython.locals(low=bint, slow=bint)
 cdef double chatter_left(Mechanism s, Py_ssize_t c) noexcept nogil

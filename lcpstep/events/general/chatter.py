@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.keep import log
     from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
-    from lcpstep.events.general.parabolas import accumulation, hop
+    from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
@@ -55,16 +55,14 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
         copy(s.trial, s.a_free, s.n_q)
         constrain(s, s.trial)
         return False
-    longest = 0.0
     for c in range(n_c):
         T, u, alpha = s.contact.rest[c], s.contact.speed[c], s.contact.curve[c]
         if T >= 0.0 and u != 0.0:
             p = max(-alpha * T - u, 0.0) / s.D[(s.n_j + c) * s.n_r + s.n_j + c]
             log(s, record, tally, t + T, c, ACCUMULATION, -abs(u), 0.0, p)
             s.contact.chatter_end[c] = t + T
-            longest = max(longest, T if T > 0.0 or alpha >= 0.0 else hop(abs(u), alpha))
     stop(s)
-    owe(s, t + longest)
+    owe(s)
     return True
 
 
@@ -124,12 +122,12 @@ def drives_others(s: Mechanism) -> bool:
     return False
 
 
-def owe(s: Mechanism, until: float) -> None:
-    """What a stop has left of negative impulses is to be paid by the contact forces up to the time `until`."""
+def owe(s: Mechanism) -> None:
+    """What a stop has left of negative impulses is to be paid by later ones of the same contacts."""
     for c in range(s.n_c):
         if s.contact.closed[c] == 1 and s.contact.impulse[c] < 0.0:
             s.contact.owed[c] = s.contact.owed[c] + s.contact.impulse[c]
-            s.contact.impulse[c], s.contact.owed_until[c] = 0.0, until
+            s.contact.impulse[c] = 0.0
 
 
 def hand_on(s: Mechanism) -> None:
@@ -153,7 +151,6 @@ def hand_on(s: Mechanism) -> None:
                     s.contact.impulse[d] = s.contact.impulse[d] + share
                 else:
                     s.contact.owed[d] = s.contact.owed[d] + share
-                    s.contact.owed_until[d] = max(s.contact.owed_until[d], s.contact.owed_until[c])
             s.contact.impulse[c] = s.contact.owed[c] = 0.0
 
 

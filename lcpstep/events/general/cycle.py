@@ -1,10 +1,4 @@
-"""Impacts without end at one instant, as kernels: a body between two walls without clearance, or in their corner.
-
-The laws of impact are homogeneous: where the speeds of the contacts struck return in proportion, u -> rho u, they do
-so for ever. With rho < 1 the impacts that are left sum to rho / (1 - rho) of those of the last turn, and leave no
-speed; with rho = 1 they have no end. The turn is looked for by comparison with the speeds at powers of two. Source of
-the search: R. Brent, An improved Monte Carlo factorization algorithm, BIT 20 (1980), section 2.
-"""
+"""Impacts at one instant that repeat in proportion without end, as kernels: their sum. See `kernels.recurrence`."""
 
 from __future__ import annotations
 
@@ -18,11 +12,8 @@ if not cython.compiled:
     from lcpstep.events.general.keep import log
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.recurrence import FOR_EVER, left, proportion
     from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import abs, max
-
-RETURNS = 2.0**-40  # relative deviation from proportion
-FOR_EVER = 1.0 - 2.0**-30  # of rho: nothing is lost
 
 
 def look_back(s: Mechanism) -> None:
@@ -34,19 +25,20 @@ def look_back(s: Mechanism) -> None:
 
 
 def recurrence(s: Mechanism) -> float:
-    """The ratio rho in which the speeds of all contacts struck since have returned, or 0 if they have not."""
-    most, ratio = 0.0, 0.0
+    """The ratio rho in which the speeds of all contacts struck since have returned, or 0 if they have not.
+
+    0 as well where a contact that touches would be struck before they have come to rest.
+    """
     for c in range(s.n_c):
-        if s.contact.turn_impulse[c] > 0.0 and abs(s.contact.turn_speed[c]) > most:
-            most = abs(s.contact.turn_speed[c])
-            ratio = s.contact.speed[c] / s.contact.turn_speed[c]
-    if ratio > 0.0:
+        s.contact.noise[c] = speed_noise(s, c)
+    turned, before, now = s.contact.turn_impulse, s.contact.turn_speed, s.contact.speed
+    ratio = proportion(turned, before, now, s.contact.noise, s.n_c)
+    if 0.0 < ratio < FOR_EVER:
         for c in range(s.n_c):
-            if s.contact.turn_impulse[c] > 0.0:
-                error = abs(s.contact.speed[c] - ratio * s.contact.turn_speed[c])
-                if error > RETURNS * ratio * most + speed_noise(s, c):
-                    return 0.0
-    return max(ratio, 0.0)
+            touches = s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0 and s.contact.parting[c] == 0
+            if touches and turned[c] == 0.0 and left(before[c], now[c], ratio) < -s.contact.noise[c]:
+                return 0.0
+    return ratio
 
 
 def sum_up(s: Mechanism, record: Record, tally: Tally, ratio: float) -> None:

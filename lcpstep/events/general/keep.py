@@ -57,14 +57,14 @@ def keep(s: Mechanism, record: Record, t: float) -> None:
     """Keep the state q, v at time t, and the impulses of contacts and joints since the one before."""
     for c in range(s.n_c):
         if s.contact.owed[c] < 0.0:
-            pay(s, c, t)
+            pay(s, c)
     record.keep(t, 0.0, s.q, s.v, s.impulse)
 
 
-def pay(s: Mechanism, c: int, t: float) -> None:
-    """Pay what the end of a chattering sequence has taken on account; t: the time of the row to be kept."""
+def pay(s: Mechanism, c: int) -> None:
+    """Pay what the end of a chattering sequence has taken on account, once contact c has been pressed by as much."""
     p = s.contact.impulse[c] + s.contact.owed[c]
-    due = p >= 0.0 or s.contact.closed[c] == 0 or t >= s.contact.owed_until[c]
+    due = p >= 0.0
     s.contact.impulse[c] = p if due else 0.0
     s.contact.owed[c] = 0.0 if due else p
 

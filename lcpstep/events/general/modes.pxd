@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.events.general.balance cimport balanced_forces
 from lcpstep.events.general.chatter cimport close_chatter, hand_on
-from lcpstep.events.general.cycle cimport FOR_EVER, look_back, recurrence, sum_up
+from lcpstep.events.general.cycle cimport look_back, recurrence, sum_up
 from lcpstep.events.general.equations cimport measure_again
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_contacts, note
@@ -13,6 +13,7 @@ from lcpstep.events.general.state cimport JUMP, Mechanism
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.dynamics cimport order_matters
 from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.recurrence cimport FOR_EVER, looks_back
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, max

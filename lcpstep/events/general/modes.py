@@ -14,7 +14,7 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENT
 if not cython.compiled:
     from lcpstep.events.general.balance import balanced_forces
     from lcpstep.events.general.chatter import close_chatter, hand_on
-    from lcpstep.events.general.cycle import FOR_EVER, look_back, recurrence, sum_up
+    from lcpstep.events.general.cycle import look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_contacts, note
@@ -26,6 +26,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import order_matters
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, max
@@ -55,7 +56,7 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
         if ratio > 0.0:
             sum_up(s, record, tally, ratio)
         else:
-            if turn & (turn - 1) == 0:  # Brent's search for a cycle looks back to powers of two
+            if looks_back(turn):
                 look_back(s)
             if turn > 0 and not let_go(s):
                 return NOT_FINITE

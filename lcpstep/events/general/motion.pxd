@@ -1,15 +1,18 @@
 cimport cython
 from lcpstep.events.general.earliest cimport observe
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.dynamics cimport gap_rounding
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.kernels.dynamics cimport gap_rates, gap_rounding
+from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.pointers cimport abs, after, inf, max, min
 
 
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil
 cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef void arrive(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef bint arrive(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef void lift_by(Mechanism s, Py_ssize_t c, double g) noexcept nogil
+@cython.locals(downwards=bint)
+cdef bint has_room(Mechanism s, Py_ssize_t c, double g) noexcept nogil
 cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(still=bint)

@@ -7,9 +7,11 @@ import cython
 if not cython.compiled:
     from lcpstep.events.general.earliest import observe
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.kernels.dynamics import gap_rounding
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.kernels.dynamics import gap_rates, gap_rounding
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+
+SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
 
 
 def rebase(s: Mechanism, t: float) -> None:
@@ -33,16 +35,24 @@ def state_at(s: Mechanism, tau: float) -> None:
 
 def lift(s: Mechanism, c: int) -> None:
     """Put q onto the surface of contact c, which it misses by no more than the tolerance: hops start from there."""
-    i = s.n_j + c
-    for j in range(s.n_q):
-        s.q[j] -= s.MR[i * s.n_q + j] * s.contact.gap[c] / s.D[i * s.n_r + i]
+    lift_by(s, c, -s.contact.gap[c])
     s.contact.gap[c] = 0.0
 
 
-def arrive(s: Mechanism, c: int) -> None:
+def lift_by(s: Mechanism, c: int, g: float) -> None:
+    """Move q by Newton's step to where gap c is larger by g, if it depends on a coordinate."""
+    i = s.n_j + c
+    D = s.D[i * s.n_r + i]
+    if D > 0.0:
+        for j in range(s.n_q):
+            s.q[j] += s.MR[i * s.n_q + j] * g / D
+
+
+def arrive(s: Mechanism, c: int) -> bool:
     """Put q onto the surface of contact c, which it misses by less than a time can tell: along its own way.
 
     So gaps that close at one instant, as in the apex of a wedge along which a body slides, go on closing together.
+    False where the surface is no longer there.
     """
     g, u = s.contact.gap[c], s.contact.speed[c]
     if s.contact.rate[c] == 0.0 and u < 0.0 and abs(g) <= -s.untold(s.length) * u:
@@ -54,6 +64,26 @@ def arrive(s: Mechanism, c: int) -> None:
         s.contact.gap[c] = 0.0
     else:
         lift(s, c)
+        return s.model.flat or has_room(s, c, g)
+    return True
+
+
+def has_room(s: Mechanism, c: int, g: float) -> bool:
+    """Whether contact c, whose gap `lift` has taken from g to zero, leaves room; where it was led astray q goes back.
+
+    By h = |(G' - G) dq| / |G dq|: Newton's step leads towards a zero where h <= 1/2. Beyond that a parabola that
+    bends downwards, as in the middle of a bowl, has none if g < 0, and if g > 0 rises by no more than g. Source of h:
+    L. Kantorovich, Functional analysis and applied mathematics, Uspekhi Matematicheskikh Nauk 3 (1948).
+    """
+    i = s.n_j + c
+    D = s.D[i * s.n_r + i]
+    gap_rates(s.model, s.t0, s.q, s.v, s.turned, s.contact.shifted)
+    bend = product(s.turned, after(s.MR, i * s.n_q), c, s.n_q) - D
+    if abs(bend) <= SURE * D:
+        return True
+    lift_by(s, c, g)
+    downwards = bend * g > 0.0
+    return not (downwards and (g < 0.0 or s.contact.rate[c] < 0.0))
 
 
 def gap_tolerance(s: Mechanism, c: int) -> float:

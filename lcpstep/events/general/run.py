@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events import running
-from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES
+from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, NO_SURFACE
 from lcpstep.events.general.loop import Course
 from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
@@ -107,6 +107,8 @@ class General(running.EventRun):
             return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
         if code == NO_FORCES:
             return f"no forces of the closed contacts {members} keep them from passing {where}"
+        if code == NO_SURFACE:
+            return f"the obstacle of contact {s.event_contact} closes in, and leaves no room {where}"
         if code == Status.JOINTS_FAILED:
             return f"joint {s.culprit} contradicts the joints before it {where}"
         if code == Status.TOO_MANY_EVENTS:

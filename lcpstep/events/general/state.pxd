@@ -38,7 +38,6 @@ cdef class Contacts(Rows):
     cdef double* chatter_end
     cdef double* rest
     cdef double* owed
-    cdef double* owed_until
     cdef double* terms
     cdef double* turn_speed
     cdef double* synchronous
@@ -70,7 +69,8 @@ cdef class Mechanism(Clock):
     cdef readonly double scan, t_end, rtol, atol
     cdef double length, found, seen_to, slope
     cdef bint bare
-    cdef Py_ssize_t guards, next, event_contact, event_kind, n_nodes, n_held, n_held_joints
+    cdef readonly Py_ssize_t event_contact
+    cdef Py_ssize_t guards, next, event_kind, n_nodes, n_held, n_held_joints
     cdef double* nodes
     cdef double* weights
     cdef double* q0
@@ -93,5 +93,6 @@ cdef class Mechanism(Clock):
     cdef double* doubt
     cdef double* impulse
     cdef double* W
+    cdef double* turned
     cdef Py_ssize_t* row
     cdef Py_ssize_t* kept

@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
-ROWS, CONTACTS, MARKS = 5, 14, 6  # numbers per row, per contact besides, and marks of a contact
+ROWS, CONTACTS, MARKS = 5, 13, 6  # numbers per row, per contact besides, and marks of a contact
 BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
 NOISE = 64 * RESOLUTION
@@ -69,7 +69,7 @@ class Contacts(Rows):
     held_until        no release before it
     chatter_end       when its chattering ends
     rest              how long the sequence that is summed up lasts; negative: none
-    owed, owed_until  impulse taken on account, and the time up to which forces pay for it
+    owed              impulse taken on account, for which later ones pay
     terms             size of the terms of a gap velocity, at the impacts of one instant
     turn_speed        speed a number of impacts ago
     synchronous       whether gap and speed are those of q, v
@@ -90,8 +90,7 @@ class Contacts(Rows):
         self.chatter_end = after(self.held_until, n)
         self.rest = after(self.chatter_end, n)
         self.owed = after(self.rest, n)
-        self.owed_until = after(self.owed, n)
-        self.terms = after(self.owed_until, n)
+        self.terms = after(self.owed, n)
         self.turn_speed = after(self.terms, n)
         self.synchronous = after(self.turn_speed, n)
         self.lands = after(self.synchronous, n)
@@ -148,6 +147,7 @@ class Mechanism(Clock):
     change            work space by row
     bracket           in which a root is sought
     W                 matrix of the problem of the n_members members of it
+    turned : (n_c, n_q)  Jacobian of the contacts beside the state
     culprit           joint that contradicts others, or -1
 
     Parameters
@@ -187,7 +187,7 @@ class Mechanism(Clock):
         self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
         self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0
         self.culprit = -1
-        self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c)
+        self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c + n_c * n)
         self.q0 = self.smooth.y
         self.v0 = after(self.smooth.y, n)
         self.q = doubles(self.numbers)
@@ -208,6 +208,7 @@ class Mechanism(Clock):
         self.doubt = after(self.change, r)
         self.impulse = after(self.doubt, r)
         self.W = after(self.impulse, r)
+        self.turned = after(self.W, n_c * n_c)
         self.lists = np.zeros(2 * r, dtype=np.intp)
         self.row = indices(self.lists)
         self.kept = indices_after(self.row, r)

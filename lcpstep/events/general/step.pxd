@@ -14,7 +14,7 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, inf, min
 
-cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, MOST_PARTS, REFINEMENTS
+cdef Py_ssize_t NO_FORCES, NO_SURFACE, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, MOST_PARTS, REFINEMENTS
 cdef Py_ssize_t LOOKS
 cdef double FAR, LOOK_AHEAD, BALANCED, FURTHER
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.general.ends import NO_FORCES
+from lcpstep.events.general.ends import NO_FORCES, NO_SURFACE
 from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE
 
 if not cython.compiled:
@@ -99,7 +99,8 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         s.next = OBEY
         return DONE
     s.next = JUMP
-    arrive(s, c)
+    if not arrive(s, c):
+        return NO_SURFACE
     if kind == LANDS:
         s.contact.speed[c] = min(u, 0.0)
     elif kind == NEVER_LEFT:
