@@ -5,6 +5,8 @@ Kernels write into arrays of fixed size and return when these are full; the reco
 
 from __future__ import annotations
 
+import sys
+import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.kernels.layout import LEAD
+from lcpstep.kernels.layout import COLUMNS, LEAD
 from lcpstep.trajectory import IMPACT_DTYPE
 
 if TYPE_CHECKING:
@@ -23,6 +25,9 @@ Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 EXPECTED = 1 << 22  # states that room is made for at once, at most
+LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
+BUFFERS = threading.local()  # .rows, .lines: those of the last run of this thread
+FREE = 3  # references to a buffer of that kind that nobody uses, within `buffer`
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,21 @@ def in_order(events: Array, end: float) -> Array:
     return ordered[np.argsort(ordered[:, 0], kind="stable")]
 
 
+def buffer(name: str, rows: int, columns: int) -> Array:
+    """Room for rows of numbers, whatever they are: that of the last run of this thread where nobody uses it any more.
+
+    New memory comes cleared from the system, page by page, which takes longer than a short run.
+    """
+    n = rows * columns
+    if n > LONGEST:
+        return np.empty((rows, columns))
+    numbers = getattr(BUFFERS, name, None)
+    if numbers is None or len(numbers) < n or sys.getrefcount(numbers) > FREE:
+        numbers = np.empty(n)
+        setattr(BUFFERS, name, numbers)
+    return numbers[:n].reshape(rows, columns)
+
+
 class States(NamedTuple):
     """Kept states: times t (n,), q and v (n, n_q), impulses (n, n_c), modes and durations (n,)."""
 
@@ -125,9 +145,8 @@ class Recorder:
     ) -> None:
         from lcpstep.kernels.record import Record
 
-        # Not filled with zeros, which would take longer than a short run: what is read has been written.
-        self.rows = np.empty((rows, LEAD + 2 * n_q + n_c))
-        self.lines = np.empty((EVENT_CAPACITY + 4 * n_c, len(IMPACT_DTYPE.names or ())))
+        self.rows = buffer("rows", rows, LEAD + 2 * n_q + n_c)  # what is read has been written
+        self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)
         self.curves = np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q))))
         self.record = Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves

@@ -11,7 +11,7 @@ only the acceleration jumps.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 from mpmath import mp, mpf
@@ -190,6 +190,7 @@ def sequence(cam: Cam, t: Any, n: int, limit: Any) -> tuple[Sequence, int]:
             return (release, impacts, t + 2 * u / (-alpha * (1 - R))), n
 
 
+@cache
 def sequences(rpm: Any, turns: int = 1, most: int = 100) -> tuple[Cam, list[Sequence]]:
     """The first sequences of the follower that rests on the cam at the start of the lift."""
     with mp.workdps(DIGITS):

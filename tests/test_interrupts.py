@@ -20,6 +20,7 @@ from tests.processes import environment
 from tests.stepping.test_sparse import column
 
 READY = "import sys; from lcpstep.cli import command; print('ready', flush=True); command()"
+AFTER = 1.2  # of a command's start [s]: long enough for it to be at work, where the machine is not busy
 LIMIT = 5.0  # [s]; one second on a machine that is not busy
 LONG = {
     "compare": "cam-follower --h 1e-7",
@@ -138,7 +139,7 @@ def said(err, what):
 def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
     words = [command, *LONG[command].split()]
     (tmp_path / "study.toml").write_text(STUDY)
-    _, err, seconds = interrupted(words, tmp_path, 2.0)
+    _, err, seconds = interrupted(words, tmp_path, AFTER)
     assert seconds < LIMIT
     nothing = said(err, "kept") == "nothing"
     again = "lcpstep: go on with: " in err
@@ -179,7 +180,7 @@ def test_hard_cases_that_are_interrupted_go_on_with_the_scene_of_the_last_line(c
 @pytest.mark.parametrize("command", ["simulate", "bifurcation", "hard", "map"])
 def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_path):
     words = [command, *LONG[command].split()]
-    _, err, seconds = interrupted(words, tmp_path, 2.0, again=between)
+    _, err, seconds = interrupted(words, tmp_path, AFTER, again=between)
     assert seconds < LIMIT
     assert "interrupted" in err
     assert not list(tmp_path.rglob("*.partial*"))
@@ -188,14 +189,14 @@ def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_pat
 @pytest.mark.slow
 @pytest.mark.parametrize("words", SLOW_LOOPS.values(), ids=SLOW_LOOPS)
 def test_no_loop_keeps_python_from_hearing(words, tmp_path):
-    _, err, seconds = interrupted(words.split(), tmp_path, 3.0)
+    _, err, seconds = interrupted(words.split(), tmp_path, AFTER)
     assert seconds < LIMIT
     assert said(err, "kept") == "nothing"
 
 
 def test_a_motion_that_is_interrupted_is_saved_as_far_as_it_came(tmp_path):
     words = ["simulate", *LONG["simulate"].split()]
-    _, err, seconds = interrupted(words, tmp_path, 3.0)
+    _, err, seconds = interrupted(words, tmp_path, AFTER)
     assert seconds < LIMIT
     assert said(err, "kept") == "motion.npz"
     assert "interrupted at t = " in err

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.recording import in_order
 from lcpstep.trajectory import Kind
@@ -70,3 +70,17 @@ def test_an_impact_in_the_last_step_is_within_the_span():
     log = simulate(scene, Moreau(0.0333)).impacts
     assert len(log) == 1
     assert np.max(log.time) == 0.0999
+
+
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(1e-5), Moreau(1e-5)], ids=lambda m: type(m).__name__
+)
+def test_a_run_within_a_run_changes_nothing_of_it(method):
+    """Buffers stay for the next run of a thread, but not while one uses them."""
+    scene, other = scenes.bouncing_ball(t_end=1.2), scenes.bouncing_ball(h0=0.7, t_end=1.0)
+    alone, within = simulate(scene, method), []
+    run = simulate(scene, method, progress=lambda t: within.append(simulate(other, method)))
+    assert len(within) > 0
+    for name in ("t", "q", "v", "impulse", "impacts"):
+        np.testing.assert_array_equal(getattr(run, name), getattr(alone, name))
+        np.testing.assert_array_equal(getattr(within[-1], name), getattr(simulate(other, method), name))

@@ -95,21 +95,29 @@ class Record:
     def split(
         self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
     ) -> None:
-        """The rows, each quantity into an array of its own."""
+        """The rows, each quantity into an array of its own; where zeros are most of it, the others alone."""
         n, n_c = self.n_q, self.n_c
         for k in range(self.row):
             row = after(self.rows, k * self.row_size)
-            t[k], mode[k], length[k] = row[TIME], row[MODE], row[LENGTH]
+            t[k] = row[TIME]
+            if row[MODE] != 0.0:
+                mode[k] = row[MODE]
+            if row[LENGTH] != 0.0:
+                length[k] = row[LENGTH]
             for i in range(n):
                 q[k * n + i], v[k * n + i] = row[LEAD + i], row[LEAD + n + i]
             for i in range(n_c):
-                impulse[k * n_c + i] = row[LEAD + 2 * n + i]
+                if row[LEAD + 2 * n + i] != 0.0:
+                    impulse[k * n_c + i] = row[LEAD + 2 * n + i]
 
     def room_for(self, rows: int) -> Columns:
-        """Arrays for times, modes, durations, positions, velocities and impulses of so many rows."""
+        """Arrays for times, modes, durations, positions, velocities and impulses of so many rows.
+
+        What is zero in most rows is zero from the start: the system has such memory ready, untouched.
+        """
         n, n_c = self.n_q, self.n_c
-        t, mode, length = np.empty(rows), np.empty(rows), np.empty(rows)
-        return t, mode, length, np.empty((rows, n)), np.empty((rows, n)), np.empty((rows, n_c))
+        t, mode, length = np.empty(rows), np.zeros(rows), np.zeros(rows)
+        return t, mode, length, np.empty((rows, n)), np.empty((rows, n)), np.zeros((rows, n_c))
 
     def move(self, columns: Columns, k: int) -> None:
         """Move the rows to such arrays, from place k on."""

@@ -84,7 +84,7 @@ def test_sequences_of_faster_cams(rpm):
 @pytest.mark.parametrize(("speed", "corner"), MEETINGS)
 def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(speed, corner):
     def before_the_corner(rpm):
-        cam, found = exact_sequences(rpm, 2)
+        cam, found = exact_sequences(rpm, 2, 1)
         n = corner if speed != LAST else corner + 6
         return found[0][2] is not None and found[0][2] < cam.corner(n)
 
@@ -123,7 +123,7 @@ def test_crossings_close_together_are_told_apart():
     pair = [c.p for c in found if (c.event, c.corner) == ("accumulation", 5)]
     np.testing.assert_allclose(pair, [139.417365794, 139.558681247], rtol=1e-11)
     for p in pair:  # wherever the range begins and ends
-        again = corner_crossings(resting, (p - 3.7, p + 0.05), impacts=0)
+        again = corner_crossings(resting, (p - 1.3, p + 0.05), impacts=0)
         assert min(abs(c.p - p) for c in again) < 1e-9
 
 

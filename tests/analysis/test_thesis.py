@@ -8,7 +8,7 @@ import pytest
 from lcpstep.analysis.border_collision import diagram
 from lcpstep.cli import main
 from lcpstep.cli.common import DONE, USAGE
-from lcpstep.thesis import FIGURES, cams, controller, maps
+from lcpstep.thesis import FIGURES, cams, controller, diagrams, maps
 from lcpstep.thesis.maps import SCENARIOS, normal_form
 from lcpstep.thesis.numbers import Number, agreement, carried, entries, numbers
 from lcpstep.thesis.page import chapter_of, table
@@ -29,7 +29,10 @@ def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in FIGURES if name not in FAST])
-def test_every_figure_can_be_made(name, tmp_path):
+def test_every_figure_can_be_made(name, tmp_path, monkeypatch):
+    """Of fewer periods and cells than are drawn: what they show is the matter of other tests."""
+    for size, fewer in (("DROP", 50), ("LONG", 100), ("CELLS", 200)):
+        monkeypatch.setattr(diagrams, size, fewer)
     assert main(["thesis", name, "--out", str(tmp_path)]) == DONE
     assert len(list(tmp_path.iterdir())) == 3
 

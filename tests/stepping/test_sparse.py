@@ -115,8 +115,8 @@ def test_a_column_of_a_thousand_carries_the_weight_above_each_contact():
 
 @pytest.mark.parametrize("theta", [0.5, 1.0])
 def test_what_rests_stays_exactly_where_it_is(theta):
-    m = simulate(column(12, r=0.5, t_end=10.0), Moreau(1e-3, theta), keep=100)
-    assert m.counts.steps == 10_000
+    m = simulate(column(12, r=0.5, t_end=2.0), Moreau(1e-3, theta), keep=100)
+    assert m.counts.steps == 2000  # each of which begins as the one before
     assert not m.q.any()
     assert not m.v.any()
 

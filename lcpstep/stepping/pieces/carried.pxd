@@ -1,5 +1,7 @@
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, Record, TIME
+from lcpstep.kernels.record cimport LEAD, LENGTH, Record, TIME
 from lcpstep.pointers cimport after
+
+cdef double PUT_BACK
 
 cdef void put_kept_back(Model m, Record record) noexcept nogil

@@ -6,8 +6,12 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, TIME, Record
+    from lcpstep.kernels.record import LEAD, LENGTH, TIME, Record
     from lcpstep.pointers import after
+
+PUT_BACK = (
+    1.0  # in place of the duration, which rows of `Located` do not have: it is in the scene's coordinates
+)
 
 
 def put_kept_back(m: Model, record: Record) -> None:
@@ -15,6 +19,9 @@ def put_kept_back(m: Model, record: Record) -> None:
     n, c = m.n_q, m.frame_now
     for k in range(record.row):
         row = after(record.rows, k * record.row_size)
+        if row[LENGTH] == PUT_BACK:
+            row[LENGTH] = 0.0
+            continue
         q, v = after(row, LEAD), after(row, LEAD + n)
         m.frame.fill(row[TIME], q, v, c)
         for i in range(n):

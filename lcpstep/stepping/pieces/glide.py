@@ -11,8 +11,9 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.record import LENGTH, TIME, Record
     from lcpstep.pointers import abs, inf
+    from lcpstep.stepping.pieces.carried import PUT_BACK
     from lcpstep.stepping.pieces.codes import SAME_TIME
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -35,6 +36,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
             obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
     k = start = w.steps
+    due = k + record.every - k % record.every if record.every > 0 else 0
     while k < last:
         t = t0 + h * (k - first) + h
         if t > w.high or record.row + 4 > record.row_capacity:
@@ -69,9 +71,17 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
             bent = half
         q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
         k += 1
-        if record.is_due(k):
-            w.q[0], w.v[0] = q, v
-            keep(w, record, t0 + h * (k - first), 0.0)
+        if k == due:
+            due += record.every
+            now = t0 + h * (k - first)
+            if not contact or (record.row > 0 and record.last_row()[TIME] >= now):
+                w.q[0], w.v[0] = q, v
+                keep(w, record, now, 0.0)
+            elif m.carried and now == t:  # the obstacle has told where the frame is
+                record.keep_one(now, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
+                record.last_row()[LENGTH] = PUT_BACK
+            else:
+                record.keep_one(now, q, v, w.impulse)
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:
         w.gap[0], w.rate[0], w.half[0] = g, u, bent
