@@ -33,6 +33,7 @@ from benchmarks.error_bars.truth import (
 )
 from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
+from benchmarks.marked import put
 from lcpstep import Moreau
 from lcpstep.simulation import Method
 
@@ -40,7 +41,6 @@ LONG_ENOUGH, SHORT_ENOUGH = 30.0, 3000.0  # steps in a span
 AT_ONCE = 0.01  # of the span: a bar that ends before is none
 KNOWN = 0.2  # of the error or the bar, by which two true motions may be apart
 ROUNDING = 1e-13  # of what a number is made of: below it neither is the truth known to two digits
-BEGIN, END = "<!-- error bars -->", "<!-- end of error bars -->"
 
 
 def main() -> int:
@@ -65,9 +65,7 @@ def main() -> int:
     text = tables(outcomes, options.seed)
     print(f"\n{text}")
     if options.write:
-        page = options.write.read_text()
-        head, rest = page.split(BEGIN)
-        options.write.write_text(f"{head}{BEGIN}\n\n{text}\n\n{END}{rest.split(END)[1]}")
+        put(options.write, "error bars", text)
     return 0
 
 

@@ -12,12 +12,13 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 
 from benchmarks.judge.case import SHARE
 from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import CPU_LIMIT, Answer, Court, answers
-from benchmarks.judge.report import Tally, report
+from benchmarks.judge.report import Tally, report, saved
 from benchmarks.judge.runs import WAYS, Finding, lines, silent
 from benchmarks.judge.shapes import FAMILIES
 
@@ -42,7 +43,7 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument(
         "--shrink", type=float, default=0.0, metavar="SECONDS", help="to make each of these small"
     )
-    parser.add_argument("--report", metavar="FILE", help="write the tables there, in Markdown")
+    parser.add_argument("--report", metavar="FILE", help="write the tables there, in Markdown; for `page`")
     return parser
 
 
@@ -103,9 +104,9 @@ def main() -> int:
     given, tally = options().parse_args(), Tally()
     reached, end = judge(given, tally), given.first + given.scenes
     print(report(tally))
+    tally.asked.append((given.seed, given.first, reached))
     if given.report:
-        with open(given.report, "w", encoding="utf-8") as file:
-            file.write(report(tally) + "\n")
+        Path(given.report).write_text(saved(tally), encoding="utf-8")
     if reached < end:
         print(f"Interrupted. To go on: --first {reached} --scenes {end - reached}", flush=True)
         return INTERRUPTED

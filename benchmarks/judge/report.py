@@ -1,9 +1,14 @@
-"""Tables of what was judged: how runs ended, by method and class of scene, and what was found."""
+"""Tables of what was judged: how runs ended, by method and class of scene, and what was found.
+
+A report carries its counts in a comment at its end, so that those of several portions can be joined (`page`).
+"""
 
 from __future__ import annotations
 
+import json
 from collections import Counter, defaultdict
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +17,7 @@ from benchmarks.judge.runs import DOUBT, WAYS, silent
 
 GOOD = ("DONE", DOUBT, "refused")
 SHORT = 0.5  # by which an order seen may fall short of that of the method
+COUNTS, END = "<!-- counts ", " -->"
 
 
 class Tally:
@@ -23,6 +29,7 @@ class Tally:
         self.found: Counter[tuple[str, str]] = Counter()  # method, kind
         self.orders: dict[str, list[float]] = defaultdict(list)  # seen, by method
         self.classes: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
+        self.asked: list[tuple[int, int, int]] = []  # seed, first number of a scene, one beyond the last
 
     def add(self, answer: Answer) -> None:
         """One scene more; a kind counts once for each method on it."""
@@ -35,6 +42,28 @@ class Tally:
         for method, kind in {(x.method, x.kind) for x in answer.findings}:
             self.found[method, kind] += 1
             self.classes[method, kind][family] += 1
+
+    def counts(self) -> dict[str, Any]:
+        """Everything as lists, for `join`."""
+        return {
+            "scenes": self.scenes,
+            "asked": self.asked,
+            "ended": [[*key, n] for key, n in self.ended.items()],
+            "classes": [[*key, family, n] for key, x in self.classes.items() for family, n in x.items()],
+            "orders": {method: [round(x, 3) for x in seen] for method, seen in self.orders.items()},
+        }
+
+    def join(self, counts: dict[str, Any]) -> None:
+        """Add the counts of other scenes."""
+        self.scenes += counts["scenes"]
+        self.asked += [tuple(x) for x in counts["asked"]]
+        for method, family, ending, n in counts["ended"]:
+            self.ended[method, family, ending] += n
+        for method, kind, family, n in counts["classes"]:
+            self.found[method, kind] += n
+            self.classes[method, kind][family] += n
+        for method, seen in counts["orders"].items():
+            self.orders[method] += seen
 
     @property
     def methods(self) -> list[str]:
@@ -105,3 +134,18 @@ def orders(t: Tally) -> str:
 def report(t: Tally) -> str:
     """All tables."""
     return "\n\n".join([f"{t.scenes} scenes.", endings(t), by_class(t), orders(t), anomalies(t)])
+
+
+def saved(t: Tally) -> str:
+    """All tables, and the counts that they are made of."""
+    return f"{report(t)}\n\n{COUNTS}{json.dumps(t.counts(), separators=(',', ':'))}{END}\n"
+
+
+def joined(reports: Iterable[str]) -> Tally:
+    """What several reports, as `saved` makes them, say together."""
+    t = Tally()
+    for text in reports:
+        if COUNTS not in text:
+            raise ValueError("a report without counts; expected what --report has written")
+        t.join(json.loads(text.split(COUNTS)[1].split(END)[0]))
+    return t

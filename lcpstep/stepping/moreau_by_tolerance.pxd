@@ -24,6 +24,7 @@ cdef class Attempts(Control):
     cdef Switches switches
     cdef object make, matrices, own_made, kept
     cdef bint struck
+    cdef double share
     cdef double* times
     cdef Py_ssize_t n_times, steps_before, row, event, asked
     cdef double* q

@@ -4,7 +4,9 @@ Beside the difference of the two runs these count as errors, for both may agree 
 
     h |v+ - v|       position, in steps with an impact: its place in the step is not known
     |v_free - v|     velocity, in these steps: what the forces do from the start of the step to the impact
-    depth            by which a contact without impulse has gone below its obstacle, or has been below in between
+    depth            by which a contact without impulse has gone below its obstacle, or has been below in between: an
+                     impact that is still to come, so that it takes no more than a step with an event may, however
+                     long the step (up to there velocities are wrong by all of their jump)
 
 and what releases and friction hide (`hidden_switches`).
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
@@ -50,6 +52,7 @@ class Attempts(Control):
     part_q, part_v, part_g, part_u        the state at the start of the part at hand
     between_q, between_v        a state within it
     struck                      whether anything was, in the step or one of its halves
+    share                       of the error allowed, in those that a step with an event may make; at least 1
     switches                    contacts that open, and friction
     A_q, A_v, A_f, X, W         of every level, where the system is linear
     made                        levels of which there are any
@@ -77,7 +80,7 @@ class Attempts(Control):
             make,
         )
         self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
-        self.switches, self.struck = Switches(s.n_c, rows.n_c + rows.n_t), False
+        self.switches, self.struck, self.share = Switches(s.n_c, rows.n_c + rows.n_t), False, 1.0
         places = LEVELS + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
         self.own_made = np.full(LEVELS + 2, not m.linear, dtype=np.intp)
@@ -123,12 +126,11 @@ class Attempts(Control):
         """One step, then two halves of it. The halves are left out where they cannot help."""
         n = self.s.n_q
         slow, h, t = self.resolved(self.size_v), self.step_size(self.level), self.now()
-        self.struck = False
+        self.struck, self.share = False, max(1.0, h / (self.span * LEAST_SHARE))
         self.switches.begin(self.s, slow)
         code = self.part(0, t, h, slow)
         if code == FINISHED:
-            share = max(1.0, h / (self.span * LEAST_SHARE))
-            if 0.5 * self.apart_q > share * self.resolved(self.size_q) or 0.5 * self.apart_v > share * slow:
+            if max(self.apart_q / self.resolved(self.size_q), self.apart_v / slow) > 2.0 * self.share:
                 self.apart_q = inf
             else:
                 copy(self.one_q, self.s.q, n)
@@ -202,6 +204,7 @@ class Attempts(Control):
                 gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
                 if gained > 0.0:
                     self.happened = True
+                    gained *= self.share
             deeper = max(deeper, gained)
         self.apart_q = max(self.apart_q, deeper)
         if struck:

@@ -291,5 +291,14 @@ LATELY: dict[str, tuple[Description, tuple[str, ...]]] = {
             -1.1934699999999998), restitution=(1.0, 0.0, 0.033, 0.16), constant=(0.0, 0.0, -16.2), family='wedge',
         ),
         ("event-driven-loose",),
+    # The end of the span lay 3 ms behind an impact, below the wall by less than the tolerance of that step
+    "an impact just before the end of a long step by a tolerance": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(0.542, 1.14), v0=(1.33, 0.93), t_span=(0.0, 0.3472), h=0.0496,
+            G=((0.196, 0.981), (-0.817, 0.577)), offset=(-1.062572, 0.45303400000000016), restitution=0.56,
+            constant=(0.0, -9.81), cosine=(-0.0311, 0.259), sine=(0.231, 0.259), force_omega=2.43,
+            frame=(-0.655, -0.256), omega=1.8, family="groove",
+        ),
+        ("moreau-tolerance",),
     ),
 }  # fmt: skip

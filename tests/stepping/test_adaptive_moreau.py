@@ -72,6 +72,20 @@ def test_a_chattering_ball_comes_to_rest_and_is_right_between_its_steps():
     assert 0.8 < slope(TOLERANCES, found) < 1.2
 
 
+@pytest.mark.parametrize("late", [1e-3, 4e-3])
+def test_who_lands_just_before_the_end_has_bounced_there(late):
+    """A depth that the tolerance of positions would allow is an impact that is still to come."""
+    struck, tolerance = 1.0 / 1.1, 1e-2
+    span = (0.0, struck + late)
+    scene = Scene(LinearSystem(1.0), [1.0], [-1.1], span, contacts=LinearContacts([[1.0]], restitution=0.5))
+    m = simulate(scene, Moreau(8.0, tolerance=tolerance))
+    assert len(m.impacts) == 1
+    assert abs(m.impacts.time[0] - struck) < 0.1 * tolerance
+    assert m.v[-1, 0] == pytest.approx(0.55, rel=1e-12)
+    assert m.q[-1, 0] == pytest.approx(0.55 * late, abs=0.1 * tolerance)
+    assert m.penetration[0] < 0.01 * tolerance
+
+
 def test_a_floor_that_long_steps_fly_through_is_met():
     """Without forces one long step and two agree to the last bit, below the floor as above it."""
     scene = Scene(

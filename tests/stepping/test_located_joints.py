@@ -103,6 +103,17 @@ def test_impulses_add_up_between_kept_states():
     np.testing.assert_allclose(hits.joint_impulse.sum(), every.joint_impulse.sum(), rtol=1e-13)
 
 
+@pytest.mark.parametrize("method", [Located(0.05), Located(0.05, 4), Located(0.05, 4, tolerance=1e-5)])
+def test_states_between_lead_up_to_the_next_kept_one(method):
+    """What the joints have put back at the end of a step, by its error, is part of the motion within it."""
+    m = simulate(scenes.pendulum_stop(form="rod", t_end=2.0), method)
+    q, v = m.at(np.nextafter(m.t[1:], -np.inf))
+    struck = np.isin(m.t[1:], m.impacts.time)
+    assert 0 < np.sum(struck) < len(struck)
+    assert np.max(np.abs(q - m.q[1:])) < 1e-14
+    assert np.max(np.abs(v - m.v[1:])[~struck]) < 1e-13
+
+
 # --- two rods
 
 

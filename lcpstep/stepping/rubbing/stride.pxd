@@ -22,7 +22,10 @@ cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
 @cython.locals(waits=bint)
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
+@cython.locals(put_back=bint)
 cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
+@cython.locals(put_back=bint)
+cdef bint put_end_back(Strides s, double t) noexcept nogil
 cdef double keep_between(Strides s, Record record, double t, double tau) noexcept nogil
 cdef void press(Strides s, double a, double b) noexcept nogil
 cdef void arrive_with(Strides s, double t) noexcept nogil

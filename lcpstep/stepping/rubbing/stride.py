@@ -105,16 +105,27 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    put_back = tau > 0.0 and s.n_held > 0 and put_end_back(s, t)
     if tau > 0.0:
         pressed = keep_between(s, record, t, tau)
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
-    if tau > 0.0 and s.n_held > 0 and project(s, t):
+    if put_back:
         count_impulses(s, s.change)
     while record.wants(t, t >= s.t_end):  # the end of the span
         keep(s, record, record.times[record.next_time], s.y)
         record.next_time += 1
+
+
+def put_end_back(s: Strides, t: float) -> bool:
+    """Put the end of the step onto the rows held, so that states between lead up to there; see `project`."""
+    copy(s.stored, s.y, s.n)
+    copy(s.y, s.y_new, s.n)
+    put_back = project(s, t)
+    copy(s.y_new, s.y, s.n)
+    copy(s.y, s.stored, s.n)
+    return put_back
 
 
 def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
