@@ -5,7 +5,6 @@ Kernels write into arrays of fixed size and return when these are full; the reco
 
 from __future__ import annotations
 
-import sys
 import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,10 +23,9 @@ Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
-EXPECTED = 1 << 22  # states that room is made for at once, at most
 LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
 BUFFERS = threading.local()  # .rows, .lines: those of the last run of this thread
-FREE = 3  # references to a buffer of that kind that nobody uses, within `buffer`
+EXPECTED = 1 << 22  # states that room is made for at once, at most
 
 
 @dataclass(frozen=True)
@@ -95,18 +93,28 @@ def in_order(events: Array, end: float) -> Array:
 
 
 def buffer(name: str, rows: int, columns: int) -> Array:
-    """Room for rows of numbers, whatever they are: that of the last run of this thread where nobody uses it any more.
+    """Room for rows of numbers, whatever they are: that of the last run of this thread where no array is left of it.
 
     New memory comes cleared from the system, page by page, which takes longer than a short run.
     """
     n = rows * columns
     if n > LONGEST:
         return np.empty((rows, columns))
-    numbers = getattr(BUFFERS, name, None)
-    if numbers is None or len(numbers) < n or sys.getrefcount(numbers) > FREE:
-        numbers = np.empty(n)
-        setattr(BUFFERS, name, numbers)
-    return numbers[:n].reshape(rows, columns)
+    room = getattr(BUFFERS, name, None)
+    if room is None or len(room) < 8 * n or in_use(room):
+        room = bytearray(8 * n)
+        setattr(BUFFERS, name, room)
+    return np.asarray(memoryview(room)[: 8 * n].cast("d")).reshape(rows, columns)
+
+
+def in_use(room: bytearray) -> bool:
+    """Whether there are arrays in this room: Python does not let it change its length, then."""
+    try:
+        room.append(0)
+    except BufferError:
+        return True
+    room.pop()
+    return False
 
 
 class States(NamedTuple):

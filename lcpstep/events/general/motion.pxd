@@ -5,6 +5,7 @@ from lcpstep.kernels.dynamics cimport gap_rates, gap_rounding
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, inf, max, min
 
+cdef double SURE
 
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil
