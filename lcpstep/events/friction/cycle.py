@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import ACCUMULATION, OPEN, SLIDES
+from lcpstep.events.friction.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import apply, measure_velocities
@@ -52,8 +52,12 @@ def recurs(s: Rubbing) -> float:
 def rubs_on(s: Rubbing, i: int, ratio: float) -> bool:
     """Whether friction on the tangent of row i goes on as in the turn: sliding one way, or to rest in proportion."""
     before, u = s.turn_velocity[i], s.velocity[i]
-    end = left(before, u, ratio)
-    return abs(end) <= CERTAIN * abs(u) or (u * end > 0.0 and u * before > 0.0)
+    return rests(s, i, ratio) or (u * left(before, u, ratio) > 0.0 and u * before > 0.0)
+
+
+def rests(s: Rubbing, i: int, ratio: float) -> bool:
+    """Whether the velocity of row i goes to zero in the same proportion."""
+    return abs(left(s.turn_velocity[i], s.velocity[i], ratio)) <= CERTAIN * abs(s.velocity[i])
 
 
 def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> None:
@@ -64,7 +68,9 @@ def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> 
         if p > 0.0:
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
             log(s, record, tally, t, c, ACCUMULATION, before, 0.0, p)
-            s.mode[c] = SLIDES if s.mode[c] == OPEN else s.mode[c]
+            if s.mode[c] == OPEN:
+                rough = s.coefficients.rough[c] == 1
+                s.mode[c] = STICKS if rough and rests(s, s.n_j + s.n_c + c, ratio) else SLIDES
     for i in range(s.n_j):
         apply(s, i, rest * s.turn_impulse[pushed + i])
     for k in range(pushed):
