@@ -100,10 +100,8 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     """Bands of the guards, and which of them are beyond theirs, as modes begin; False where one is not finite."""
     if not look(s, t, s.y):
         return False
-    forces, nothing = (
-        force_noise(s),
-        NOISE * s.atol,
-    )  # the second where all terms vanish, as in the tail of a pulse
+    # The second is for where all terms vanish, as in the tail of a pulse
+    forces, nothing = force_noise(s), NOISE * s.atol
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:

@@ -9,9 +9,8 @@ if not cython.compiled:
     from lcpstep.kernels.record import LEAD, LENGTH, TIME, Record
     from lcpstep.pointers import after
 
-PUT_BACK = (
-    1.0  # in place of the duration, which rows of `Located` do not have: it is in the scene's coordinates
-)
+# In place of the duration, which rows of `Located` do not have: the row is in the scene's coordinates
+PUT_BACK = 1.0
 
 
 def put_kept_back(m: Model, record: Record) -> None:
