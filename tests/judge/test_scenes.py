@@ -16,6 +16,7 @@ from lcpstep import Status
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
+from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
 
 QUICK = ("event-driven", "located", "moreau")
@@ -26,9 +27,9 @@ def new(findings):
     return [x for x in findings if silent(x.kind) and x.kind not in OPEN.get(x.method, ())]
 
 
-@pytest.mark.parametrize("name", [*KEPT, *LATELY])
+@pytest.mark.parametrize("name", [*KEPT, *LATELY, *RECENTLY])
 def test_what_was_wrong_once_is_right(name):
-    d, methods = (KEPT | LATELY)[name]
+    d, methods = (KEPT | LATELY | RECENTLY)[name]
     assert judged(d, methods, share=1.0).findings == []
 
 

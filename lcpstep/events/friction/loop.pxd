@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.events.friction.balance cimport opens_any, reconsider
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.guards cimport begin_guards
 from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still, touching
@@ -8,6 +9,7 @@ from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
+from lcpstep.kernels.vectors cimport clear
 from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t BEGIN, SETTLE, JUMP, MOVE, OPEN, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
@@ -29,6 +31,7 @@ cdef Py_ssize_t turn_corner(Rubbing s) noexcept nogil
 cdef Py_ssize_t settle(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t go_further(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t progress(Rubbing s, Record record, Tally tally) noexcept nogil
-cdef Py_ssize_t look_on(Rubbing s, double t) noexcept nogil
+cdef Py_ssize_t seek_modes(Rubbing s, double t) noexcept nogil
+cdef Py_ssize_t look_on(Rubbing s, double t, double longest) noexcept nogil
 cdef Py_ssize_t follow(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t set_out(Rubbing s, Record record, double t) noexcept nogil

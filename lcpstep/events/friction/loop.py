@@ -14,6 +14,7 @@ from lcpstep.events.friction.codes import BEGIN, JUMP, MOVE, OPEN, SETTLE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
+    from lcpstep.events.friction.balance import opens_any, reconsider
     from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.guards import begin_guards
     from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still, touching
@@ -23,6 +24,7 @@ if not cython.compiled:
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import abs, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
@@ -125,9 +127,7 @@ def settle(s: Rubbing, record: Record, tally: Tally) -> int:
     for turn in range(s.n_c + 1):
         if not measure(s, t, s.y):
             return NOT_FINITE
-        code = decide(s)
-        if code == DONE and undecided(s):
-            code = look_on(s, t)
+        code = seek_modes(s, t)
         if code == DONE:
             code = obey(s, record, tally, t)
         if code != DONE:
@@ -137,12 +137,23 @@ def settle(s: Rubbing, record: Record, tally: Tally) -> int:
     return set_out(s, record, t)
 
 
-def look_on(s: Rubbing, t: float) -> int:
+def seek_modes(s: Rubbing, t: float) -> int:
+    """New modes at the base state just measured, or a little later where it leaves them open; a status."""
+    longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
+    code = decide(s)
+    if code == DONE and opens_any(s):
+        code = reconsider(s, t, longest)
+    if code == DONE and undecided(s):
+        code = look_on(s, t, longest)
+    clear(s.doubt, s.n_r)
+    return code
+
+
+def look_on(s: Rubbing, t: float, longest: float) -> int:
     """The modes just after the base time, at which the forces leave some of them open; a status.
 
     A contact whose force begins at zero is decided by the first force that can be told from zero.
     """
-    longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
     ahead = LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
         s.culprit = -1

@@ -153,8 +153,8 @@ def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 
 def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
-    """Whether an acceleration of unknown a's row is zero to rounding."""
-    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f)
+    """Whether an acceleration of unknown a's row is zero as far as it is known."""
+    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
 
 
 def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
@@ -168,7 +168,8 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
     """Whether the contact of unknown a, which carries no force, accelerates away."""
-    return acceleration(s, a, n_a, n_f) > NOISE * size_of_terms(s, a, n_a, n_f)
+    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
+    return acceleration(s, a, n_a, n_f) > known
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:

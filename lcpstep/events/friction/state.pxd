@@ -64,6 +64,7 @@ cdef class Rubbing(RungeKutta):
     cdef double* counted
     cdef double* total
     cdef double* loads
+    cdef double* doubt
     cdef double* effect
     cdef double* effects
     cdef double* mu

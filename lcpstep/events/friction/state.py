@@ -69,6 +69,7 @@ class Rubbing(RungeKutta):
     problem                      the complementarity problem at hand, of an impact or of forces
     turn_velocity, turn_start : (n_r,)   velocities, and `impulse`, some impacts ago;  turn_impulse   since then
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
+    doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
     account, instant : (n_r,)    `impulse` before the end of chattering adds to it, see `owed`; before this instant
     guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch
     culprit                      contact or joint that a failure is about, or -1
@@ -119,7 +120,7 @@ class Rubbing(RungeKutta):
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
         self.table = np.zeros(
-            11 * n + n * n + 3 * r * n + 3 * r * r + (14 + ALL) * r + 1 + (n + r + 1) * (n + r)
+            11 * n + n * n + 3 * r * n + 3 * r * r + (15 + ALL) * r + 1 + (n + r + 1) * (n + r)
         )
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
@@ -151,7 +152,8 @@ class Rubbing(RungeKutta):
         self.counted = after(self.shifted_rate, r)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
-        self.effect = after(self.loads, ALL * r)
+        self.doubt = after(self.loads, ALL * r)
+        self.effect = after(self.doubt, r)
         self.multiplier = after(self.effect, n)
         self.effects = after(self.multiplier, r)
         self.per_contact = np.zeros(9 * n_c)

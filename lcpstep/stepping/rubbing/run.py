@@ -43,7 +43,8 @@ class RubbingRun(FrictionRun):
             n,
             method.tolerance or 0.0,
         )
-        system.next_step = FIRST * (scene.t_span[1] - scene.t_span[0])
+        span = scene.t_span[1] - scene.t_span[0]
+        system.next_step = FIRST * span if method.tolerance else h
         return system
 
     def trajectory(self, code: int) -> Any:

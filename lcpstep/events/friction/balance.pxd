@@ -1,0 +1,18 @@
+cimport cython
+from lcpstep.events.friction.equations cimport measure
+from lcpstep.events.friction.held cimport constrain, hold_joints
+from lcpstep.events.friction.impact cimport touching
+from lcpstep.events.friction.modes cimport decide
+from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, min
+
+cdef Py_ssize_t OPEN, DONE, NOT_FINITE
+cdef double MOMENT, SHORTEST, SHORTER, DOUBTFUL
+
+@cython.locals(some=bint)
+cdef bint opens_any(Rubbing s) noexcept nogil
+cdef Py_ssize_t reconsider(Rubbing s, double t, double longest) noexcept nogil
+cdef bint foresee(Rubbing s, double t, double tau) noexcept nogil
+@cython.locals(untold=bint)
+cdef bint cannot_be_told(Rubbing s, double tau) noexcept nogil
