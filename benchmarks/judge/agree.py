@@ -1,9 +1,10 @@
 """Whether a method agrees with the reference, as far as the motion can be foretold.
 
-X(h) and X(0.23 h) say how far the method is from where it goes; companions of the reference, disturbed a little, say how
-far the motion itself can be told. Where the method has converged and the reference stays where it is when disturbed,
-the two have to be at one place. A suspicion is confirmed by X(0.05 h), which must not come nearer, and by companions
-disturbed by as much as the method errs, none of which may reach as far (behind a discontinuity they do).
+X(h) and X(0.23 h) say how far the method is from where it goes; companions of the reference, disturbed a little, say
+how far the motion itself can be told, and `grazes` what none of them sees. Where the method has converged and the
+reference stays where it is when disturbed, the two have to be at one place. A suspicion is confirmed by X(0.05 h),
+which must not come nearer, and by companions disturbed by as much as the method errs, none of which may reach as far
+(behind a discontinuity they do).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description, numbers
+from benchmarks.judge.graze import grazes
 from benchmarks.judge.runs import Finding, Run, run
 from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
@@ -182,6 +184,9 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     own, distances = apart(r, finer, ref.looks) + _scatter(d, r), [ref.apart(x) for x in (r, finer)]
     rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
     promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
+    before = np.where(np.isfinite(own), own, 0.0)  # of a graze, which magnifies it
+    before[1:] = before[:-1]
+    until = min(until, grazes(d, ref.run.motion, ref.looks, before + rounding + promised))
     told = (ref.noise < TOLD * ref.size) & (ref.looks < until)
     for x in (r, finer):
         if not x.done:  # what ends early, and says so, is counted among the endings

@@ -168,14 +168,28 @@ def same_events(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
     slow = np.maximum(STRONG * fast, promised(b.run) * np.sum(np.abs(rows), axis=-1))
     for i, j in ((0, 1), (1, 0)):
         strong = (np.abs(logs[i].before) > slow[contacts[i]]) & (times[i] < end) & (times[i] > start)
-        for t, c, u in zip(times[i][strong], contacts[i][strong], logs[i].before[strong], strict=True):
-            late = LATE * sizes.time + 10.0 * _allowed(b, t) / abs(u)
-            late = late + b.d.h if b.run.method.startswith("moreau") else late
-            near = times[j][(contacts[j] == c) | dependent]
-            if not len(near) or np.min(np.abs(near - t)) > late:
-                text = f"impact of contact {c} at t = {t:.9g} with {u:.3g} has no partner; {v.scene!r}"
-                yield Finding(b.run.method, f"other events: {v.name}", text)
-                return
+        t, c, u = times[i][strong], contacts[i][strong], logs[i].before[strong]
+        late = LATE * sizes.time + 10.0 * _allowed(b, t) / np.abs(u)
+        late = late + b.d.h if b.run.method.startswith("moreau") else late
+        away = np.full(len(t), np.inf)
+        for k in range(b.d.contacts):
+            away[c == k] = nearest(times[j][(contacts[j] == k) | dependent], t[c == k])
+        alone = np.flatnonzero(away > late)
+        if len(alone):
+            k = int(alone[0])
+            text = f"impact of contact {c[k]} at t = {t[k]:.9g} with {u[k]:.3g} has no partner; {v.scene!r}"
+            yield Finding(b.run.method, f"other events: {v.name}", text)
+            return
+
+
+def nearest(times: Any, to: Any) -> Any:
+    """How far each of the times `to` is from the nearest of these; infinite where there are none."""
+    if not len(times):
+        return np.full(len(to), np.inf)
+    times = np.sort(times)
+    after = np.searchsorted(times, to)
+    before, after = np.maximum(after - 1, 0), np.minimum(after, len(times) - 1)
+    return np.minimum(np.abs(to - times[before]), np.abs(to - times[after]))
 
 
 def promised(r: Run) -> float:
@@ -183,8 +197,9 @@ def promised(r: Run) -> float:
     return 10.0 * r.tolerance * (1.0 + float(np.max(np.abs(r.motion.v), initial=0.0)))
 
 
-def _allowed(b: Base, t: float) -> float:
-    return float(b.allowed[min(int(np.searchsorted(b.looks, t)), len(b.looks) - 1)])
+def _allowed(b: Base, times: Any) -> Any:
+    """What places may be wrong by at these times."""
+    return b.allowed[np.minimum(np.searchsorted(b.looks, times), len(b.looks) - 1)]
 
 
 def impacts(r: Run) -> Any:

@@ -27,4 +27,13 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located",),
     ),
+    # It starts at rest on a surface and comes back to it: errors grow to their root, which no companion shows
+    "a mass on a spring that grazes a bent wall once in every period": (
+        Description(
+            M=((1.0,),), q0=(0.0,), v0=(0.0,), t_span=(0.0, 16.2081), h=0.0172, G=((-1.47,),), offset=(0.36,),
+            restitution=1.0, K=((48.8,),), constant=(-9.81,), force_omega=3.68, bend=(-0.36,), round=(1.0,),
+            general=True, family='curved',
+        ),
+        ("event-driven-loose",),
+    ),
 }  # fmt: skip

@@ -12,7 +12,7 @@ from benchmarks.judge.describe import Description
 from benchmarks.judge.physics import rates, room, swinging
 from benchmarks.judge.runs import run
 from benchmarks.judge.variants import Variant, rest
-from benchmarks.judge.vary import base, jams, same
+from benchmarks.judge.vary import base, jams, nearest, same
 
 
 def kinds(findings):
@@ -148,3 +148,13 @@ def test_a_second_part_begins_at_rest_where_a_tolerance_tells_no_speed(speed, re
     assert second.t_span == (0.1, 0.2)
     assert bool(still) is rests
     assert rest(d, np.random.default_rng(1), motion).scene.v0 == tuple(v)
+
+
+def test_the_nearest_of_a_million_impacts_is_found_at_once():
+    rng = np.random.default_rng(0)
+    times, to = rng.uniform(0.0, 1.0, 300), rng.uniform(-0.1, 1.1, 200)
+    wanted = np.min(np.abs(times[:, None] - to), axis=0)
+    np.testing.assert_array_equal(nearest(times, to), wanted)
+    assert np.all(nearest(times[:0], to) == np.inf)
+    many = np.arange(10**6) * 1e-6
+    assert np.all(nearest(many, many) == 0.0)
