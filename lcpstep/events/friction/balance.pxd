@@ -7,7 +7,7 @@ from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, min
 
-cdef Py_ssize_t OPEN, DONE, NOT_FINITE
+cdef Py_ssize_t OPEN, NOT_FINITE
 cdef double MOMENT, SHORTEST, SHORTER, DOUBTFUL
 
 @cython.locals(some=bint)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import OPEN
-from lcpstep.kernels.status import DONE, NOT_FINITE
+from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
@@ -48,7 +48,7 @@ def reconsider(s: Rubbing, t: float, longest: float) -> int:
             return decide(s)
         share *= SHORTER
     clear(s.doubt, s.n_r)
-    return DONE
+    return decide(s)
 
 
 def foresee(s: Rubbing, t: float, tau: float) -> bool:
