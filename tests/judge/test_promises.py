@@ -11,7 +11,7 @@ from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law
 from benchmarks.judge.describe import Description
 from benchmarks.judge.physics import rates, room, swinging
 from benchmarks.judge.runs import run
-from benchmarks.judge.variants import Variant, rest
+from benchmarks.judge.variants import VARIANTS, Variant, rest
 from benchmarks.judge.vary import base, jams, same
 
 
@@ -148,3 +148,24 @@ def test_a_second_part_begins_at_rest_where_a_tolerance_tells_no_speed(speed, re
     assert second.t_span == (0.1, 0.2)
     assert bool(still) is rests
     assert rest(d, np.random.default_rng(1), motion).scene.v0 == tuple(v)
+
+
+def test_impacts_are_told_until_companions_strike_in_another_order():
+    """A body that comes to rest in the apex of four walls, between two times at which places are looked at."""
+    d = Description(
+        M=((0.433, 0.144, 0.159), (0.144, 2.07, 0.347), (0.159, 0.347, 2.5)), q0=(0.646, -0.932, -0.0604),
+        v0=(-0.839, 0.249, -0.0372), t_span=(0.0, 60.0), h=0.0628, G=((0.227, -0.578, 0.784),
+        (0.345, 0.136, 0.929), (-0.266, 0.678, 0.686), (-0.855, -0.336, 0.396)), offset=(-0.6379844,
+        -0.04000639999999998, 0.8451664000000001, 0.26309639999999995), restitution=0.88, K=((0.141, -0.297, -0.391),
+        (-0.297, 1.44, 0.649), (-0.391, 0.649, 1.38)), C=((0.148, -0.00152, -0.00201), (-0.00152, 0.713, 0.00333),
+        (-0.00201, 0.00333, 0.861)), constant=(0.0, 0.0, -24.5),
+    )  # fmt: skip
+    r, rng = run(d, "located-exact"), np.random.default_rng(3)
+    b, v = base(d, r), VARIANTS["order"](d, rng)
+    assert b.told == np.inf  # its places
+    assert 0.4 < b.alone < 0.7
+    other = run(v.scene, "located-exact")
+    assert kinds(same(b, other, v)) == set()
+    log = np.delete(other.motion.impacts, 5).view(np.recarray)  # at t = 0.1
+    other = replace(other, motion=replace(other.motion, impacts=log))
+    assert kinds(same(b, other, v)) == {"other events: coordinates renumbered"}
