@@ -1,4 +1,4 @@
-"""Contacts in any order: the numbers that they have are no part of the question."""
+"""A scene in other words, that were answered otherwise once: contacts in another order, another zero of time."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -28,3 +28,17 @@ def test_a_body_comes_to_rest_in_a_corner_whatever_the_numbers_of_its_walls(meth
     r = run(replace(INTO_A_CORNER, **rows), method)
     assert r.done, r.text
     np.testing.assert_allclose(r.motion.v[-1], 0.0, atol=1e-14)
+
+
+def test_a_body_that_rests_on_a_moving_wall_strikes_another_at_any_time():
+    """Where it strikes it is put back onto the first, and not to where rounding has left it beside the second."""
+    d = Description(
+        M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-1.94, 1.26, 0.0611), v0=(0.0, 0.0, 0.0),
+        t_span=(0.0, 0.4764), h=0.0397, G=((-0.65, -0.208, 0.73), (0.284, -0.887, 0.363), (0.826, 0.265, 0.497),
+        (-0.28, 0.873, 0.399)), offset=(-0.890523, 1.6464007, 1.2704732999999997, -1.5676589),
+        restitution=(0.43, 1.0, 1.0, 0.37), constant=(0.0, 0.0, -9.81), amplitude=(0.0636,) * 4, phase=(0.0,) * 4,
+        omega=1.09,
+    )  # fmt: skip
+    later = replace(d, t_span=(64.0, 64.4764), phase=(-69.76,) * 4)
+    a, b = (run(x, "located").motion.q[-1] for x in (d, later))
+    np.testing.assert_allclose(a, b, atol=1e-11)
