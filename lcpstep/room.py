@@ -66,7 +66,7 @@ def no_room(run: Trajectory) -> str:
 
 def closes_upon(scene: Scene, t: float, q: Array) -> str:
     """Which obstacle leaves no room just after time t to a body that touches it at q, in words; "" where none."""
-    reach = float(np.linalg.norm(q - scene.q0))
+    reach = float(np.linalg.norm(q - np.asarray(scene.q0, dtype=float)))
     if not isinstance(scene.contacts, Contacts) or not 0.0 < reach < np.inf:
         return ""
     soon = t + SOON * (t - scene.t_span[0])
