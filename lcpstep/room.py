@@ -6,7 +6,8 @@ towards zero, each halved until the gap grows. Where the climb ends below zero a
     g(t, q*) + R |G(t, q*)| < 0,     R = how far the coordinates went,
 
 a gap that bends downwards, as that of a bowl, is negative everywhere within R of q*: it has closed upon the body.
-No motion goes on from there, whatever the steps of a method have made of it.
+No motion goes on from there, whatever the steps of a method have made of it. The same, a little later, is asked of a
+run that was held on such an obstacle by ever shorter steps (`closes_upon`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import Contacts, Scene
 from lcpstep import depth
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.looks import lies_inside
@@ -27,6 +29,8 @@ CLIMBS = 8  # of them, the deepest, from which the gap is climbed
 STEPS, HALVINGS = 60, 60  # of a climb, and of each of its steps
 SHALLOW = 1e-2  # of R: what steps lie inside of an obstacle anyway, from which nothing is climbed
 ROUNDING = 1e-9  # of R: no depth
+SOON = 1e-6  # of the time since the start: when a run that steps ever shorter would have gone on
+TOUCHES = 1e-3  # of R: gaps of contacts that may be closed
 
 
 def no_room(run: Trajectory) -> str:
@@ -49,7 +53,7 @@ def no_room(run: Trajectory) -> str:
     for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
         c, at = int(np.argmin(g[i])), float(run.t[k[i]])
         try:
-            best = _climbed(run, at, run.q[k[i]], c, reach)
+            best = _climbed(run.scene, at, run.q[k[i]], c, reach)
         except ValueError:  # a callback that fails beside the motion
             continue
         if best < -ROUNDING * reach:
@@ -60,9 +64,25 @@ def no_room(run: Trajectory) -> str:
     return ""
 
 
-def _climbed(run: Trajectory, t: float, q: Array, c: int, reach: float) -> float:
+def closes_upon(scene: Scene, t: float, q: Array) -> str:
+    """Which obstacle leaves no room just after time t to a body that touches it at q, in words; "" where none."""
+    reach = float(np.linalg.norm(q - np.asarray(scene.q0, dtype=float)))
+    if not isinstance(scene.contacts, Contacts) or not 0.0 < reach < np.inf:
+        return ""
+    soon = t + SOON * (t - scene.t_span[0])
+    try:
+        g = depth.gaps(scene, [(t, q, np.zeros_like(q))])[0]
+        for c in np.flatnonzero(np.abs(g) <= TOUCHES * reach):
+            if _climbed(scene, soon, q, int(c), reach) < 0.0:
+                return f"the obstacle of contact {c} closes in, and leaves no room"
+    except ValueError:  # a callback that fails beside the motion
+        pass
+    return ""
+
+
+def _climbed(scene: Scene, t: float, q: Array, c: int, reach: float) -> float:
     """The largest gap within reach where that is below zero; 0 where there is room, or where it is not known."""
-    scene, still = run.scene, np.zeros_like(q)
+    still = np.zeros_like(q)
     g, G = depth.gaps(scene, [(t, q, still)])[0, c], depth.normal(scene, c, (t, q, still))
     for _ in range(STEPS):
         if g >= 0.0:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearSystem, Scene, System
-from lcpstep import Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.room import closes_upon
 from lcpstep.trajectory import Status
 
 
@@ -36,6 +37,23 @@ def test_a_bowl_that_closes_upon_a_body_is_told(omega, method):
     assert m.status is not Status.DONE or "leaves no room" in m.doubt
     open_always = simulate(Scene(system, 0.1, 0.0, (0.0, 1.3), bowl(1.3, 0.05, omega)), method)
     assert (open_always.status, open_always.doubt) == (Status.DONE, "")
+
+
+def test_a_bowl_that_closes_upon_a_body_held_on_it_is_named():
+    """Held at q = sqrt((1.02 - 0.2 sin 5t)^2 - 1), it is squeezed to the middle at sin 5t = 0.1, ever faster."""
+    scene = Scene(LinearSystem(M=1.0, force=1.0), 0.2, 0.0, (0.0, 1.3), bowl(1.02, 0.2, 5.0))
+    run = simulate(scene, EventDriven())
+    assert run.status is Status.STEP_TOO_SMALL
+    assert "the obstacle of contact 0 closes in, and leaves no room" in run.message
+    assert run.t[-1] == pytest.approx(math.asin(0.1) / 5.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(("when", "named"), [(0.02, False), (0.0200334, True)])
+def test_an_obstacle_closes_in_only_where_it_leaves_no_room(when, named):
+    scene = Scene(LinearSystem(M=1.0, force=1.0), 0.2, 0.0, (0.0, 1.3), bowl(1.02, 0.2, 5.0))
+    q = math.sqrt((1.02 - 0.2 * math.sin(5.0 * when)) ** 2 - 1.0)
+    assert bool(closes_upon(scene, when + 8e-8 * named, np.array([q]))) is named
+    assert closes_upon(scene, 0.0, np.array([0.2])) == ""  # it has not moved
 
 
 def test_the_largest_gap_is_bounded_from_above():

@@ -2,7 +2,7 @@
 
 X(h) and X(0.23 h) say how far the method is from where it goes; companions of the reference, disturbed a little, say
 how far the motion itself can be told, and `grazes` what none of them sees. Where the method has converged and the
-reference stays where it is when disturbed, the two have to be at one place. A suspicion is confirmed by X(0.05 h),
+reference stays where it is when disturbed, the two have to be at one place. A suspicion is confirmed by finer steps,
 which must not come nearer, and by companions disturbed by as much as the method errs, none of which may reach as far
 (behind a discontinuity they do).
 """
@@ -10,6 +10,7 @@ which must not come nearer, and by companions disturbed by as much as the method
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ import numpy as np
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description, numbers
 from benchmarks.judge.graze import grazes
-from benchmarks.judge.runs import Finding, Run, run
+from benchmarks.judge.runs import WAYS, Finding, Run, run
 from benchmarks.judge.scales import EPS
 from lcpstep.trajectory import Kind
 
@@ -26,6 +27,7 @@ SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
 FACTOR, NOISE = 30.0, 100.0
 CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
 COMPANIONS = 6
+MANY = 20_000  # steps of the finest run
 EARLY, CLEAR = (
     8,
     30.0,
@@ -184,9 +186,6 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     own, distances = apart(r, finer, ref.looks) + _scatter(d, r), [ref.apart(x) for x in (r, finer)]
     rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
     promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
-    before = np.where(np.isfinite(own), own, 0.0)  # of a graze, which magnifies it
-    before[1:] = before[:-1]
-    until = min(until, grazes(d, ref.run.motion, ref.looks, before + rounding + promised))
     told = (ref.noise < TOLD * ref.size) & (ref.looks < until)
     for x in (r, finer):
         if not x.done:  # what ends early, and says so, is counted among the endings
@@ -204,9 +203,13 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
         & (r.tolerance == 0.0)
         & (distances[1] > 0.7 * distances[0] + rounding + _scatter(d, r)),
     }
+    before = np.where(np.isfinite(own), own, 0.0)  # of a graze, which magnifies it
+    before[1:] = before[:-1]
     for kind, bad in tests.items():
         where = np.flatnonzero(bad)
-        if len(where):
+        if len(where) and ref.looks[where[0]] < grazes(
+            d, ref.run.motion, ref.looks, before + rounding + promised
+        ):
             return _confirmed(ref, r, kind, int(where[0]), float(own[where[0]]), distances)
     return []
 
@@ -221,16 +224,32 @@ def _scatter(d: Description, r: Run) -> float:
     return 0.25 * d.h * float(np.max(np.abs(r.motion.v))) if r.method == "moreau" else 0.0
 
 
+def nearer(ref: Reference, r: Run, k: int, distance: float) -> bool:
+    """Whether finer steps come nearer to the reference, or cannot be taken: a 16th, and less where the order says so.
+
+    A contact that lets go within a step may do so at its beginning; where that is so of all these steps, they differ
+    by nothing, and lie within (h / time)^order of the motion's size.
+    """
+    d, sizes, order = ref.d, r.scales(ref.d), WAYS[r.method].order
+    for power in count(2):
+        factor = finer_by(r) ** power
+        finest = run(d, r.method, factor)
+        if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
+            return True
+        explained = sizes.length * (factor * d.h / sizes.time) ** order
+        if r.tolerance > 0.0 or distance > explained or d.length * finer_by(r) > MANY * factor * d.h:
+            break
+    return False
+
+
 def _confirmed(ref: Reference, r: Run, kind: str, k: int, own: float, distances: list[Any]) -> list[Finding]:
     """The finding, unless a still finer step comes nearer, or a disturbed companion goes as far."""
     if "tolerance" in kind:
         own = r.tolerance * ref.size * (1.0 if kind == "tolerance missed" else finer_by(r))
     which = 0 if kind == "tolerance missed" else 1
     distance = float(distances[which][k])
-    if which:
-        finest = run(ref.d, r.method, finer_by(r) ** 2)
-        if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
-            return []
+    if which and nearer(ref, r, k, distance):
+        return []
     share = max(3.0 * own / ref.size, 1e-8)
     for i in range(COMPANIONS):
         if ref.companion(share, 10 + i)[k] > 0.1 * distance:

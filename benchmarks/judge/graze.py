@@ -31,6 +31,8 @@ def grazes(d: Description, motion: Any, looks: Any, allowed: Any) -> float:
         g, u, error = _seen(d, motion, times, looks, allowed)
         still = ROUNDING * np.max(np.abs(u))
         before, c = np.nonzero(_returns(g, u, AFAR * error, still))
+        if not len(before):
+            return np.inf
         low, high = times[before], times[before + 1]
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)

@@ -15,6 +15,7 @@ from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
 from lcpstep.recording import Kept, Recorder, States
+from lcpstep.room import closes_upon
 from lcpstep.running import Run
 from lcpstep.trajectory import Counts, Status
 
@@ -95,7 +96,10 @@ class EventRun(Run):
         tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
         words = f"the tolerances {tolerances} cannot be met {self.where}"
         names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
-        return f"{words}: {names} must be functions of time and state, and are not" if names else words
+        if names:
+            return f"{words}: {names} must be functions of time and state, and are not"
+        closing = closes_upon(self.scene, self.now, q.copy())
+        return f"{closing}: {words}" if closing else words
 
 
 @dataclass(eq=False)

@@ -6,12 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks.judge import checks
+from benchmarks.judge import agree, checks
+from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
 from benchmarks.judge.physics import rates, room, swinging
 from benchmarks.judge.runs import run
-from benchmarks.judge.variants import Variant, rest
+from benchmarks.judge.variants import VARIANTS, Variant, rest
 from benchmarks.judge.vary import base, jams, nearest, same
 
 
@@ -158,3 +159,43 @@ def test_the_nearest_of_a_million_impacts_is_found_at_once():
     assert np.all(nearest(times[:0], to) == np.inf)
     many = np.arange(10**6) * 1e-6
     assert np.all(nearest(many, many) == 0.0)
+
+
+def test_impacts_are_told_until_companions_strike_in_another_order():
+    """A body that comes to rest in the apex of four walls, between two times at which places are looked at."""
+    d = Description(
+        M=((0.433, 0.144, 0.159), (0.144, 2.07, 0.347), (0.159, 0.347, 2.5)), q0=(0.646, -0.932, -0.0604),
+        v0=(-0.839, 0.249, -0.0372), t_span=(0.0, 60.0), h=0.0628, G=((0.227, -0.578, 0.784),
+        (0.345, 0.136, 0.929), (-0.266, 0.678, 0.686), (-0.855, -0.336, 0.396)), offset=(-0.6379844,
+        -0.04000639999999998, 0.8451664000000001, 0.26309639999999995), restitution=0.88, K=((0.141, -0.297, -0.391),
+        (-0.297, 1.44, 0.649), (-0.391, 0.649, 1.38)), C=((0.148, -0.00152, -0.00201), (-0.00152, 0.713, 0.00333),
+        (-0.00201, 0.00333, 0.861)), constant=(0.0, 0.0, -24.5),
+    )  # fmt: skip
+    r, rng = run(d, "located-exact"), np.random.default_rng(3)
+    b, v = base(d, r), VARIANTS["order"](d, rng)
+    assert b.told == np.inf  # its places
+    assert 0.4 < b.alone < 0.7
+    other = run(v.scene, "located-exact")
+    assert kinds(same(b, other, v)) == set()
+    log = np.delete(other.motion.impacts, 5).view(np.recarray)  # at t = 0.1
+    other = replace(other, motion=replace(other.motion, impacts=log))
+    assert kinds(same(b, other, v)) == {"other events: coordinates renumbered"}
+
+
+def test_a_contact_may_let_go_where_its_step_begins_whatever_the_step(monkeypatch):
+    """After 4e-4 s; steps of h to h/16 all have it at 0, and are 1e-8 off together."""
+    d = Description(
+        M=((291.0, 0.0, 0.0), (0.0, 9390.0, 0.0), (0.0, 0.0, 0.197)), q0=(-0.13, -0.253, 0.302), v0=(0.0,) * 3,
+        t_span=(0.0, 0.363), h=0.011, G=((-0.953, -0.105, 0.285), (0.546, -0.743, 0.388), (0.393, 0.896, 0.208)),
+        offset=(-0.23652499999999999, -0.234175, 0.21496200000000004), restitution=(0.86, 0.19, 1.0),
+        constant=(0.0, 0.0, -1.93), frame=(0.0987, -0.0618, 0.112), omega=2.85,
+    )  # fmt: skip
+    r, reference = run(d, "located"), Reference(d, run(d, "event-driven"))
+    assert np.max(np.abs(run(d, "located", 0.25).motion.at(0.044)[0] - r.motion.at(0.044)[0])) < 1e-15
+    assert agrees(reference, r) == []
+
+    def shaken(d, method, factor=1.0):
+        return run(replace(d, frame=(0.0988, -0.0618, 0.112)) if method == "located" else d, method, factor)
+
+    monkeypatch.setattr(agree, "run", shaken)
+    assert kinds(agrees(reference, shaken(d, "located"))) == {"disagrees"}

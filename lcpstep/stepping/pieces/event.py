@@ -9,12 +9,12 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, max
+    from lcpstep.pointers import Doubles, abs, after, max
     from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.smooth import lift, refactor, renew_forces, respond
+    from lcpstep.stepping.pieces.smooth import mobility, refactor, renew_forces, respond
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, stick, turn
 
@@ -49,6 +49,16 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
     if record.keeps_events():
         keep(w, record, now, 1.0)
     return FINISHED
+
+
+def lift(m: Model, plan: Plan, w: Work, x: Doubles, c: int, distance: float) -> None:
+    """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
+    if not plan.constant:
+        mobility(m, w, c)
+    W = product(w.G, after(w.MG, c * w.n_q), c, w.n_q)
+    if W > 0.0:
+        for i in range(w.n_q):
+            x[i] += w.MG[c * w.n_q + i] * distance / W
 
 
 def straighten(m: Model, plan: Plan, w: Work, d: int) -> None:

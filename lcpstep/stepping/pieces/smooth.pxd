@@ -28,9 +28,10 @@ cdef bint refactor(Model m, Work w, double t) noexcept nogil
 cdef void gap_bias(Model m, Work w, double t, double* q, double* v) noexcept nogil
 cdef void measure(Model m, Plan plan, Work w, double t) noexcept nogil
 cdef void shift(Work w, double tau) noexcept nogil
+@cython.locals(landing=Py_ssize_t, closed=bint)
 cdef void put_on_surface(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef double closed_off(Work w) noexcept nogil
 @cython.locals(free=bint)
 cdef void settle_state(Model m, Plan plan, Work w, double t, double* q) noexcept nogil
 cdef void newton_step(Work w, double* x) noexcept nogil
-cdef void lift(Model m, Plan plan, Work w, double* x, Py_ssize_t c, double distance) noexcept nogil
 cdef bint advance(Model m, Plan plan, Work w, double t, double tau) noexcept nogil

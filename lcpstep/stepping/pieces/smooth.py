@@ -193,17 +193,21 @@ def shift(w: Work, tau: float) -> None:
 
 
 def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
-    """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand."""
-    for _ in range(LANDINGS):
+    """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand.
+
+    Onto the closed ones first: rounding leaves one that closes just now on either side of zero.
+    """
+    near = ON_THE_SURFACE * plan.slack
+    for landing in range(LANDINGS):
         if w.joined:
             put_on_joints(w, t, plan.slack, w.q)
         gaps(m, t, w.q, w.v, w.gap_try)
-        worst = 0.0
+        worst, closed = 0.0, landing == 0 and closed_off(w) > near
         for c in range(w.n_c):
             if w.status[c] != CLOSED:
-                w.gap_try[c] = min(w.gap_try[c], 0.0)
+                w.gap_try[c] = 0.0 if closed else min(w.gap_try[c], 0.0)
             worst = max(worst, abs(w.gap_try[c]))
-        if worst <= ON_THE_SURFACE * plan.slack:
+        if worst <= near:
             return
         if not plan.constant:
             gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
@@ -211,6 +215,15 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
         newton_step(w, w.q)
     if w.joined:
         meet_both(m, w, t, plan.slack)
+
+
+def closed_off(w: Work) -> float:
+    """How far closed contacts are off their obstacles, by w.gap_try."""
+    most = 0.0
+    for c in range(w.n_c):
+        if w.status[c] == CLOSED:
+            most = max(most, abs(w.gap_try[c]))
+    return most
 
 
 def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
@@ -247,16 +260,6 @@ def newton_step(w: Work, x: Doubles) -> None:
     for k in range(n_k):
         for i in range(w.n_q):
             x[i] += w.MG[w.held[k] * w.n_q + i] * w.change[k]
-
-
-def lift(m: Model, plan: Plan, w: Work, x: Doubles, c: int, distance: float) -> None:
-    """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
-    if not plan.constant:
-        mobility(m, w, c)
-    W = product(w.G, after(w.MG, c * w.n_q), c, w.n_q)
-    if W > 0.0:
-        for i in range(w.n_q):
-            x[i] += w.MG[c * w.n_q + i] * distance / W
 
 
 def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:

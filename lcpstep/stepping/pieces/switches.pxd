@@ -12,7 +12,7 @@ cdef Py_ssize_t AT_ONCE, AT_ONCE_FAST, AT_ONCE_ELASTIC
 cdef void idle(Work w) noexcept nogil
 @cython.locals(elastic=bint, hops=bint)
 cdef void turn(Model m, Plan plan, Work w, Py_ssize_t c, double u, bint struck) noexcept nogil
-@cython.locals(found=bint)
+@cython.locals(found=bint, opens=bint)
 cdef bint coupled(Work w, Py_ssize_t c) noexcept nogil
 cdef void stick(Work w, Record record, Py_ssize_t c, double t) noexcept nogil
 cdef void release(

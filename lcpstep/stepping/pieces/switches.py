@@ -60,10 +60,14 @@ def turn(m: Model, plan: Plan, w: Work, c: int, u: float, struck: bool) -> None:
 
 
 def coupled(w: Work, c: int) -> bool:
-    """Whether contact c stands beside a closed one that feels it."""
+    """Whether contact c stands beside a closed one that feels it, or beside one that opens at this very instant.
+
+    Those that one impact throws off are noted one after another: which comes first must not matter.
+    """
     found = False
     for d in range(w.n_c):
-        found = found or (d != c and w.status[d] == CLOSED and w.W[c * w.n_c + d] != 0.0)
+        opens = w.status[d] == OPEN and w.turned[d] == w.sigma and w.last[d] != w.sigma
+        found = found or (d != c and (w.status[d] == CLOSED or opens) and w.W[c * w.n_c + d] != 0.0)
     return found
 
 

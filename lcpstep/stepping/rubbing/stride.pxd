@@ -8,7 +8,7 @@ from lcpstep.events.friction.step cimport arrive, find_standing, of_force
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport min
+from lcpstep.pointers cimport after, min
 from lcpstep.stepping.rubbing.found cimport NOWHERE, arm, first_event, locate, note_arrival, note_base
 from lcpstep.stepping.rubbing.paced cimport pace
 from lcpstep.stepping.rubbing.strides cimport Strides

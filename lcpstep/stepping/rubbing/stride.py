@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import min
+    from lcpstep.pointers import after, min
     from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
     from lcpstep.stepping.rubbing.paced import pace
     from lcpstep.stepping.rubbing.strides import Strides
@@ -161,10 +161,14 @@ def press(s: Strides, a: float, b: float) -> None:
 
 
 def arrive_with(s: Strides, t: float) -> None:
-    """What is known where a step has ended is known where the next one begins, unless it begins at a corner."""
+    """What is known where a step has ended is known where the next one begins, unless it begins at a corner.
+
+    Forces are those of before `put_end_back`, the velocity is that of after it.
+    """
     s.going = t < s.clock.high
     if s.going:
         copy(s.K, s.arrival, s.n)
+        copy(s.K, after(s.y, s.n_q), s.n_q)
         copy(s.leaving, s.arriving, s.n_r)
         copy(s.begin_value, s.end_value, GUARDS * s.n_c)
         copy(s.begin_slope, s.end_slope, GUARDS * s.n_c)

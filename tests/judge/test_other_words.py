@@ -1,0 +1,44 @@
+"""A scene in other words, that were answered otherwise once: contacts in another order, another zero of time."""
+
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from benchmarks.judge.describe import Description
+from benchmarks.judge.runs import run
+
+# Thrown off together by an elastic wall, two plastic ones are met again one after the other, at 0.85 of the speeds
+INTO_A_CORNER = Description(
+    M=((0.889, 0.228, 0.253), (0.228, 1.41, 0.319), (0.253, 0.319, 1.74)), q0=(0.0, 0.0, 0.0),
+    v0=(0.042089197239613185, -0.008110598907803175, -0.011619812416507239), t_span=(0.0, 1.2), h=0.0382,
+    G=((-0.0564, -0.903, 0.426), (0.289, 0.143, 0.947), (-0.777, 0.516, 0.36)), offset=(0.0, 0.0, 0.426),
+    restitution=(0.0, 1.0, 0.0), K=((0.0683, -0.0112, 0.0835), (-0.0112, 0.117, 0.0953), (0.0835, 0.0953, 0.281)),
+    constant=(0.0, 0.0, -17.1), general=True, family="wedge",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+@pytest.mark.parametrize("method", ["located", "located-4", "located-tolerance"])
+def test_a_body_comes_to_rest_in_a_corner_whatever_the_numbers_of_its_walls(method, order):
+    rows = {
+        name: tuple(getattr(INTO_A_CORNER, name)[i] for i in order) for name in ("G", "offset", "restitution")
+    }
+    r = run(replace(INTO_A_CORNER, **rows), method)
+    assert r.done, r.text
+    np.testing.assert_allclose(r.motion.v[-1], 0.0, atol=1e-14)
+
+
+def test_a_body_that_rests_on_a_moving_wall_strikes_another_at_any_time():
+    """Where it strikes it is put back onto the first, and not to where rounding has left it beside the second."""
+    d = Description(
+        M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-1.94, 1.26, 0.0611), v0=(0.0, 0.0, 0.0),
+        t_span=(0.0, 0.4764), h=0.0397, G=((-0.65, -0.208, 0.73), (0.284, -0.887, 0.363), (0.826, 0.265, 0.497),
+        (-0.28, 0.873, 0.399)), offset=(-0.890523, 1.6464007, 1.2704732999999997, -1.5676589),
+        restitution=(0.43, 1.0, 1.0, 0.37), constant=(0.0, 0.0, -9.81), amplitude=(0.0636,) * 4, phase=(0.0,) * 4,
+        omega=1.09,
+    )  # fmt: skip
+    later = replace(d, t_span=(64.0, 64.4764), phase=(-69.76,) * 4)
+    a, b = (run(x, "located").motion.q[-1] for x in (d, later))
+    np.testing.assert_allclose(a, b, atol=1e-11)
