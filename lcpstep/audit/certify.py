@@ -147,7 +147,7 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
         if problem is not p.problem:  # of a run that has its modes from other forces: only said, not taken
             vain, wrong = wrong, np.zeros(len(w.a), dtype=bool)
         h = w.b - w.a
-        drifted = s.error - s.own  # beside an event the motion counts as it was computed
+        drifted = np.maximum(s.error - s.own, 0.0)  # beside an event the motion counts as it was computed
         if not good.all():
             good |= at_event(p, w, lower + drifted > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))
@@ -161,6 +161,9 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
                 vain = in_vain(p, w, s, lower)
         vain = vain & left
         end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
+        if np.any(end) and problem is p.problem and p.sharpen():
+            w, looked = w.chosen(left), 0
+            continue
         if np.any(end):
             narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
             near = NARROW if problem is p.problem else EDGE

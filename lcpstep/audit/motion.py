@@ -23,6 +23,7 @@ from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
 ROUNDING = 1e-13  # of the numbers that a polynomial is made of
+LAST_DIGIT, TURN = 4.5e-16, 6.0  # two of the positions, by which a step may be off, and what its turn makes of them
 
 
 class Bounds(NamedTuple):
@@ -62,20 +63,36 @@ class Polynomials:
     ----------
     t : (m + 1,)   times of the states
     B : (m, degree + 1, n_q)   Bernstein's coefficients of the pieces between them
+    steps : (moves, length)   the same less the states at the starts, and how long the steps (m,) are that pieces are
+        parts of: so derivatives in short pieces do not drown in the rounding of positions
     """
 
     absolute = False  # q is what the scene means by it
 
-    def __init__(self, t: Array, B: Array) -> None:
-        self.t, self.B, self.degree = t, B, B.shape[1] - 1
+    def __init__(self, t: Array, B: Array, steps: tuple[Array, Array] | None = None) -> None:
+        self.t, self.B, self.degree, self.steps = t, B, B.shape[1] - 1, steps
 
     def windows(self, k: Any, a: Array, b: Array) -> Array:
         """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""
+        return self._within(self.B, k, a, b)
+
+    def _within(self, B: Array, k: Any, a: Array, b: Array) -> Array:
         x, inverse = _nodes(self.degree)
         start, length = self.t[k], self.t[k + 1] - self.t[k]
-        places = (a[:, None] + (b - a)[:, None] * x - start[:, None]) / length[:, None]
-        values = np.matmul(basis(places, self.degree), self.B[k])
+        first, last = (a - start) / length, (b - start) / length  # places between them: evenly, whatever rounding
+        places = first[:, None] + (last - first)[:, None] * x
+        values = np.matmul(basis(places, self.degree), B[k])
         return np.asarray(np.matmul(inverse, values))
+
+    def bounds(self, x: Array, G: Array, k: Any, a: Array, b: Array) -> Bounds:
+        """Bounds of G q for a row G (n, n_q) of every window, of which x (n, degree + 1) are the coefficients."""
+        found = derivatives(x, b - a)
+        if self.steps is None:
+            return found
+        moves, length = self.steps
+        exact = derivatives(np.matmul(self._within(moves, k, a, b), G[:, :, None])[:, :, 0], b - a)
+        off, h = LAST_DIGIT * self.size(G, k), length[k]
+        return Bounds(found.place, wider(exact.speed, 2.0 * off / h), wider(exact.curve, TURN * off / (h * h)))
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""
@@ -84,16 +101,27 @@ class Polynomials:
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
         x = np.matmul(self.windows(k, a, b), G[:, :, None])[:, :, 0]
-        return derivatives(x, b - a), x[:, 0], x[:, -1]
+        return self.bounds(x, G, k, a, b), x[:, 0], x[:, -1]
 
     def place(self, G: Array, k: Any, t: Array) -> Array:
         """G q at times in the pieces k."""
         return np.asarray(np.sum(self.windows(k, t, t)[:, 0] * G, axis=1))
 
+    def fastest(self, k: Any) -> Array:
+        """How fast the coordinates are in the pieces k, at most, (n, n_q)."""
+        moves, h = np.abs(np.diff(self.B[k], axis=1)), self.t[k + 1] - self.t[k]
+        return np.asarray(self.degree * np.max(moves, axis=1) / h[:, None])
+
     def boxes(self, k: Any, a: Array, b: Array) -> tuple[list[Bounds], Array, Array]:
         """Bounds of every coordinate, and the states at a and b, (n, n_q)."""
         x = self.windows(k, a, b)
-        return [derivatives(x[:, :, i], b - a) for i in range(x.shape[2])], x[:, 0], x[:, -1]
+        rows = [np.broadcast_to(row, (len(x), len(row))) for row in np.eye(x.shape[2])]
+        return [self.bounds(x[:, :, i], row, k, a, b) for i, row in enumerate(rows)], x[:, 0], x[:, -1]
+
+
+def wider(x: Interval, by: Array) -> Interval:
+    """An interval with so much more on both sides."""
+    return Interval(x.lo - by, x.hi + by)
 
 
 def derivatives(x: Array, h: Array) -> Bounds:
@@ -112,11 +140,11 @@ def by_steps(t: Array, q: Array, F: Array, length: Array) -> Polynomials:
     """The dense output of Runge-Kutta steps, see `rungekutta.RungeKutta.at`; F (m, 7, 2 n_q) after each state."""
     n, degree = q.shape[1], F.shape[1]
     h, step = np.diff(t), np.where(length > 0.0, length, 1.0)
-    B = q[:-1, None] + np.matmul(_whole(degree), F[:, :, :n])
+    moves = np.matmul(_whole(degree), F[:, :, :n])
     cut = np.flatnonzero(h != step)  # by an event
     if len(cut):
-        B[cut] = q[cut, None] + np.matmul(_parts(h[cut] / step[cut], degree), F[cut, :, :n])
-    return Polynomials(t, B)
+        moves[cut] = np.matmul(_parts(h[cut] / step[cut], degree), F[cut, :, :n])
+    return Polynomials(t, q[:-1, None] + moves, (moves, step))
 
 
 @functools.cache

@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from lagrangian import Contacts
 from lcpstep.audit import motion
+from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.drift import drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
-from lcpstep.audit.missed import missed
+from lcpstep.audit.missed import jumped, missed
 from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
@@ -37,6 +38,7 @@ LOOKS = 1000  # states that the largest gap is taken from
 INNER = 3  # positions within a step that is known by running it again
 TOLERANCES = 10.0  # within which an event-driven run is: docs/accuracy.md
 ROUNDING = 1e-13  # of positions in closed form
+STILL = 4e-15  # of the velocities: a gap with this rate before and after an impact stays as it is
 CLOSED_GAP = 1e-12  # of the positions: a gap that is closed at the start
 
 
@@ -64,8 +66,10 @@ class Pieces:
         self.motion, self.t, mode, error = moved(run, self.m)
         self.certain = isinstance(run.dense, Arcs) or (isinstance(run.dense, Moved) and run.dense.constant)
         t = np.ascontiguousarray(self.t)
-        names = "time", "contact", "kind", "after"
-        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        names = "time", "contact", "kind", "before", "after"
+        time, contact, kind, before, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        still = STILL * float(np.max(np.abs(run.v), initial=0.0))
+        rate[(np.abs(before) <= still) & (np.abs(rate) <= still)] = 0.0  # another's impact has pressed it
         if mode is not None:
             self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
@@ -92,15 +96,25 @@ class Pieces:
         if self.closed.any():
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
+        if isinstance(run.dense, Moved) and by_tolerance(run.method) and not run.dense.constant:
+            self.problem.anchors = Anchors(self.t, self.touched, jumped(run, self.t), error, self.motion)
 
     def added_up(self) -> Array | None:
         """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
         run, dense = self.run, self.run.dense
         if isinstance(dense, Bent):
-            return drift(run, self.m, dense.jumps, self.cuts)
+            return drift(run, self.m, dense.jumps, self.closed, self.cuts)
         if getattr(run.method, "order", "exact") == "exact":
             return None
         return missed(run, self.m, self.motion, self.closed, self.cuts)
+
+    def sharpen(self) -> bool:
+        """Ask the forces along the motion how far it may be off, where that is known by tolerances alone; once."""
+        anchors = self.problem.anchors
+        if anchors is None or anchors.estimated is not None:
+            return False
+        anchors.estimated = missed(self.run, self.m, self.motion, self.closed, self.cuts)
+        return True
 
     @functools.cached_property
     def events(self) -> list[Array]:

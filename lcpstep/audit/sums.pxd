@@ -2,6 +2,8 @@ cimport cython
 from lcpstep.arrays cimport doubles, small_numbers
 from lcpstep.pointers cimport abs, inf, max, min
 
+cdef Py_ssize_t JUMP
+
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, n_cuts=Py_ssize_t, i=Py_ssize_t, k=Py_ssize_t, j=Py_ssize_t,
                a=double, turn=double, last=double, turned=double, smooth=bint, known=bint, was=bint, had=bint, cut=bint)
 cpdef object changes(

@@ -6,17 +6,19 @@ from typing import Any
 
 import cython
 
+from lcpstep.audit.limits import JUMP
+
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.pointers import Doubles, abs, inf, max, min
-
 
 def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
     """How accelerations change from piece to piece, and how that changes: the largest of a piece and its neighbours.
 
     Parameters
     ----------
-    t : (m + 1,);  v : (m + 1, n_q);  jumps : (m + 1,) uint8   states at which the velocity may have jumped
+    t : (m + 1,);  v : (m + 1, n_q)
+    jumps : (m + 1,) uint8   JUMP at states where the velocity may have jumped, RELEASED where the motion is free again
     cuts : (k,)   corners: pieces that one touches are not compared with others
     first, second : (m, n_q), zeros   found here;  size : (n_q,), zeros   the integral of |a|
     """
@@ -33,8 +35,8 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
                 while i < n_cuts and corner[i] < times[k]:
                     i += 1
                 cut = i < n_cuts and corner[i] <= times[k + 1]
-                smooth = a - a == 0.0 and jump[k + 1] == 0 and not cut
-                known = smooth and was
+                smooth = a - a == 0.0 and jump[k + 1] != JUMP and not cut
+                known = smooth and was and jump[k] == 0
                 turn = a - last if known else 0.0
                 if smooth:
                     whole[j] += h * abs(a)
