@@ -13,7 +13,7 @@ from lcpstep.audit import motion
 from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
-from lcpstep.audit.drift import drift
+from lcpstep.audit.drift import begins, drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
 from lcpstep.audit.missed import jumped, missed
@@ -78,6 +78,8 @@ class Pieces:
         known = by_tolerance(run.method) and not self.certain and self.closed.any() and is_known(self.scene)
         self.cones = Cones(self.scene, self.motion, run.v, self.closed, error) if known else None
         gone = self.added_up()
+        if isinstance(run.dense, Bent):
+            error = (error[0] + between(run, begins(run.dense.jumps, self.closed)), error[1])
         if gone is not None:
             error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
@@ -155,7 +157,7 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     rounding = ROUNDING * (max(np.max(np.abs(run.q)), np.max(np.abs(m.arrays["offset"]), initial=0.0)) or 1.0)
     if isinstance(dense, Bent):
         bent = motion.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
-        return bent, run.t, None, (rounding + between(run, dense.jumps), 0.0)
+        return bent, run.t, None, (rounding, 0.0)
     shares = np.arange(1, INNER + 1) / (INNER + 1)
     times = run.t[:-1, None] + np.diff(run.t)[:, None] * shares
     q, _ = run.at(times.ravel())
@@ -168,11 +170,11 @@ def by_tolerance(method: Any) -> bool:
     return isinstance(method, EventDriven)
 
 
-def between(run: Trajectory, jumps: Mask) -> Array:
-    """How far the parabolas between kept states may be from the motion, (m, n_q)."""
+def between(run: Trajectory, anew: NDArray[np.uint8]) -> Array:
+    """How far the parabolas between kept states may be from the motion, (m, n_q); anew: see `begins`."""
     out = np.zeros((len(run.t) - 1, run.q.shape[1]))
     t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
-    between_states(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
+    between_states(t, q, v, anew, out)
     return out
 
 

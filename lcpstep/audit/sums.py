@@ -6,7 +6,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.audit.limits import JUMP
+from lcpstep.audit.limits import JUMP, RELEASED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
@@ -44,17 +44,18 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
                 if k > 0:
                     one[(k - 1) * n_q + j] = max(one[(k - 1) * n_q + j], abs(turn))
                     two[(k - 1) * n_q + j] = abs(turn - turned) if known and had else 0.0
-        beside(one, n, n_q, 1.0)
-        beside(two, n, n_q, 1.0)
+        beside(one, n, n_q, 1.0, jump)
+        beside(two, n, n_q, 1.0, jump)
 
 
-def beside(x: Doubles, n: int, n_q: int, share: float) -> None:
-    """The largest of each piece and its neighbours, (n, n_q), times a share, in its place."""
+def beside(x: Doubles, n: int, n_q: int, share: float, jump: Any) -> None:
+    """The largest of each piece and its neighbours of the same motion, (n, n_q), times a share, in its place."""
     for j in range(n_q):
         before = 0.0
         for k in range(n):
             own = x[k * n_q + j]
-            after = x[(k + 1) * n_q + j] if k + 1 < n else 0.0
+            after = x[(k + 1) * n_q + j] if k + 1 < n and jump[k + 1] != RELEASED else 0.0
+            before = before if jump[k] != RELEASED else 0.0
             x[k * n_q + j] = share * max(own, max(before, after))
             before = own
 
@@ -91,8 +92,8 @@ def missed(t: Any, q: Any, v: Any, jumps: Any, out: Any) -> None:
             h = times[k + 1] - times[k]
             for j in range(n_q):
                 i, x = k * n_q + j, 0.0
-                if h > 0.0 and jump[k + 1] == 0:
+                if h > 0.0 and jump[k + 1] != JUMP:
                     end = 2.0 * (places[i + n_q] - places[i]) / h - speeds[i]
                     x = h * abs(speeds[i + n_q] - end)
                 found[i] = x if x - x == 0.0 else 0.0
-        beside(found, n, n_q, 0.5)
+        beside(found, n, n_q, 0.5, jump)
