@@ -23,7 +23,10 @@ from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
 ROUNDING = 1e-13  # of the numbers that a polynomial is made of
-LAST_DIGIT, TURN = 4.5e-16, 6.0  # two of the positions, by which a step may be off, and what its turn makes of them
+LAST_DIGIT, TURN = (
+    4.5e-16,
+    6.0,
+)  # two of the positions, by which a step may be off, and what its turn makes of them
 
 
 class Bounds(NamedTuple):
@@ -79,7 +82,10 @@ class Polynomials:
     def _within(self, B: Array, k: Any, a: Array, b: Array) -> Array:
         x, inverse = _nodes(self.degree)
         start, length = self.t[k], self.t[k + 1] - self.t[k]
-        first, last = (a - start) / length, (b - start) / length  # places between them: evenly, whatever rounding
+        first, last = (
+            (a - start) / length,
+            (b - start) / length,
+        )  # places between them: evenly, whatever rounding
         places = first[:, None] + (last - first)[:, None] * x
         values = np.matmul(basis(places, self.degree), B[k])
         return np.asarray(np.matmul(inverse, values))
@@ -92,7 +98,9 @@ class Polynomials:
         moves, length = self.steps
         exact = derivatives(np.matmul(self._within(moves, k, a, b), G[:, :, None])[:, :, 0], b - a)
         off, h = LAST_DIGIT * self.size(G, k), length[k]
-        return Bounds(found.place, wider(exact.speed, 2.0 * off / h), wider(exact.curve, TURN * off / (h * h)))
+        return Bounds(
+            found.place, wider(exact.speed, 2.0 * off / h), wider(exact.curve, TURN * off / (h * h))
+        )
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""

@@ -12,6 +12,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
+
 def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
     """How accelerations change from piece to piece, and how that changes: the largest of a piece and its neighbours.
 
