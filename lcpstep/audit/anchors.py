@@ -49,7 +49,7 @@ class Anchors:
 
 
 def apart(t: Array, touched: Mask, jumps: Mask) -> Array:
-    """How long ago the last event of every contact was, (m + 1, n_c); infinite where another one's jump lies between."""
+    """How long ago every contact had an event, (m + 1, n_c); infinite where another one's jump lies between."""
     number = np.arange(len(t))
     own = np.maximum.accumulate(np.where(touched, number[:, None], -1), axis=0)
     jump = np.maximum.accumulate(np.where(jumps, number, -1))

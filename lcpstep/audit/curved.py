@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.flat import own
-from lcpstep.audit.motion import Bounds, Polynomials
+from lcpstep.audit.motion import Bounds
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval, NotEnclosed, enclose
 from lcpstep.kernels import states

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.limits import TIMES
-from lcpstep.audit.motion import Oscillation, Polynomials
+from lcpstep.audit.motion import Oscillation
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.obstacle import Obstacle
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval

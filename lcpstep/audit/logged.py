@@ -70,6 +70,8 @@ def between(t: Doubles, n: int, n_c: int, c: int, start: float, end: float, mark
     """Mark the pieces of contact c whose middles lie between two times, and that in which the contact opens: steps
     hold it to their end.
     """
+    if not start < inf:
+        return
     low, high = 0, n
     while low < high:
         middle = (low + high) // 2

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.audit.drift import begins, frequency
-from lcpstep.audit.motion import Polynomials, basis
+from lcpstep.audit.polynomials import Polynomials, basis
 from lcpstep.audit.quadrature import errors
 from lcpstep.audit.sums import add_up, changes
 from lcpstep.gauss import gauss

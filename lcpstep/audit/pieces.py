@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts
-from lcpstep.audit import motion
+from lcpstep.audit import motion, polynomials
 from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
@@ -66,10 +66,12 @@ class Pieces:
         self.motion, self.t, mode, error = moved(run, self.m)
         self.certain = isinstance(run.dense, Arcs) or (isinstance(run.dense, Moved) and run.dense.constant)
         t = np.ascontiguousarray(self.t)
-        names = "time", "contact", "kind", "before", "after"
-        time, contact, kind, before, rate = (np.array(run.impacts[x], dtype=float) for x in names)
-        still = STILL * float(np.max(np.abs(run.v), initial=0.0))
-        rate[(np.abs(before) <= still) & (np.abs(rate) <= still)] = 0.0  # another's impact has pressed it
+        names = "time", "contact", "kind", "after"
+        time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        if kind.any():
+            still = STILL * float(np.max(np.abs(run.v), initial=0.0))
+            pressed = (np.abs(run.impacts["before"]) <= still) & (np.abs(rate) <= still)
+            rate[pressed] = 0.0  # by another's impact
         if mode is not None:
             self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
@@ -83,7 +85,7 @@ class Pieces:
         if gone is not None:
             error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
-            assert isinstance(self.motion, motion.Polynomials)
+            assert isinstance(self.motion, polynomials.Polynomials)
             self.problem: Any = Curved(self.scene, self.m, self.motion, error, gone)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error, gone)
@@ -152,17 +154,17 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
             (TOLERANCES * method.atol, TOLERANCES * method.rtol) if by_tolerance(method) else (0.0, ROUNDING)
         )
         if dense.constant:
-            return motion.parabolas(s.t, s.q, s.v, dense.F[:-1, 0]), s.t, None, (0.0, ROUNDING)
-        return motion.by_steps(s.t, s.q, dense.F[:-1], s.length[:-1]), s.t, None, error
+            return polynomials.parabolas(s.t, s.q, s.v, dense.F[:-1, 0]), s.t, None, (0.0, ROUNDING)
+        return polynomials.by_steps(s.t, s.q, dense.F[:-1], s.length[:-1]), s.t, None, error
     rounding = ROUNDING * (max(np.max(np.abs(run.q)), np.max(np.abs(m.arrays["offset"]), initial=0.0)) or 1.0)
     if isinstance(dense, Bent):
-        bent = motion.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
+        bent = polynomials.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
         return bent, run.t, None, (rounding, 0.0)
     shares = np.arange(1, INNER + 1) / (INNER + 1)
     times = run.t[:-1, None] + np.diff(run.t)[:, None] * shares
     q, _ = run.at(times.ravel())
     inner = q.reshape(len(times), INNER, -1)
-    return motion.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
+    return polynomials.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
 
 
 def by_tolerance(method: Any) -> bool:

@@ -19,7 +19,7 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
     Parameters
     ----------
     t : (m + 1,);  v : (m + 1, n_q)
-    jumps : (m + 1,) uint8   JUMP at states where the velocity may have jumped, RELEASED where the motion is free again
+    jumps : (m + 1,) uint8   states where the velocity may have jumped, JUMP, or motion is free again, RELEASED
     cuts : (k,)   corners: pieces that one touches are not compared with others
     first, second : (m, n_q), zeros   found here;  size : (n_q,), zeros   the integral of |a|
     """

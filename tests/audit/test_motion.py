@@ -5,7 +5,7 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
-from lcpstep.audit.motion import by_steps, derivatives, through
+from lcpstep.audit.polynomials import by_steps, derivatives, through
 from lcpstep.audit.pieces import moved
 from lcpstep.model import model
 
