@@ -1,4 +1,4 @@
-"""What flat contacts meet, bounded in cells of time, as a kernel: the bounds of a window are those of the cells it meets."""
+"""What flat contacts meet, bounded in cells of time, as a kernel: a window has the bounds of the cells it meets."""
 
 from __future__ import annotations
 

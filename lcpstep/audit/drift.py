@@ -51,7 +51,8 @@ def begins(jumps: NDArray[np.bool_], closed: NDArray[np.bool_]) -> NDArray[np.ui
     Such a gap is zero there, whatever steps on the obstacle have missed, and accelerations before and after it are
     not those of one motion.
     """
-    found, shut = np.array(jumps, dtype=np.uint8) * np.uint8(JUMP), closed.all(axis=1)
+    shut: NDArray[np.bool_] = np.all(closed, axis=1)
+    found: NDArray[np.uint8] = np.array(jumps, dtype=np.uint8) * np.uint8(JUMP)
     found[1:-1][shut[:-1] & ~shut[1:] & (found[1:-1] == 0)] = RELEASED
     return found
 

@@ -11,8 +11,8 @@ from lagrangian import Scene
 from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.limits import TIMES
 from lcpstep.audit.motion import Oscillation
-from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.obstacle import Obstacle
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval
 from lcpstep.kernels.model import Model

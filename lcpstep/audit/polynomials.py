@@ -20,7 +20,8 @@ from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
 ROUNDING = 1e-13  # of the numbers that a polynomial is made of
-LAST_DIGIT, TURN = 4.5e-16, 6.0  # two of the positions, by which a step may be off, and what its turn makes of them
+LAST_DIGIT = 4.5e-16  # two of the positions, by which a step may be off
+TURN = 6.0  # what its second derivative makes of them
 
 
 @functools.cache
@@ -70,7 +71,8 @@ class Polynomials:
         """The same, where steps are known less the states at their starts."""
         x, inverse = _nodes(self.degree)
         start, length = self.t[k], self.t[k + 1] - self.t[k]
-        first, last = (a - start) / length, (b - start) / length  # places between them: evenly, whatever rounding
+        first, last = (a - start) / length, (b - start) / length
+        # evenly between them, whatever rounding makes of short windows
         places = first[:, None] + (last - first)[:, None] * x
         B = self.steps[0] if self.steps else self.B
         return np.asarray(np.matmul(inverse, np.matmul(basis(places, self.degree), B[k])))

@@ -103,10 +103,11 @@ def number(x: Any = 0.0) -> Any:
 
 def is_a(x: Any, kinds: Any) -> bool:
     """The builtin isinstance, for which what lies between bounds is a number."""
-    of_numbers: dict[Any, type] = {number: float, whole: int}
+    of_numbers: dict[Any, Any] = {number: float, whole: int}
     wanted = kinds if isinstance(kinds, tuple) else (kinds,)
-    kind = bool if isinstance(x, Condition) else float if isinstance(x, Interval) else type(x)
-    return any(issubclass(kind, of_numbers.get(y, y)) for y in wanted)
+    known: Any = True if isinstance(x, Condition) else 0.0 if isinstance(x, Interval) else x
+    asked: list[Any] = [of_numbers[y] if y in of_numbers else y for y in wanted]
+    return isinstance(known, tuple(asked))
 
 
 def kind_of(*x: Any) -> Any:

@@ -9,11 +9,11 @@ from benchmarks.audit.cases import bell, blind
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit, first
-from lcpstep.audit.certify import Tally, divided, examine
 from lcpstep.audit.cells import Cells
+from lcpstep.audit.certify import Tally, divided, examine
 from lcpstep.audit.curves import Curve, clear_curves
-from lcpstep.audit.polynomials import basis, through
 from lcpstep.audit.pieces import Pieces
+from lcpstep.audit.polynomials import basis, through
 from lcpstep.kernels.function import Function
 from tests.turns.test_burrs import oscillator
 from tests.uncompiled import both_ways
