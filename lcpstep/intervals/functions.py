@@ -103,11 +103,10 @@ def number(x: Any = 0.0) -> Any:
 
 def is_a(x: Any, kinds: Any) -> bool:
     """The builtin isinstance, for which what lies between bounds is a number."""
-    of_numbers: dict[Any, Any] = {number: float, whole: int}
+    of_numbers: list[tuple[Any, type]] = [(number, float), (whole, int)]
     wanted = kinds if isinstance(kinds, tuple) else (kinds,)
     known: Any = True if isinstance(x, Condition) else 0.0 if isinstance(x, Interval) else x
-    asked: list[Any] = [of_numbers[y] if y in of_numbers else y for y in wanted]
-    return isinstance(known, tuple(asked))
+    return isinstance(known, tuple(next((own for f, own in of_numbers if f is y), y) for y in wanted))
 
 
 def kind_of(*x: Any) -> Any:
