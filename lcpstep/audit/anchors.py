@@ -7,6 +7,8 @@ lies in between, whose own time may be off.
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -25,15 +27,25 @@ class Anchors:
 
     Parameters
     ----------
-    t : (m + 1,);  touched : (m + 1, n_c)   events of the contacts;  jumps : (m + 1,)   where velocities jump
+    t : (m + 1,);  touched : (m + 1, n_c)   events of the contacts
+    jumps : () -> (m + 1,)   where velocities jump, which is asked for where it matters
     error : (absolute, relative)   of positions, and of velocities;  motion : Polynomials
     """
 
-    def __init__(self, t: Array, touched: Mask, jumps: Mask, error: tuple[Any, float], motion: Any) -> None:
-        self.t, self.error, self.motion = t, error, motion
-        self.since = apart(t, touched, jumps)
-        self.until = apart(-t[::-1], touched[::-1], jumps[::-1])[::-1]
+    def __init__(
+        self, t: Array, touched: Mask, jumps: Callable[[], Mask], error: tuple[Any, float], motion: Any
+    ) -> None:
+        self.t, self.touched, self.jumps, self.error, self.motion = t, touched, jumps, error, motion
         self.estimated: Array | None = None
+
+    @functools.cached_property
+    def around(self) -> tuple[Array, Array]:
+        """How long ago every contact had an event, and how long it is to the next one, (m + 1, n_c) each."""
+        jumps = self.jumps()
+        return (
+            apart(self.t, self.touched, jumps),
+            apart(-self.t[::-1], self.touched[::-1], jumps[::-1])[::-1],
+        )
 
     def errors(self, w: Windows, size: Array) -> Array:
         """How far the coordinates may be off in windows, (n, n_q); size (n,): of the positions."""
@@ -42,8 +54,9 @@ class Anchors:
         off = np.repeat((absolute + relative * size)[:, None], n, axis=1)
         if self.estimated is not None:
             off = np.minimum(off, self.estimated[w.k])
-        after = self.since[w.k, w.c] + (w.b - self.t[w.k])
-        before = self.until[w.k + 1, w.c] + (self.t[w.k + 1] - w.a)
+        since, until = self.around
+        after = since[w.k, w.c] + (w.b - self.t[w.k])
+        before = until[w.k + 1, w.c] + (self.t[w.k + 1] - w.a)
         rate = absolute + relative * self.motion.fastest(w.k)
         return np.asarray(np.minimum(off, np.minimum(after, before)[:, None] * rate))
 

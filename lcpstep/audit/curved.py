@@ -70,7 +70,8 @@ class Curved:
             return self.seen(w, rough=rough)
         speed, error = rate, ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
         drifted, near = np.zeros(n), error
-        beside = state if self.anchors is None else self.anchors.errors(w, size)
+        known = None if rough else self.anchors  # most windows do without
+        beside = state if known is None else known.errors(w, size)
         for i in range(self.n_q):
             g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
             speed = speed + g * boxes[i].speed

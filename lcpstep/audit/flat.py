@@ -72,7 +72,7 @@ class Flat:
         rounding += TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.nan_to_num(fast, posinf=0.0)
         error = absolute + self.error[1] * size + rounding
         computed = error if self.drift is None else error - np.sum(np.abs(G) * self.drift[w.k], axis=1)
-        if self.anchors is not None:
+        if self.anchors is not None and not rough:  # most windows do without
             error = np.minimum(error, np.sum(np.abs(G) * self.anchors.errors(w, size), axis=1) + rounding)
         slow = ROUNDING * speed.size
         return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)

@@ -101,7 +101,9 @@ class Pieces:
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
         if isinstance(run.dense, Moved) and by_tolerance(run.method) and not run.dense.constant:
-            self.problem.anchors = Anchors(self.t, self.touched, jumped(run, self.t), error, self.motion)
+            self.problem.anchors = Anchors(
+                self.t, self.touched, lambda: jumped(run, self.t), error, self.motion
+            )
 
     def added_up(self) -> Array | None:
         """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
