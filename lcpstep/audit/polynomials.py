@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.audit.curves import interpolate
+from lcpstep.audit.limits import TIMES
 from lcpstep.audit.motion import Bounds
 from lcpstep.intervals import Interval
 
@@ -91,7 +92,12 @@ class Polynomials:
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""
-        return np.asarray(np.sum(np.abs(G) * np.max(np.abs(self.B[k]), axis=1), axis=1))
+        return np.asarray(np.sum(np.abs(G) * self.largest[k], axis=1))
+
+    @functools.cached_property
+    def largest(self) -> Array:
+        """The largest coefficients of every coordinate, (m, n_q)."""
+        return np.asarray(np.maximum(np.abs(self.B.min(axis=1)), np.abs(self.B.max(axis=1))))
 
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
@@ -125,12 +131,12 @@ def wider(x: Interval, by: Array) -> Interval:
 def derivatives(x: Array, h: Array) -> Bounds:
     """Bounds of a polynomial and two derivatives from its coefficients (n, degree + 1) over windows of length h."""
     degree = x.shape[1] - 1
-    slack = ROUNDING * np.max(np.abs(x), axis=1)
-    found = []
+    x, found = np.ascontiguousarray(x.T), []  # long rows are gone through fast
     for order in range(3):
-        found.append(Interval(x.min(axis=1) - slack, x.max(axis=1) + slack))
-        x = (degree - order) * np.diff(x, axis=1) / h[:, None] if x.shape[1] > 1 else 0.0 * x
-        slack = ROUNDING * np.max(np.abs(x), axis=1)
+        lo, hi = x.min(axis=0), x.max(axis=0)
+        slack = ROUNDING * np.maximum(np.abs(lo), np.abs(hi))
+        found.append(Interval(lo - slack, hi + slack))
+        x = (degree - order) * (x[1:] - x[:-1]) / h if len(x) > 1 else 0.0 * x
     return Bounds(*found)
 
 
@@ -139,7 +145,7 @@ def by_steps(t: Array, q: Array, F: Array, length: Array) -> Polynomials:
     n, degree = q.shape[1], F.shape[1]
     h, step = np.diff(t), np.where(length > 0.0, length, 1.0)
     moves = np.matmul(_whole(degree), F[:, :, :n])
-    cut = np.flatnonzero(h != step)  # by an event
+    cut = np.flatnonzero(np.abs(h - step) > TIMES * np.abs(t[1:]))  # by an event
     if len(cut):
         moves[cut] = np.matmul(_parts(h[cut] / step[cut], degree), F[cut, :, :n])
     return Polynomials(t, q[:-1, None] + moves, (moves, step))
