@@ -29,6 +29,7 @@ SMALLEST = 1e-10  # of the scale of times: windows are not halved any more
 COARSE = 1e-4  # of it: nor are those that hold nothing below zero and have an end without a certificate
 MOST = 16  # windows that one becomes, at most, on average
 LEAST = 20_000  # windows that any portion may become
+SOON = 500  # windows more than a few of every piece, after which forces are asked how large errors are
 CLOSER = 10  # halvings of the window of an event that is to be taken
 UNKNOWN = "an impact lies between two kept states, so that the motion between them is not known"
 NARROW = "the gap is as small as the error of the motion"
@@ -124,7 +125,7 @@ def examine(p: Pieces, w: Windows, tally: Tally) -> None:
 
 def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
     """Windows, which are halved until they are certified or too small or too many."""
-    most, rough = MOST * len(w.a) + LEAST, True
+    most, soon, rough = MOST * len(w.a) + LEAST, 4 * len(w.a) + SOON, True
     looked = 0
     while len(w.a):
         looked += len(w.a)
@@ -147,7 +148,7 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
         if problem is not p.problem:  # of a run that has its modes from other forces: only said, not taken
             vain, wrong = wrong, np.zeros(len(w.a), dtype=bool)
         h = w.b - w.a
-        drifted = s.error - s.own  # beside an event the motion counts as it was computed
+        drifted = np.maximum(s.error - s.own, 0.0)  # beside an event the motion counts as it was computed
         if not good.all():
             good |= at_event(p, w, lower + drifted > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))
@@ -161,6 +162,9 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
                 vain = in_vain(p, w, s, lower)
         vain = vain & left
         end = left & ((h < SMALLEST * p.scale) | (looked > most) | vain)
+        if (np.any(end) or looked > soon) and problem is p.problem and p.sharpen():
+            w = w.chosen(left)
+            continue
         if np.any(end):
             narrow = vain | (looked <= most) | ((s.own < s.error) & (np.minimum(s.at_a, s.at_b) <= s.error))
             near = NARROW if problem is p.problem else EDGE

@@ -1,32 +1,11 @@
 cimport cython
-from libc.math cimport floor
-from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.arrays cimport doubles
+from lcpstep.audit.cells cimport Cells
 from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport abs, after, inf, max, min, whole
+from lcpstep.pointers cimport abs, inf, max, min, nan
 
 cdef Py_ssize_t DEEPEST, MOST
 cdef double SLACK, ERRORS, TIMES
-
-
-@cython.final
-cdef class Cells:
-    cdef object arrays, bounds
-    cdef readonly bint given, rough, whole_rough
-    cdef readonly Py_ssize_t n, n_c
-    cdef readonly double period
-    cdef double per
-    cdef double* ends
-    cdef double* lo
-    cdef double* hi
-    cdef unsigned char* branched
-    cdef double* whole_top
-    cdef double* whole_low
-    cdef double* whole_high
-    cdef double* whole_fast
-    cdef readonly double bottom, top, slow, low, high
-    cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
-    @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
-    cdef Py_ssize_t cell(self, double t) noexcept nogil
 
 
 cdef class Gap:

@@ -4,7 +4,7 @@
 
 Values at the two ends and bounds of the acceleration in between give a bound of the gap: under gap'' <= A it lies
 above its chord less A tau (h - tau) / 2. That of `place` is known at both ends, and is between them as far from its
-chord as its own second derivative allows (`fourth`); that of sigma is bounded in cells (`obstacle.Table`). Windows in
+chord as its own second derivative allows (`fourth`); that of sigma is bounded in cells (`cells`). Windows in
 which that does not suffice are halved, a few times; what is left is for `windows.judged`.
 
 Bounds are wider than they were computed by SLACK of the numbers that they are made of: a few hundred roundings.
@@ -20,103 +20,14 @@ import numpy as np
 from lcpstep.audit.limits import ERRORS, TIMES
 
 if not cython.compiled:
-    from math import floor
-
-    from lcpstep.arrays import doubles, small_numbers
+    from lcpstep.arrays import doubles
+    from lcpstep.audit.cells import Cells
     from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
+    from lcpstep.pointers import Doubles, abs, inf, max, min, nan
 
 DEEPEST, MOST = 28, 256  # halvings of a window in a row, and windows that one may become
 
 SLACK = 1e-13  # of the numbers that a bound is made of
-
-
-class Cells:
-    """Bounds of what flat contacts meet, in cells of time: see `obstacle.Table`.
-
-    bottom, top     the lowest and highest place found for the window last asked for
-    slow            its lowest speed;  low, high : its acceleration
-    rough           whether it need not have one
-    whole_top, whole_low, whole_high, whole_fast, whole_rough   the same of all times, and the largest speed
-
-    Parameters
-    ----------
-    table : obstacle.Table, or None where nothing moves;  n_c : contacts;  period : of the table, or infinite
-    """
-
-    def __init__(self, table: Any, n_c: int, period: float) -> None:
-        self.given, self.n_c, self.period = table is not None, n_c, period
-        nothing = np.zeros((1, 1, n_c, 3))
-        self.arrays = (
-            (np.ascontiguousarray(table.ends), table.lo, table.hi, table.branched.astype(np.uint8))
-            if self.given
-            else (np.array([-inf, inf]), nothing, nothing, np.zeros((1, 1), dtype=np.uint8))
-        )
-        self.n = len(self.arrays[0]) - 1
-        self.ends, self.lo = doubles(self.arrays[0]), doubles(self.arrays[1])
-        self.hi, self.branched = doubles(self.arrays[2]), small_numbers(self.arrays[3])
-        self.per = self.n / (self.arrays[0][-1] - self.arrays[0][0]) if self.given else 0.0
-        self.bounds = np.concatenate(
-            [self.arrays[2][0, ..., 0].max(axis=0), self.arrays[1][0, ..., 2].min(axis=0),
-             self.arrays[2][0, ..., 2].max(axis=0),
-             np.maximum(-self.arrays[1][0, ..., 1].min(axis=0), self.arrays[2][0, ..., 1].max(axis=0))]
-        )  # fmt: skip
-        self.whole_top = doubles(self.bounds)
-        self.whole_low, self.whole_high = after(self.whole_top, n_c), after(self.whole_top, 2 * n_c)
-        self.whole_fast = after(self.whole_top, 3 * n_c)
-        self.whole_rough = bool(np.any(self.arrays[3]))
-        self.bottom = self.top = self.slow = self.low = self.high = 0.0
-        self.rough = False
-
-    def find(self, c: int, a: float, b: float) -> None:
-        """Bounds over the window [a, b] for contact c."""
-        if not self.given:
-            return
-        if self.period < inf:
-            turn = floor(0.5 * (a + b) / self.period) * self.period
-            a -= turn
-            b -= turn
-        n, ends = self.n, self.ends
-        if b - a > (1.0 + SLACK) * (ends[n] - ends[0]):
-            self.top, self.low, self.high = self.whole_top[c], self.whole_low[c], self.whole_high[c]
-            self.bottom = self.slow = -inf
-            self.rough = True
-            return
-        i, j = self.cell(a), self.cell(b)
-        if j > i and ends[j] >= b:
-            j -= 1
-        level, size = 0, 1
-        while 2 * size <= j - i + 1:
-            level += 1
-            size *= 2
-        k = j - size + 1
-        first, second = (level * n + i) * self.n_c + c, (level * n + k) * self.n_c + c
-        self.bottom, self.top = (
-            min(self.lo[3 * first], self.lo[3 * second]),
-            max(self.hi[3 * first], self.hi[3 * second]),
-        )
-        self.slow = min(self.lo[3 * first + 1], self.lo[3 * second + 1])
-        self.low = min(self.lo[3 * first + 2], self.lo[3 * second + 2])
-        self.high = max(self.hi[3 * first + 2], self.hi[3 * second + 2])
-        self.rough = self.branched[level * n + i] != 0 or self.branched[level * n + k] != 0
-
-    def cell(self, t: float) -> int:
-        """The cell in which a time lies, or the next one to it."""
-        i = whole(min(max((t - self.ends[0]) * self.per, 0.0), self.n - 1.0))
-        low, high = 0, self.n - 1
-        if self.ends[i] <= t:
-            low = i
-            if i < self.n - 1 and self.ends[i + 1] > t:
-                return i
-        else:
-            high = i
-        while low < high:
-            middle = (low + high + 1) // 2
-            if self.ends[middle] <= t:
-                low = middle
-            else:
-                high = middle - 1
-        return low
 
 
 class Gap:
@@ -239,15 +150,13 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
         place, bend, gap = g.begin_place, g.begin_bend, g.begin_gap
     else:
         g.at(a)
-        place, bend = g.place, g.bend
-        gap = 0.0 if first else place - g.sigma(c, t0 + a)
+        place, bend, gap = g.place, g.bend, nan  # what moves is asked where it matters
     g.times[0] = b
     if g.end_known and b == g.length:
         g.places[0], g.bends[0], g.gaps[0] = g.end_place, g.end_bend, g.end_gap
     else:
         g.at(b)
-        g.places[0], g.bends[0] = g.place, g.bend
-        g.gaps[0] = 0.0 if last else g.place - g.sigma(c, t0 + b)
+        g.places[0], g.bends[0], g.gaps[0] = g.place, g.bend, nan
     gap, g.gaps[0] = 0.0 if first else gap, 0.0 if last else g.gaps[0]
     n, looked = 1, 0
     while n > 0:
@@ -261,6 +170,10 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
         if not (good or g.cells.rough):
             low -= g.cells.high
             high -= g.cells.low
+            if gap != gap:
+                gap = place - g.sigma(c, t0 + tau)
+            if g.gaps[k] != g.gaps[k]:
+                g.gaps[k] = g.places[k] - g.sigma(c, t0 + g.times[k])
             begins, ends = first and tau == a, last and k == 0
             good = open_between(gap, g.gaps[k], h, low, high, begins, ends, g.error)
             if not good and near(g, tau, g.times[k]):
@@ -275,8 +188,7 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
         else:
             g.times[n] = 0.5 * (tau + g.times[k])
             g.at(g.times[n])
-            g.places[n], g.bends[n] = g.place, g.bend
-            g.gaps[n] = g.place - g.sigma(c, t0 + g.times[n])
+            g.places[n], g.bends[n], g.gaps[n] = g.place, g.bend, nan
             n += 1
     return True
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep.audit.motion import Polynomials
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval
 

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.flat import own
-from lcpstep.audit.motion import Bounds, Polynomials
+from lcpstep.audit.motion import Bounds
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval, NotEnclosed, enclose
 from lcpstep.kernels import states
@@ -41,6 +43,7 @@ class Curved:
     ) -> None:
         self.scene, self.m, self.motion, self.error, self.why = scene, m, motion, error, ""
         self.drift = drift
+        self.anchors: Anchors | None = None
         contacts: Any = scene.contacts
         bound, self.contacts = contacts.lipschitz, contacts
         self.bound = None if bound is None else np.asarray(bound, dtype=float)
@@ -66,14 +69,18 @@ class Curved:
             self.why = str(why)
             return self.seen(w, rough=rough)
         speed, error = rate, ROUNDING * (size + np.abs(at_a) + np.abs(at_b))
-        drifted = np.zeros(n)
+        drifted, near = np.zeros(n), error
+        known = None if rough else self.anchors  # most windows do without
+        beside = state if known is None else known.errors(w, size)
         for i in range(self.n_q):
             g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
             speed = speed + g * boxes[i].speed
             error = error + g.size * state[:, i]
+            near = near + g.size * beside[:, i]
             if self.drift is not None:
                 drifted += g.size * self.drift[w.k, i]
         slow, computed = ROUNDING * speed.size, error - drifted
+        error = np.minimum(error, near)
         return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)
 
     def lowest(self, a: Array, b: Array, lo: Array, hi: Array) -> Array:

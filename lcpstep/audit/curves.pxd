@@ -1,6 +1,7 @@
 cimport cython
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport Cells, Gap, between_corners, late, open_between
+from lcpstep.audit.cells cimport Cells
+from lcpstep.audit.clear cimport Gap, between_corners, late, open_between
 from lcpstep.kernels.function cimport Function
 from lcpstep.pointers cimport abs, after, inf, max, min
 

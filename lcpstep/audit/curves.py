@@ -12,7 +12,8 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import Cells, Gap, between_corners, late, open_between
+    from lcpstep.audit.cells import Cells
+    from lcpstep.audit.clear import Gap, between_corners, late, open_between
     from lcpstep.kernels.function import Function
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
@@ -185,7 +186,7 @@ def at_once(g: Curve, c: int, t: float, size: float, s: float, s_b: float, whole
 
 
 def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B: Any) -> None:
-    """Coefficients B (m, k + 3, n_q) through states t, q, v (m + 1, ..) and k inner positions: see `motion.through`.
+    """Coefficients B (m, k + 3, n_q) through states t, q, v (m + 1, ..) and k inner positions: `polynomials.through`.
 
     begin : (k + 1, 2)   what the first two coefficients are worth at the places of the others' conditions
     inverse : (k + 1, k + 1)   from what is left there to the other coefficients

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearSystem
+from lcpstep.audit.limits import JUMP, RELEASED
 from lcpstep.audit.sums import add_up, changes
 from lcpstep.kernels.model import Model
 from lcpstep.trajectory import Trajectory
@@ -26,19 +27,34 @@ PLACE, SPEED = 1.0 / 6.0, 1.0 / 12.0
 LOOSE = 1e-12  # of the largest: natural frequencies squared that count as zero
 
 
-def drift(run: Trajectory, m: Model, jumps: NDArray[np.bool_], cuts: Array) -> Array:
+def drift(
+    run: Trajectory, m: Model, jumps: NDArray[np.bool_], closed: NDArray[np.bool_], cuts: Array
+) -> Array:
     """An estimate of how far the computed positions are off in each piece, (m, n_q).
 
     jumps : (m + 1,)   whether the velocity may have jumped;  cuts : (k,)   corners, at which the steps stop
+    closed : (m, n_c)   which contacts are closed in a piece
     """
     t, v, cuts = (np.ascontiguousarray(x, dtype=float) for x in (run.t, run.v, cuts))
-    jump = np.ascontiguousarray(jumps).view(np.uint8)
+    jump = begins(jumps, closed)
     first, second, gone = np.zeros((3, len(t) - 1, v.shape[1]))
     size = np.zeros(v.shape[1])
     changes(t, v, jump, cuts, first, second, size)
     h, held = np.diff(t)[:, None], frequency(run, m, size, second)
     add_up(t, jump, PLACE * h * h * first, SPEED * h * second, held, gone)
     return gone
+
+
+def begins(jumps: NDArray[np.bool_], closed: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """At which states motions begin anew, (m + 1,): at jumps, and at a release before which every contact was closed.
+
+    Such a gap is zero there, whatever steps on the obstacle have missed, and accelerations before and after it are
+    not those of one motion.
+    """
+    shut: NDArray[np.bool_] = np.all(closed, axis=1)
+    found: NDArray[np.uint8] = np.array(jumps, dtype=np.uint8) * np.uint8(JUMP)
+    found[1:-1][shut[:-1] & ~shut[1:] & (found[1:-1] == 0)] = RELEASED
+    return found
 
 
 def frequency(run: Trajectory, m: Model, size: Array, second: Array) -> Array:

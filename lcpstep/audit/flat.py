@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.limits import TIMES
-from lcpstep.audit.motion import Oscillation, Polynomials
+from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.obstacle import Obstacle
+from lcpstep.audit.polynomials import Polynomials
 from lcpstep.audit.windows import Seen, Windows
 from lcpstep.intervals import Interval
 from lcpstep.kernels.model import Model
@@ -42,6 +44,7 @@ class Flat:
     ) -> None:  # fmt: skip
         self.G, self.offset, self.motion, self.error = m.arrays["G"], m.arrays["offset"], motion, error
         self.why, self.drift = "", drift
+        self.anchors: Anchors | None = None
         self.obstacle = Obstacle(scene, m, motion.absolute, cuts)
         self.linear = m
 
@@ -65,9 +68,12 @@ class Flat:
             at_a, at_b, smooth = at_a - s_a, at_b - s_b, ~branched
             fast = fast + s.speed.size
         absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
-        error = absolute + (self.error[1] + ROUNDING) * size
-        error = error + TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.nan_to_num(fast, posinf=0.0)
+        rounding = ROUNDING * size
+        rounding += TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.nan_to_num(fast, posinf=0.0)
+        error = absolute + self.error[1] * size + rounding
         computed = error if self.drift is None else error - np.sum(np.abs(G) * self.drift[w.k], axis=1)
+        if self.anchors is not None and not rough:  # most windows do without
+            error = np.minimum(error, np.sum(np.abs(G) * self.anchors.errors(w, size), axis=1) + rounding)
         slow = ROUNDING * speed.size
         return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)
 

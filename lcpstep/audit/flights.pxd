@@ -1,9 +1,10 @@
 cimport cython
 from libc.math cimport cos, hypot, sin, sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
+from lcpstep.audit.cells cimport Cells
+from lcpstep.audit.clear cimport DEEPEST, MOST, Gap, beside, between_corners, late, open_between
 from lcpstep.events.flight.motion cimport Flight, absolute, leave_from, steady
-from lcpstep.pointers cimport abs, after, max, min, nan
+from lcpstep.pointers cimport abs, after, inf, max, min, nan
 
 cdef double SLACK, ROUNDING, PRESSING, ERRORS
 cdef Py_ssize_t UNKNOWN, PRESSED

@@ -18,9 +18,10 @@ if not cython.compiled:
     from math import cos, hypot, sin, sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import DEEPEST, MOST, Cells, Gap, beside, between_corners, late, open_between
+    from lcpstep.audit.cells import Cells
+    from lcpstep.audit.clear import DEEPEST, MOST, Gap, beside, between_corners, late, open_between
     from lcpstep.events.flight.motion import Flight, absolute, leave_from, steady
-    from lcpstep.pointers import Doubles, abs, after, max, min, nan
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
@@ -147,9 +148,16 @@ def at_once(
         return True
     if not good:
         return False
-    a, b = equation(g, o, t, y, w[0]), equation(g, o, t + h, y_b, w[1])
+    a = equation(g, o, t, y, w[0])
+    if g.last and o.delta != 0.0:  # its velocity at the end is not that after the event
+        margin = h * (1.0 + SLACK) * abs(o.G) * (g.amplitude * o.w2 * sqrt(o.w2) + g.turning * abs(o.Omega))
+        margin = margin + SLACK * g.bound + PRESSING * abs(o.G * o.f0) if g.swings else inf
+        low, high = a - margin - g.cells.high, a + margin - g.cells.low
+        if open_between(g_a, g_b, h, low, high, g.first, g.last, g.error):
+            return True
+    b = equation(g, o, t + h, y_b, w[1])
     g.note_ends(begin, end, g_a, g_b, a, b)
-    g.end_known = not g.last or o.delta == 0.0  # else its velocity there is not that after the event
+    g.end_known = not g.last or o.delta == 0.0
     if not (g.swings and g.end_known):
         return False
     fourth = abs(o.G) * (g.amplitude * o.w2 * o.w2 + g.turning * o.Omega * o.Omega)

@@ -67,7 +67,11 @@ def close(t: Any, time: Any, contact: Any, kind: Any, rate: Any, closed: Any) ->
 
 
 def between(t: Doubles, n: int, n_c: int, c: int, start: float, end: float, marks: Any) -> None:
-    """Mark the pieces of contact c whose middles lie between two times."""
+    """Mark the pieces of contact c whose middles lie between two times, and that in which the contact opens: steps
+    hold it to their end.
+    """
+    if not start < inf:
+        return
     low, high = 0, n
     while low < high:
         middle = (low + high) // 2
@@ -75,6 +79,6 @@ def between(t: Doubles, n: int, n_c: int, c: int, start: float, end: float, mark
             low = middle + 1
         else:
             high = middle
-    while low < n and 0.5 * (t[low] + t[low + 1]) < end:
+    while low < n and t[low] < end:
         marks[low * n_c + c] = 1
         low += 1

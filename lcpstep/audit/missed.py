@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.audit.drift import frequency
-from lcpstep.audit.motion import Polynomials, basis
+from lcpstep.audit.drift import begins, frequency
+from lcpstep.audit.polynomials import Polynomials, basis
 from lcpstep.audit.quadrature import errors
 from lcpstep.audit.sums import add_up, changes
 from lcpstep.gauss import gauss
@@ -62,10 +62,10 @@ def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: A
     for x in (place, speed):  # a corner within: its parts are steps of their own, as those beside it
         x[parted] = 0.0
         x[parted] = np.maximum(x[np.maximum(parted - 1, 0)], x[np.minimum(parted + 1, len(x) - 1)])
-    size = np.zeros(run.scene.n_q)
+    size, anew = np.zeros(run.scene.n_q), begins(jump, closed)
     if not m.linear:
-        changes(t, v, marks, cut, first, second, size)
-    add_up(t, marks, place, speed, frequency(run, m, size, second), gone)
+        changes(t, v, anew, cut, first, second, size)
+    add_up(t, anew, place, speed, frequency(run, m, size, second), gone)
     gone += within
     gone *= SAFETY
     return gone

@@ -1,28 +1,24 @@
 """Bounds of the computed motion over windows of time.
 
-Between two kept states a motion is a polynomial, whose coefficients in Bernstein's basis of a window enclose it
-there, or, for one linear degree of freedom in closed form, a decaying oscillation and a steady one,
+Between two kept states a motion is a polynomial (`polynomials`), or, for one linear degree of freedom in closed form,
+a decaying oscillation and a steady one,
 
     y = rest + exp(-delta tau) R cos(w tau - phi) + S cos(Omega t - psi)
 
-whose derivatives have the same form. Source: R. Farouki, The Bernstein polynomial basis: a centennial retrospective,
-Computer Aided Geometric Design 29 (2012).
+whose derivatives have the same form.
 """
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.audit.curves import interpolate
 from lcpstep.intervals import Interval
 
 Array = NDArray[np.float64]
-ROUNDING = 1e-13  # of the numbers that a polynomial is made of
 
 
 class Bounds(NamedTuple):
@@ -31,129 +27,6 @@ class Bounds(NamedTuple):
     place: Interval
     speed: Interval
     curve: Interval
-
-
-@functools.cache
-def _nodes(degree: int) -> tuple[Array, Array]:
-    """Places in [0, 1], and the matrix from values there to Bernstein's coefficients."""
-    x = np.arange(degree + 1) / degree
-    return x, np.asarray(np.linalg.inv(basis(x, degree)), dtype=float)
-
-
-def basis(x: Array, degree: int) -> Array:
-    """Bernstein's polynomials at x, (..., degree + 1)."""
-    x = np.asarray(x, dtype=float)
-    values = np.empty((*x.shape, degree + 1))
-    power = np.ones(x.shape)
-    for k in range(degree + 1):
-        values[..., k] = math.comb(degree, k) * power
-        power = power * x
-    power = np.ones(x.shape)
-    for k in range(degree, -1, -1):
-        values[..., k] *= power
-        power = power * (1.0 - x)
-    return values
-
-
-class Polynomials:
-    """A motion that is a polynomial between kept states.
-
-    Parameters
-    ----------
-    t : (m + 1,)   times of the states
-    B : (m, degree + 1, n_q)   Bernstein's coefficients of the pieces between them
-    """
-
-    absolute = False  # q is what the scene means by it
-
-    def __init__(self, t: Array, B: Array) -> None:
-        self.t, self.B, self.degree = t, B, B.shape[1] - 1
-
-    def windows(self, k: Any, a: Array, b: Array) -> Array:
-        """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""
-        x, inverse = _nodes(self.degree)
-        start, length = self.t[k], self.t[k + 1] - self.t[k]
-        places = (a[:, None] + (b - a)[:, None] * x - start[:, None]) / length[:, None]
-        values = np.matmul(basis(places, self.degree), self.B[k])
-        return np.asarray(np.matmul(inverse, values))
-
-    def size(self, G: Array, k: Any) -> Array:
-        """How large the numbers are that make up G q in the pieces k."""
-        return np.asarray(np.sum(np.abs(G) * np.max(np.abs(self.B[k]), axis=1), axis=1))
-
-    def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
-        """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""
-        x = np.matmul(self.windows(k, a, b), G[:, :, None])[:, :, 0]
-        return derivatives(x, b - a), x[:, 0], x[:, -1]
-
-    def place(self, G: Array, k: Any, t: Array) -> Array:
-        """G q at times in the pieces k."""
-        return np.asarray(np.sum(self.windows(k, t, t)[:, 0] * G, axis=1))
-
-    def boxes(self, k: Any, a: Array, b: Array) -> tuple[list[Bounds], Array, Array]:
-        """Bounds of every coordinate, and the states at a and b, (n, n_q)."""
-        x = self.windows(k, a, b)
-        return [derivatives(x[:, :, i], b - a) for i in range(x.shape[2])], x[:, 0], x[:, -1]
-
-
-def derivatives(x: Array, h: Array) -> Bounds:
-    """Bounds of a polynomial and two derivatives from its coefficients (n, degree + 1) over windows of length h."""
-    degree = x.shape[1] - 1
-    slack = ROUNDING * np.max(np.abs(x), axis=1)
-    found = []
-    for order in range(3):
-        found.append(Interval(x.min(axis=1) - slack, x.max(axis=1) + slack))
-        x = (degree - order) * np.diff(x, axis=1) / h[:, None] if x.shape[1] > 1 else 0.0 * x
-        slack = ROUNDING * np.max(np.abs(x), axis=1)
-    return Bounds(*found)
-
-
-def by_steps(t: Array, q: Array, F: Array, length: Array) -> Polynomials:
-    """The dense output of Runge-Kutta steps, see `rungekutta.RungeKutta.at`; F (m, 7, 2 n_q) after each state."""
-    n, degree = q.shape[1], F.shape[1]
-    h, step = np.diff(t), np.where(length > 0.0, length, 1.0)
-    B = q[:-1, None] + np.matmul(_whole(degree), F[:, :, :n])
-    cut = np.flatnonzero(h != step)  # by an event
-    if len(cut):
-        B[cut] = q[cut, None] + np.matmul(_parts(h[cut] / step[cut], degree), F[cut, :, :n])
-    return Polynomials(t, B)
-
-
-@functools.cache
-def _whole(degree: int) -> Array:
-    """From the coefficients of a whole step's dense output to Bernstein's, (degree + 1, degree)."""
-    return _parts(np.ones(1), degree)[0]
-
-
-def _parts(shares: Array, degree: int) -> Array:
-    """The same of these first shares of steps, (m, degree + 1, degree)."""
-    x, inverse = _nodes(degree)
-    share, terms = x * shares[:, None], np.empty((len(shares), degree + 1, degree))
-    factor = np.ones(share.shape)
-    for k in range(degree):
-        factor = factor * (share if k % 2 == 0 else 1.0 - share)
-        terms[:, :, k] = factor
-    return np.asarray(np.matmul(inverse, terms))
-
-
-def parabolas(t: Array, q: Array, v: Array, a: Array) -> Polynomials:
-    """Under constant accelerations (m, n_q), from the states at the start of each piece."""
-    h = np.diff(t)[:, None]
-    middle = q[:-1] + 0.5 * h * v[:-1]
-    end = q[:-1] + h * (v[:-1] + 0.5 * h * a)
-    return Polynomials(t, np.stack([q[:-1], middle, end], axis=1))
-
-
-def through(t: Array, q: Array, v: Array, inner: Array) -> Polynomials:
-    """Through the state at the start of each piece, positions at equal shares of it (m, k, n_q), and the next one."""
-    k = inner.shape[1]
-    degree = k + 2
-    shares = np.arange(1, k + 2) / (k + 1)
-    M = basis(shares, degree)
-    B = np.empty((len(inner), degree + 1, q.shape[1]))
-    t, q, v, inner, begin = (np.ascontiguousarray(x) for x in (t, q, v, inner, M[:, :2]))
-    interpolate(t, q, v, inner, begin, np.linalg.inv(M[:, 2:]), B)
-    return Polynomials(t, B)
 
 
 class Oscillation:

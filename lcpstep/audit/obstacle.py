@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.audit.clear import Cells
+from lcpstep.audit.cells import Cells
 from lcpstep.audit.motion import Bounds
 from lcpstep.intervals import Interval, enclose
 from lcpstep.intervals.callbacks import plain

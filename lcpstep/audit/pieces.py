@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts
-from lcpstep.audit import motion
+from lcpstep.audit import motion, polynomials
+from lcpstep.audit.anchors import Anchors
 from lcpstep.audit.cones import Cones, is_known
 from lcpstep.audit.curved import Curved
-from lcpstep.audit.drift import drift
+from lcpstep.audit.drift import begins, drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
-from lcpstep.audit.missed import missed
+from lcpstep.audit.missed import jumped, missed
 from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
@@ -37,6 +38,7 @@ LOOKS = 1000  # states that the largest gap is taken from
 INNER = 3  # positions within a step that is known by running it again
 TOLERANCES = 10.0  # within which an event-driven run is: docs/accuracy.md
 ROUNDING = 1e-13  # of positions in closed form
+STILL = 4e-15  # of the velocities: a gap with this rate before and after an impact stays as it is
 CLOSED_GAP = 1e-12  # of the positions: a gap that is closed at the start
 
 
@@ -66,6 +68,10 @@ class Pieces:
         t = np.ascontiguousarray(self.t)
         names = "time", "contact", "kind", "after"
         time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
+        if kind.any():
+            still = STILL * float(np.max(np.abs(run.v), initial=0.0))
+            pressed = (np.abs(run.impacts["before"]) <= still) & (np.abs(rate) <= still)
+            rate[pressed] = 0.0  # by another's impact
         if mode is not None:
             self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
@@ -74,10 +80,12 @@ class Pieces:
         known = by_tolerance(run.method) and not self.certain and self.closed.any() and is_known(self.scene)
         self.cones = Cones(self.scene, self.motion, run.v, self.closed, error) if known else None
         gone = self.added_up()
+        if isinstance(run.dense, Bent):
+            error = (error[0] + between(run, begins(run.dense.jumps, self.closed)), error[1])
         if gone is not None:
             error = (error[0] + gone, error[1])
         if isinstance(self.scene.contacts, Contacts):
-            assert isinstance(self.motion, motion.Polynomials)
+            assert isinstance(self.motion, polynomials.Polynomials)
             self.problem: Any = Curved(self.scene, self.m, self.motion, error, gone)
         else:
             self.problem = Flat(self.scene, self.m, self.motion, np.asarray(found.stops), error, gone)
@@ -92,15 +100,27 @@ class Pieces:
         if self.closed.any():
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
+        if isinstance(run.dense, Moved) and by_tolerance(run.method) and not run.dense.constant:
+            self.problem.anchors = Anchors(
+                self.t, self.touched, lambda: jumped(run, self.t), error, self.motion
+            )
 
     def added_up(self) -> Array | None:
         """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
         run, dense = self.run, self.run.dense
         if isinstance(dense, Bent):
-            return drift(run, self.m, dense.jumps, self.cuts)
+            return drift(run, self.m, dense.jumps, self.closed, self.cuts)
         if getattr(run.method, "order", "exact") == "exact":
             return None
         return missed(run, self.m, self.motion, self.closed, self.cuts)
+
+    def sharpen(self) -> bool:
+        """Ask the forces along the motion how far it may be off, where that is known by tolerances alone; once."""
+        anchors = self.problem.anchors
+        if anchors is None or anchors.estimated is not None:
+            return False
+        anchors.estimated = missed(self.run, self.m, self.motion, self.closed, self.cuts)
+        return True
 
     @functools.cached_property
     def events(self) -> list[Array]:
@@ -136,17 +156,17 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
             (TOLERANCES * method.atol, TOLERANCES * method.rtol) if by_tolerance(method) else (0.0, ROUNDING)
         )
         if dense.constant:
-            return motion.parabolas(s.t, s.q, s.v, dense.F[:-1, 0]), s.t, None, (0.0, ROUNDING)
-        return motion.by_steps(s.t, s.q, dense.F[:-1], s.length[:-1]), s.t, None, error
+            return polynomials.parabolas(s.t, s.q, s.v, dense.F[:-1, 0]), s.t, None, (0.0, ROUNDING)
+        return polynomials.by_steps(s.t, s.q, dense.F[:-1], s.length[:-1]), s.t, None, error
     rounding = ROUNDING * (max(np.max(np.abs(run.q)), np.max(np.abs(m.arrays["offset"]), initial=0.0)) or 1.0)
     if isinstance(dense, Bent):
-        bent = motion.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
-        return bent, run.t, None, (rounding + between(run, dense.jumps), 0.0)
+        bent = polynomials.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
+        return bent, run.t, None, (rounding, 0.0)
     shares = np.arange(1, INNER + 1) / (INNER + 1)
     times = run.t[:-1, None] + np.diff(run.t)[:, None] * shares
     q, _ = run.at(times.ravel())
     inner = q.reshape(len(times), INNER, -1)
-    return motion.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
+    return polynomials.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
 
 
 def by_tolerance(method: Any) -> bool:
@@ -154,11 +174,11 @@ def by_tolerance(method: Any) -> bool:
     return isinstance(method, EventDriven)
 
 
-def between(run: Trajectory, jumps: Mask) -> Array:
-    """How far the parabolas between kept states may be from the motion, (m, n_q)."""
+def between(run: Trajectory, anew: NDArray[np.uint8]) -> Array:
+    """How far the parabolas between kept states may be from the motion, (m, n_q); anew: see `begins`."""
     out = np.zeros((len(run.t) - 1, run.q.shape[1]))
     t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
-    between_states(t, q, v, np.ascontiguousarray(jumps).view(np.uint8), out)
+    between_states(t, q, v, anew, out)
     return out
 
 

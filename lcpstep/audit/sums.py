@@ -6,6 +6,8 @@ from typing import Any
 
 import cython
 
+from lcpstep.audit.limits import JUMP, RELEASED
+
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.pointers import Doubles, abs, inf, max, min
@@ -16,7 +18,8 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
 
     Parameters
     ----------
-    t : (m + 1,);  v : (m + 1, n_q);  jumps : (m + 1,) uint8   states at which the velocity may have jumped
+    t : (m + 1,);  v : (m + 1, n_q)
+    jumps : (m + 1,) uint8   states where the velocity may have jumped, JUMP, or motion is free again, RELEASED
     cuts : (k,)   corners: pieces that one touches are not compared with others
     first, second : (m, n_q), zeros   found here;  size : (n_q,), zeros   the integral of |a|
     """
@@ -33,8 +36,8 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
                 while i < n_cuts and corner[i] < times[k]:
                     i += 1
                 cut = i < n_cuts and corner[i] <= times[k + 1]
-                smooth = a - a == 0.0 and jump[k + 1] == 0 and not cut
-                known = smooth and was
+                smooth = a - a == 0.0 and jump[k + 1] != JUMP and not cut
+                known = smooth and was and jump[k] == 0
                 turn = a - last if known else 0.0
                 if smooth:
                     whole[j] += h * abs(a)
@@ -42,17 +45,18 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
                 if k > 0:
                     one[(k - 1) * n_q + j] = max(one[(k - 1) * n_q + j], abs(turn))
                     two[(k - 1) * n_q + j] = abs(turn - turned) if known and had else 0.0
-        beside(one, n, n_q, 1.0)
-        beside(two, n, n_q, 1.0)
+        beside(one, n, n_q, 1.0, jump)
+        beside(two, n, n_q, 1.0, jump)
 
 
-def beside(x: Doubles, n: int, n_q: int, share: float) -> None:
-    """The largest of each piece and its neighbours, (n, n_q), times a share, in its place."""
+def beside(x: Doubles, n: int, n_q: int, share: float, jump: Any) -> None:
+    """The largest of each piece and its neighbours of the same motion, (n, n_q), times a share, in its place."""
     for j in range(n_q):
         before = 0.0
         for k in range(n):
             own = x[k * n_q + j]
-            after = x[(k + 1) * n_q + j] if k + 1 < n else 0.0
+            after = x[(k + 1) * n_q + j] if k + 1 < n and jump[k + 1] != RELEASED else 0.0
+            before = before if jump[k] != RELEASED else 0.0
             x[k * n_q + j] = share * max(own, max(before, after))
             before = own
 
@@ -89,8 +93,8 @@ def missed(t: Any, q: Any, v: Any, jumps: Any, out: Any) -> None:
             h = times[k + 1] - times[k]
             for j in range(n_q):
                 i, x = k * n_q + j, 0.0
-                if h > 0.0 and jump[k + 1] == 0:
+                if h > 0.0 and jump[k + 1] != JUMP:
                     end = 2.0 * (places[i + n_q] - places[i]) / h - speeds[i]
                     x = h * abs(speeds[i + n_q] - end)
                 found[i] = x if x - x == 0.0 else 0.0
-        beside(found, n, n_q, 0.5)
+        beside(found, n, n_q, 0.5, jump)

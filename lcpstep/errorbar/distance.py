@@ -53,11 +53,11 @@ def alike(run: Trajectory, other: Trajectory, resolution: float, apart: Apart) -
     Looked at after the event and those of other contacts at the same time, or after one or two more, in a state that
     was kept where there is one. Balls that touch may hand an impulse on in one problem or in several, and part alike.
     """
-    events = event_times(run, other)
-    last = np.append(np.flatnonzero(np.diff(events) > resolution), len(events) - 1)  # of those at one time
-    following = np.append(events[1:], math.inf)
 
     def again(time: Array, jump: Array) -> Array:
+        events = event_times(run, other)
+        last = np.append(np.flatnonzero(np.diff(events) > resolution), len(events) - 1)  # of those at one time
+        following = np.append(events[1:], math.inf)
         first = last[np.searchsorted(last, np.searchsorted(events, time))]
         end = np.minimum(first + np.arange(FURTHER)[:, None], len(events) - 1)  # (FURTHER, k)
         until = np.minimum(following[end], min(run.t[-1], other.t[-1]))

@@ -13,7 +13,7 @@ from lcpstep.errorbar.companions import BEST, Companion, companions, followed, i
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
 from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
-from lcpstep.model import model
+from lcpstep.model import looked_at
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
@@ -141,7 +141,7 @@ def against(
         if _reached(x) < until:
             until = _reached(x)
             reason = "" if goes_on else f"{in_words(c.method)} ends there, {x.message}"
-    m = model(run.scene)
+    m = looked_at(run.scene)
     falls = fall(m, run)
     still = STILL * (float(np.max(np.abs(run.v))) + falls)
     if goes_on:

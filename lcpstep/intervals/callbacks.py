@@ -7,10 +7,11 @@ look-up at a place that is no whole number, says so (`NotEnclosed`).
 
 from __future__ import annotations
 
+import dis
 import functools
 import os
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import CellType, CodeType, FunctionType
 from typing import Any
 
@@ -125,24 +126,37 @@ def plain(f: Any) -> Any:
             return f
 
 
-@functools.lru_cache(maxsize=256)
 def replaced(f: Any) -> Any:
-    """A copy of a function that takes intervals."""
-    return _copy(f, {})
+    """A copy of a function that takes intervals, by the values that its globals and closures have now."""
+    copy, seen = _known(f)
+    if any(now() is not then for now, then in seen):
+        _known.cache_clear()
+        copy, seen = _known(f)
+    return copy
 
 
-def _copy(f: Any, made: dict[int, Any]) -> Any:
+Seen = list[tuple[Callable[[], Any], Any]]  # what gives a value that a copy has taken over, and the value
+
+
+@functools.lru_cache(maxsize=256)
+def _known(f: Any) -> tuple[Any, Seen]:
+    seen: Seen = []
+    return _copy(f, {}, seen), seen
+
+
+def _copy(f: Any, made: dict[int, Any], seen: Seen) -> Any:
     """The copy; made: those of the functions that are being copied, by id."""
     if id(f) in STANDS_FOR:
         return STANDS_FOR[id(f)]
     if id(f) in made:
         return made[id(f)]
     if isinstance(f, functools.partial):
-        return functools.partial(_copy(f.func, made), *f.args, **f.keywords)
+        return functools.partial(_copy(f.func, made, seen), *f.args, **f.keywords)
     if hasattr(f, "py_func"):
-        return _copy(f.py_func, made)
+        return _copy(f.py_func, made, seen)
     if not isinstance(f, FunctionType):
         return f
+    refuse(f)
     own: dict[str, Any] = dict(BUILTINS)
     closure = tuple(CellType() for _ in f.__closure__ or ())
     copy = FunctionType(f.__code__, own, f.__name__, f.__defaults__, closure or None)
@@ -150,17 +164,36 @@ def _copy(f: Any, made: dict[int, Any]) -> Any:
     made[id(f)] = copy
     for name in _names(f.__code__):
         if name in f.__globals__:
-            own[name] = _copy(f.__globals__[name], made)
+            own[name] = _copy(f.__globals__[name], made, seen)
+            seen.append((functools.partial(f.__globals__.get, name), f.__globals__[name]))
     own["__builtins__"] = f.__globals__.get("__builtins__", __builtins__)
     for cell, old in zip(closure, f.__closure__ or (), strict=True):
-        cell.cell_contents = _copy(old.cell_contents, made)
+        cell.cell_contents = _copy(old.cell_contents, made, seen)
+        seen.append((functools.partial(getattr, old, "cell_contents", None), old.cell_contents))
     return copy
+
+
+def refuse(f: FunctionType) -> None:
+    """NotEnclosed for a function that decides by what intervals do not do as numbers do, named with its line."""
+    for code in _codes(f.__code__):
+        line, before, handlers = code.co_firstlineno, None, 0
+        for step in dis.get_instructions(code):
+            line = step.positions.lineno or line if step.positions else line
+            handlers += (step.opname == "PUSH_EXC_INFO") - (step.opname == "WITH_EXCEPT_START")
+            told = step.opname == "IS_OP" and before is not None and isinstance(before.argval, bool)
+            if told or (handlers > 0 and step.opname in ("CHECK_EXC_MATCH", "POP_EXCEPT")):
+                why = "it asks whether something is True" if told else "it catches an exception"
+                where = f"{f.__name__} ({os.path.basename(code.co_filename)}, line {line})"
+                raise NotEnclosed(f"{where}: {why}, which a number between bounds cannot tell")
+            before = step if step.opname == "LOAD_CONST" else None
 
 
 def _names(code: CodeType) -> set[str]:
     """The names that a function and those within it use."""
-    found = set(code.co_names)
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            found |= _names(constant)
-    return found
+    return {name for x in _codes(code) for name in x.co_names}
+
+
+def _codes(code: CodeType) -> list[CodeType]:
+    """The code of a function and of those within it."""
+    inner = [x for constant in code.co_consts if isinstance(constant, CodeType) for x in _codes(constant)]
+    return [code, *inner]

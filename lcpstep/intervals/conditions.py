@@ -35,7 +35,27 @@ class Condition:
         """The opposite."""
         return Condition(self.no, self.yes)
 
-    __rand__, __ror__ = __and__, __or__
+    def __xor__(self, other: Any) -> Condition:
+        """One of them alone."""
+        yes, no = sides(other)
+        return Condition((self.yes & no) | (self.no & yes), (self.yes & yes) | (self.no & no))
+
+    def __eq__(self, other: Any) -> Condition:  # type: ignore[override]
+        """Whether both hold or both do not; another number than True and False is neither."""
+        if isinstance(other, Condition) or other in (True, False):
+            return ~(self ^ other)
+        return Condition(np.bool_(False), np.bool_(True))
+
+    def __ne__(self, other: Any) -> Condition:  # type: ignore[override]
+        return ~(self == other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __mul__(self, other: Any) -> Any:
+        """A number where it holds, and zero of it where it does not."""
+        return NotImplemented if isinstance(other, Condition) else other * float(bool(self))
+
+    __rand__, __ror__, __rxor__, __rmul__ = __and__, __or__, __xor__, __mul__
 
 
 def sides(x: Any) -> tuple[Any, Any]:

@@ -87,6 +87,8 @@ def _of_all(f: Callable[[Any, Any], Any], x: Any) -> Any:
 
 def whole(x: Any = 0, *more: Any) -> Any:
     """The builtin int: towards zero."""
+    if isinstance(x, Condition):
+        return int(bool(x))
     if not isinstance(x, Interval):
         return int(x, *more)
     return x.floor() if x >= 0.0 else x.ceil()
@@ -94,7 +96,24 @@ def whole(x: Any = 0, *more: Any) -> Any:
 
 def number(x: Any = 0.0) -> Any:
     """The builtin float."""
+    if isinstance(x, Condition):
+        return float(bool(x))
     return x if isinstance(x, Interval) else float(x)
+
+
+def is_a(x: Any, kinds: Any) -> bool:
+    """The builtin isinstance, for which what lies between bounds is a number."""
+    of_numbers: list[tuple[Any, type]] = [(number, float), (whole, int)]
+    wanted = kinds if isinstance(kinds, tuple) else (kinds,)
+    known: Any = True if isinstance(x, Condition) else 0.0 if isinstance(x, Interval) else x
+    return isinstance(known, tuple(next((own for f, own in of_numbers if f is y), y) for y in wanted))
+
+
+def kind_of(*x: Any) -> Any:
+    """The builtin type: nobody knows which of two kinds of numbers the user's function would be given."""
+    if isinstance(x[0], (Condition, Interval)):
+        raise NotEnclosed("it asks of what kind a number is")
+    return type(*x)
 
 
 def remainder_of_c(x: Any, y: Any) -> Any:
@@ -155,10 +174,17 @@ def where(condition: Any, x: Any, y: Any) -> Any:
     return one_of(x, y, yes, no, value.lo, value.hi)
 
 
-def interpolated(x: Any, places: Any, values: Any) -> Any:
-    """`numpy.interp`: linear between points of a table, and constant beyond its ends."""
+def interpolated(x: Any, xp: Any, fp: Any, left: Any = None, right: Any = None, period: Any = None) -> Any:
+    """`numpy.interp`: linear between points of a table, and constant beyond its ends, which may jump there."""
     if not isinstance(x, Interval):
-        return np.interp(x, places, values)
+        return np.interp(x, xp, fp, left, right, period)
+    if period is not None:
+        raise NotEnclosed("a table that is repeated")
+    if left is not None and x < xp[0]:
+        return left
+    if right is not None and x > xp[-1]:
+        return right
+    places, values = xp, fp
     places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
     lo, hi = np.atleast_1d(x.lo), np.atleast_1d(x.hi)
     a, b = np.interp(lo, places, values), np.interp(hi, places, values)
@@ -199,7 +225,9 @@ NUMPY: dict[str, Callable[..., Any]] = {
     "mod": operator.mod, "remainder": operator.mod, "power": operator.pow, "float64": number,
     "zeros": objects(np.zeros), "ones": objects(np.ones), "empty": objects(np.zeros),
 }  # fmt: skip
-BUILTINS: dict[str, Callable[..., Any]] = {"min": least, "max": most, "int": whole, "float": number}
+BUILTINS: dict[str, Callable[..., Any]] = {
+    "min": least, "max": most, "int": whole, "float": number, "isinstance": is_a, "type": kind_of,
+}  # fmt: skip
 UFUNCS: dict[Any, Callable[..., Any]] = {
     getattr(np, name): f for name, f in NUMPY.items() if isinstance(getattr(np, name), np.ufunc)
 } | {

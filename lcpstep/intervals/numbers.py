@@ -101,6 +101,8 @@ class Interval:
             return self.sqrt()
         current().need(self.hi >= 0.0, "a power of a negative number")
         lo = np.maximum(self.lo, 0.0)
+        if n < 2.0:
+            current().mark(self.lo <= 0.0)
         x, y = lo**n, self.hi**n
         return outwards(np.minimum(x, y), np.maximum(x, y), 8.0)
 
@@ -196,10 +198,10 @@ class Interval:
         return -((-self).floor())
 
     def sqrt(self) -> Interval:
-        """Square root; of what is negative by the width of the window, that of zero."""
+        """Square root, which has a corner at zero; of what is negative by the width of the window, that of zero."""
         current().need(self.hi >= 0.0, "a square root of a negative number")
-        if np.any(self.lo < 0.0):
-            current().mark(self.lo < 0.0)
+        if np.any(self.lo <= 0.0):
+            current().mark(self.lo <= 0.0)
         return outwards(np.sqrt(np.maximum(self.lo, 0.0)), np.sqrt(self.hi))
 
     def exp(self) -> Interval:
@@ -247,6 +249,7 @@ class Interval:
     def arcsin(self) -> Interval:
         """Inverse sine."""
         current().need((self.hi >= -1.0) & (self.lo <= 1.0), "an inverse sine of a number beyond 1")
+        current().mark((self.lo <= -1.0) | (self.hi >= 1.0))
         return outwards(np.arcsin(np.maximum(self.lo, -1.0)), np.arcsin(np.minimum(self.hi, 1.0)), 8.0)
 
     def arccos(self) -> Interval:

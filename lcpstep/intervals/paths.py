@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 Mask = NDArray[np.bool_]
 MOST = 32  # ways through a function
+LONGEST = 10_000  # decisions on one way: a loop whose end numbers tell need not end for intervals
 UNDER_WAY = threading.local()  # the evaluation of each thread
 
 
@@ -90,8 +91,12 @@ class Paths:
             key = possible[0][0]
             for other, mask in possible[1:]:
                 self.pending.append(([*self.script, other], self.at[mask]))
-            self.script = [*self.script, key]
+            if len(self.pending) > MOST:
+                raise NotEnclosed(f"there are more than {MOST} ways through it")
+            self.script.append(key)
         self.made += 1
+        if self.made > LONGEST:
+            raise NotEnclosed(f"it decides more than {LONGEST} times what to do")
         for k, mask in options:
             if k == key:
                 self.active = self.active & mask

@@ -123,6 +123,24 @@ def test_what_intervals_cannot_pass_is_sampled_and_said():
     assert window.gap > 0.0
 
 
+def by_exception(t, q, v, p, out):
+    """The bump, which is there where a logarithm has no value."""
+    try:
+        out[0] = q[1] + 1.05 + 0.0 * math.log((t - p[2]) ** 2 - p[1] ** 2)
+    except ValueError:
+        out[0] = q[1] + 1.05 - p[0]
+
+
+@pytest.mark.filterwarnings("ignore::lcpstep.model.UncompiledCallback")
+def test_what_an_exception_hides_is_not_certified():
+    """Intervals have a logarithm wherever a part of the window has one."""
+    scene = over_a_bump(0.06, 1e-3, gap=by_exception)
+    with blind():
+        answer = audit(simulate(scene, EventDriven()))
+    assert "by_exception (test_audit.py, line" in answer.windows[0].why
+    assert "catches an exception" in answer.windows[0].why
+
+
 def points(t, q, v, p, out):
     """Heights at every 5 ms, and straight lines between them, with one burr."""
     k = min(int(200.0 * t), 1999)

@@ -9,11 +9,11 @@ from benchmarks.audit.cases import bell, blind
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit, first
+from lcpstep.audit.cells import Cells
 from lcpstep.audit.certify import Tally, divided, examine
-from lcpstep.audit.clear import Cells
 from lcpstep.audit.curves import Curve, clear_curves
-from lcpstep.audit.motion import basis, through
 from lcpstep.audit.pieces import Pieces
+from lcpstep.audit.polynomials import basis, through
 from lcpstep.kernels.function import Function
 from tests.turns.test_burrs import oscillator
 from tests.uncompiled import both_ways
@@ -182,7 +182,7 @@ def test_a_gap_within_its_error_is_not_halved_for_ever():
         looked.append(len(w.a))
         return seen(w, rough=rough)
 
-    p.problem.seen, tally = counted, Tally()
+    p.problem.seen, p.problem.anchors, tally = counted, None, Tally()
     examine(p, divided(p, *np.nonzero(left)), tally)
     assert sum(looked) < 100 * np.sum(left)
     assert tally.windows

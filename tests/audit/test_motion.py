@@ -5,8 +5,8 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
-from lcpstep.audit.motion import by_steps, derivatives, through
 from lcpstep.audit.pieces import moved
+from lcpstep.audit.polynomials import by_steps, derivatives, through
 from lcpstep.model import model
 
 RNG = np.random.default_rng(11)

@@ -160,3 +160,99 @@ def between_places(t, q, v, p, out):
 def test_what_cannot_be_enclosed_says_where_and_why(f, why):
     with pytest.raises(NotEnclosed, match=why):
         over(f, [0.1], [0.2])
+
+
+def caught(t):
+    """What numbers below zero give, intervals do not raise."""
+    try:
+        return math.log(t - 0.5)
+    except ValueError:
+        return 50.0
+
+
+def matched(t):
+    """By a pattern that asks for True itself."""
+    match t > 0.5:
+        case True:
+            return 1.0
+        case _:
+            return 2.0
+
+
+def endless(t):
+    """Kepler's equation by Newton's method, until a step is small."""
+    x, step = t, 1.0
+    while abs(step) > 1e-12:
+        step = (x - 0.5 * math.sin(x) - t) / (1.0 - 0.5 * math.cos(x))
+        x -= step
+    return x
+
+
+def always(t):
+    """A loop that ends by what rounding makes of numbers."""
+    while t + 1.0 > t:
+        t += 0.0
+    return t
+
+
+@pytest.mark.parametrize(
+    ("f", "why"),
+    [
+        (caught, r"caught \(test_enclosures.py, line \d+\): it catches an exception"),
+        (matched, r"matched \(test_enclosures.py, line \d+\): it asks whether something is True"),
+        (endless, "more than 32 ways"),
+        (always, "decides more than 10000 times"),
+        (lambda t: np.interp(t, [0.0, 1.0], [1.0, 2.0], period=1.0), "a table that is repeated"),
+        (lambda t: 1.0 if type(t) is float else 2.0, "of what kind a number is"),
+    ],
+)
+def test_what_numbers_decide_otherwise_is_refused(f, why):
+    with pytest.raises(NotEnclosed, match=why):
+        over(of_time(f), [0.1, 0.45], [0.2, 0.6])
+
+
+@pytest.mark.parametrize(
+    "f",
+    [
+        lambda t: 1.0 if (t > 3.0) == (t > 6.0) else 2.0,
+        lambda t: 1.0 if (t > 3.0) != (t > 6.0) else 2.0,
+        lambda t: 1.0 if (t > 3.0) ^ (t > 6.0) else 2.0,
+        lambda t: 1.0 if (t > 3.0) == True else 2.0,  # noqa: E712
+        lambda t: (t > 3.0) * t + 1.0,
+        lambda t: int(t > 3.0) + float(t > 6.0),
+        lambda t: 1.0 if isinstance(t, (int, float)) else 2.0,
+        lambda t: np.interp(t, [2.0, 4.0, 7.0], [1.0, -1.0, 5.0], left=8.0, right=-8.0),
+    ],
+)
+def test_conditions_are_compared_and_counted_as_truth_values_are(f):
+    a = np.linspace(0.0, 9.0, 40)
+    b = a + np.where(np.arange(40) % 2 == 0, 0.05, 0.6)
+    found = over(of_time(f), a, b)
+    for k in range(40):
+        values = [f(float(t)) for t in np.linspace(a[k], b[k], 30)]
+        assert found.lo[k, 0] <= min(values)
+        assert max(values) <= found.hi[k, 0]
+        assert found.hi[k, 0] - found.lo[k, 0] <= max(values) - min(values) + 20.0 * (b[k] - a[k])
+
+
+@pytest.mark.parametrize("f", [lambda t: math.hypot(t - 3.0, 0.0), lambda t: ((t - 3.0) ** 2) ** 0.5])
+def test_a_square_root_has_a_corner_at_zero(f):
+    found = over(of_time(f), [1.0, 2.9, 4.0], [2.0, 3.1, 5.0])
+    np.testing.assert_array_equal(found.branched, [False, True, False])
+
+
+def test_globals_and_closures_count_as_they_are_now():
+    scale = 1.0
+
+    def f(t):
+        return scale * t + HEIGHT
+
+    global HEIGHT
+    callback = of_time(f)
+    HEIGHT = 1.0
+    assert over(callback, [0.0], [1.0]).hi[0, 0] == pytest.approx(2.0)
+    HEIGHT, scale = 5.0, 3.0
+    assert over(callback, [0.0], [1.0]).hi[0, 0] == pytest.approx(8.0)
+
+
+HEIGHT = 0.0

@@ -1,0 +1,28 @@
+cimport cython
+from libc.math cimport floor
+from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.pointers cimport after, inf, max, min, whole
+
+cdef double SLACK
+
+
+@cython.final
+cdef class Cells:
+    cdef object arrays, bounds
+    cdef readonly bint given, rough, whole_rough
+    cdef readonly Py_ssize_t n, n_c
+    cdef Py_ssize_t here
+    cdef readonly double period
+    cdef double per
+    cdef double* ends
+    cdef double* lo
+    cdef double* hi
+    cdef unsigned char* branched
+    cdef double* whole_top
+    cdef double* whole_low
+    cdef double* whole_high
+    cdef double* whole_fast
+    cdef readonly double bottom, top, slow, low, high
+    cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
+    @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
+    cdef Py_ssize_t cell(self, double t) noexcept nogil
