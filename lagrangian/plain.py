@@ -11,11 +11,12 @@ import functools
 import sys
 import threading
 from collections.abc import Callable
-from types import FunctionType, TracebackType
+from types import FunctionType
 from typing import Any
 
 import numpy as np
 
+JITCLASS = "numba.experimental.jitclass"
 BOXES = "numba.experimental.jitclass.boxing"  # module of the objects of compiled classes
 LOCAL = threading.local()  # .depth: how many callbacks this thread is in
 LOCK = threading.Lock()
@@ -55,68 +56,74 @@ class InPython:
     def __enter__(self) -> None:
         LOCAL.depth = getattr(LOCAL, "depth", 0) + 1
         with LOCK:
-            for x in REPLACED:
+            self.begun = [x for x in (*REPLACED, *_boxes()) if x.found()]
+            for x in self.begun:
                 x.begin()
 
-    def __exit__(self, *what: type[BaseException] | BaseException | TracebackType | None) -> None:
+    def __exit__(self, *what: object) -> None:
         LOCAL.depth -= 1
         with LOCK:
-            for x in REPLACED:
+            for x in self.begun:
                 x.end()
 
 
 class Replaced:
-    """One class of numba's whose objects are called otherwise as long as a thread is `InPython`.
+    """A method of a class of numba's that is another one as long as a thread is `InPython`.
 
     Parameters
     ----------
     module, name : of the class, which is looked at only where it has been imported
-    instead : f(x, arguments, keywords) in the place of x(*arguments, **keywords)
+    instead : f(x, arguments, keywords) in the place of x.method(*arguments, **keywords)
+    method : its name
     """
 
-    def __init__(self, module: str, name: str, instead: Callable[..., Any]) -> None:
-        self.module, self.name, self.instead = module, name, instead
+    def __init__(self, module: str, name: str, instead: Callable[..., Any], method: str = "__call__") -> None:
+        self.module, self.name, self.instead, self.method = module, name, instead, method
         self.users = 0
-        self.waiting = 0  # threads that began before the class was there
         self.cls: Any = None
         self.own: Any = None
 
+    def found(self) -> bool:
+        """Whether the class has been imported."""
+        self.cls = self.cls or getattr(sys.modules.get(self.module), self.name, None)
+        return self.cls is not None
+
     def begin(self) -> None:
         """For one thread more."""
-        self.cls = self.cls or getattr(sys.modules.get(self.module), self.name, None)
-        if self.cls is None:
-            self.waiting += 1
-            return
         self.users += 1
         if self.users == 1:
-            self.own = vars(self.cls).get("__call__")
-            self.cls.__call__ = self._call(self.cls.__call__)
+            self.own = vars(self.cls).get(self.method)
+            setattr(self.cls, self.method, self._replacement(getattr(self.cls, self.method)))
 
     def end(self) -> None:
         """For one thread less: after the last the class is as numba has made it."""
-        if self.waiting:
-            self.waiting -= 1
-            return
         self.users -= 1
         if self.users == 0 and self.own is None:
-            del self.cls.__call__
+            delattr(self.cls, self.method)
         elif self.users == 0:
-            self.cls.__call__ = self.own
+            setattr(self.cls, self.method, self.own)
 
-    def _call(self, usual: Callable[..., Any]) -> Callable[..., Any]:
+    def _replacement(self, usual: Callable[..., Any]) -> Callable[..., Any]:
         """In the place of the class's own, which other threads are still served by."""
 
-        def __call__(x: Any, *given: Any, **named: Any) -> Any:
+        def method(x: Any, *given: Any, **named: Any) -> Any:
             return self.instead(x, given, named) if getattr(LOCAL, "depth", 0) else usual(x, *given, **named)
 
-        return __call__
+        return method
+
+
+def _boxes() -> list[Replaced]:
+    """The classes of the objects of compiled classes: whatever is read from such an object is machine code."""
+    made = getattr(sys.modules.get(BOXES), "_cache_specialized_box", {})
+    for cls in made.values():
+        if cls not in BOXED:
+            BOXED[cls] = Replaced(BOXES, cls.__name__, _refused(JITCLASS), "__getattribute__")
+            BOXED[cls].cls = cls
+    return list(BOXED.values())
 
 
 def _by_python(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    """A function of `numba.njit`; the methods of compiled classes are such as well."""
-    box = type(given[0]) if given else type(None)
-    if box.__module__ == BOXES:
-        raise Unchecked(box.__name__, "numba.experimental.jitclass")
+    """A function of `numba.njit`."""
     return f.py_func(*given, **named)
 
 
@@ -136,6 +143,8 @@ def _one_by_one(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
 
 def name_of(x: Any) -> str:
     """What the user calls something that numba has made."""
+    if type(x).__module__ == BOXES:
+        return type(x).__name__
     return str(getattr(x, "__name__", "") or x.kernel_ir.func_id.func_name)
 
 
@@ -153,5 +162,6 @@ REPLACED = [
     Replaced("numba.np.ufunc.dufunc", "DUFunc", _one_by_one),
     Replaced("numba.np.ufunc.gufunc", "GUFunc", _refused("numba.guvectorize")),
     Replaced("numba.stencils.stencil", "StencilFunc", _refused("numba.stencil")),
-    Replaced("numba.experimental.jitclass.base", "JitClassType", _refused("numba.experimental.jitclass")),
+    Replaced("numba.experimental.jitclass.base", "JitClassType", _refused(JITCLASS)),
 ]
+BOXED: dict[type, Replaced] = {}

@@ -53,7 +53,9 @@ class Checked(Lower):
         if op in DIVISIONS:
             self._raise_if(self.builder.icmp_signed("==", b, zero), ZeroDivisionError, "division by zero")
         elif op is operator.pow and kinds[1].signed and not getattr(kinds[1], "literal_value", -1) >= 0:
-            said = "an integer to the power of a negative one, which machine code cannot tell from a real number"
+            said = (
+                "an integer to the power of a negative one, which machine code cannot tell from a real number"
+            )
             self._raise_if(self.builder.icmp_signed("<", b, zero), ValueError, said)
         elif op is operator.lshift:
             outside = self.builder.icmp_unsigned(">=", b, word(BITS))

@@ -1,7 +1,7 @@
 """What checks no index in machine code although callbacks do: functions and classes that numba has made otherwise.
 
 A callback's callees are compiled anew with their indices checked (`callbacks`). What else numba would call in it, it
-calls as its user has compiled it: a function out of a tuple or from a default, `vectorize`, `cfunc`, a compiled class.
+calls as its user has compiled it: a function out of a tuple or from a default, `vectorize`, `cfunc`, compiled classes.
 A callback that does so is not compiled; in Python (`lagrangian.plain`) indices are checked, or it is refused.
 """
 
@@ -39,6 +39,13 @@ class RefuseUnchecked(AnalysisPass):
                 what = unchecked(state.typemap[assign.target.name])
                 if what:
                     raise errors.NumbaTypeError(f"numba does not check the indices of {what}", loc=assign.loc)
+            for call in block.find_exprs(op="call"):
+                key = getattr(state.typemap[call.func.name], "typing_key", None)
+                integers = all(isinstance(kind, types.Integer) for kind in state.calltypes[call].args)
+                if key in (divmod, pow) and integers:
+                    raise errors.NumbaTypeError(
+                        f"{key.__name__} of integers is not that of Python", loc=call.loc
+                    )
         return False
 
 
