@@ -1,8 +1,8 @@
 """What checks no index in machine code although callbacks do: functions and classes that numba has made otherwise.
 
 A callback's callees are compiled anew with their indices checked (`callbacks`). What else numba would call in it, it
-calls as its user has compiled it: a function out of a tuple or from a default, `vectorize`, `cfunc`, compiled classes.
-A callback that does so is not compiled; in Python (`lagrangian.plain`) indices are checked, or it is refused.
+calls as its user has compiled it: a function out of a tuple or from a default, `vectorize`, `cfunc`, a compiled
+class. A callback that does so is not compiled; in Python (`lagrangian.plain`) indices are checked, or it is refused.
 """
 
 from __future__ import annotations
