@@ -127,6 +127,26 @@ def interrupted(words, folder, after, again=None):
     return out, err, time.perf_counter() - begin
 
 
+@pytest.mark.parametrize("after", [0.1, 0.3])
+def test_an_interrupt_while_modules_are_loaded_is_answered_without_a_traceback(after, tmp_path):
+    begun = "import lcpstep.command as c, sys; print('ready', flush=True); sys.argv[1:] = ['hard', '--full']; c.run()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", begun], cwd=tmp_path, env=environment(),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(after)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == interrupt.INTERRUPTED
+    assert "Traceback" not in err
+    assert said(err, "kept") == "nothing"
+    assert said(err, "start again with") == "lcpstep hard --full"
+
+
 def said(err, what):
     """What a command says after these words."""
     return next(
