@@ -2,7 +2,7 @@
 
 While a callback runs here, whatever numba has made of a function runs as the Python that it was made of, however the
 callback comes to it: by its name, a module, a class, a dictionary, an import. What has no Python that could take its
-place is refused by name. Other threads call their machine code meanwhile as ever.
+place is refused by name. All but callbacks call machine code as ever.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import sys
 import threading
+import weakref
 from collections.abc import Callable
 from types import FunctionType
 from typing import Any
@@ -18,8 +19,7 @@ import numpy as np
 
 JITCLASS = "numba.experimental.jitclass"
 BOXES = "numba.experimental.jitclass.boxing"  # module of the objects of compiled classes
-LOCAL = threading.local()  # .depth: how many callbacks this thread is in
-LOCK = threading.Lock()
+LOCK = threading.RLock()  # what is collected may be so within
 
 
 class Unchecked(TypeError):
@@ -40,12 +40,16 @@ def source(f: Any) -> Any:
 
 def python(f: Any) -> Callable[..., Any]:
     """A callback that runs in Python alone."""
-    f = source(f)
+    f, machine_code = source(f), Set()
 
     @functools.wraps(f, updated=())
     def plain(*given: Any) -> Any:
-        with InPython():
+        machine_code.aside()
+        LOCAL.depth += 1
+        try:
             return f(*given)
+        finally:
+            LOCAL.depth -= 1
 
     return plain
 
@@ -54,21 +58,49 @@ class InPython:
     """What this thread calls in the meantime runs in Python, whoever has compiled it."""
 
     def __enter__(self) -> None:
-        LOCAL.depth = getattr(LOCAL, "depth", 0) + 1
-        with LOCK:
-            self.begun = [x for x in (*REPLACED, *_boxes()) if x.found()]
-            for x in self.begun:
-                x.begin()
+        self.machine_code = Set()
+        self.machine_code.aside()
+        LOCAL.depth += 1
 
     def __exit__(self, *what: object) -> None:
         LOCAL.depth -= 1
-        with LOCK:
-            for x in self.begun:
-                x.end()
+        del self.machine_code
+
+
+class Depth(threading.local):
+    """How many callbacks a thread is in."""
+
+    depth = 0
+
+
+class Set:
+    """As long as this is there, and has been asked for, calls of machine code look whether a callback calls them."""
+
+    def __init__(self) -> None:
+        self.begun: list[Replaced] = []
+        self.seen = (0, 0)  # modules and classes there were
+        weakref.finalize(self, _end, self.begun).atexit = False
+
+    def aside(self) -> None:
+        """Again where something has been imported since."""
+        boxes = _specialized()
+        if self.seen != (len(sys.modules), len(boxes)):
+            self.seen = (len(sys.modules), len(boxes))
+            with LOCK:
+                for x in [*REPLACED, *map(_boxed, boxes.values())]:
+                    if x not in self.begun and x.found():
+                        x.begin()
+                        self.begun.append(x)
+
+
+def _end(begun: list[Replaced]) -> None:
+    with LOCK:
+        for x in begun:
+            x.end()
 
 
 class Replaced:
-    """A method of a class of numba's that is another one as long as a thread is `InPython`.
+    """A method of a class of numba's that is another one in callbacks, as long as somebody needs it.
 
     Parameters
     ----------
@@ -89,14 +121,14 @@ class Replaced:
         return self.cls is not None
 
     def begin(self) -> None:
-        """For one thread more."""
+        """For one more."""
         self.users += 1
         if self.users == 1:
             self.own = vars(self.cls).get(self.method)
             setattr(self.cls, self.method, self._replacement(getattr(self.cls, self.method)))
 
     def end(self) -> None:
-        """For one thread less: after the last the class is as numba has made it."""
+        """For one less: after the last the class is as numba has made it."""
         self.users -= 1
         if self.users == 0 and self.own is None:
             delattr(self.cls, self.method)
@@ -104,22 +136,26 @@ class Replaced:
             setattr(self.cls, self.method, self.own)
 
     def _replacement(self, usual: Callable[..., Any]) -> Callable[..., Any]:
-        """In the place of the class's own, which other threads are still served by."""
+        """In the place of the class's own, which serves all but callbacks."""
 
         def method(x: Any, *given: Any, **named: Any) -> Any:
-            return self.instead(x, given, named) if getattr(LOCAL, "depth", 0) else usual(x, *given, **named)
+            return self.instead(x, given, named) if LOCAL.depth else usual(x, *given, **named)
 
         return method
 
 
-def _boxes() -> list[Replaced]:
-    """The classes of the objects of compiled classes: whatever is read from such an object is machine code."""
-    made = getattr(sys.modules.get(BOXES), "_cache_specialized_box", {})
-    for cls in made.values():
-        if cls not in BOXED:
-            BOXED[cls] = Replaced(BOXES, cls.__name__, _refused(JITCLASS), "__getattribute__")
-            BOXED[cls].cls = cls
-    return list(BOXED.values())
+def _specialized() -> dict[Any, type]:
+    """The classes of the objects of compiled classes, as numba keeps them."""
+    found: dict[Any, type] = getattr(sys.modules.get(BOXES), "_cache_specialized_box", {})
+    return found
+
+
+def _boxed(cls: type) -> Replaced:
+    """Whatever is read from an object of a compiled class is machine code."""
+    if cls not in BOXED:
+        BOXED[cls] = Replaced(BOXES, cls.__name__, _refused(JITCLASS), "__getattribute__")
+        BOXED[cls].cls = cls
+    return BOXED[cls]
 
 
 def _by_python(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
@@ -157,6 +193,7 @@ def _refused(maker: str) -> Callable[..., Any]:
     return refuse
 
 
+LOCAL = Depth()
 REPLACED = [
     Replaced("numba.core.dispatcher", "Dispatcher", _by_python),
     Replaced("numba.np.ufunc.dufunc", "DUFunc", _one_by_one),

@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 
-from lagrangian.plain import InPython
+from lagrangian.plain import REPLACED, InPython, python
 from lcpstep import Moreau, SimulationError, simulate
 from tests import numba_made
 from tests.numba_made import CHECKED, REFUSED
@@ -45,7 +45,17 @@ def test_outside_of_callbacks_all_is_as_numba_has_made_it():
         falling(REFUSED["method"][0])
     assert numba_made.FIELD.item(1) == 8.0
     assert numba_made.generalized(np.array([5.0]), 0) == 5.0
-    assert "__call__" not in vars(type(numba_made.item).__mro__[1])
+
+
+def test_nothing_of_numba_is_changed_when_the_last_callback_is_gone():
+    users = [x.users for x in REPLACED]
+    run = python(CHECKED["class"])
+    out = np.zeros(1)
+    run(0.0, None, None, np.array([8.0]), out)
+    assert out[0] == -8.0
+    assert [x.users for x in REPLACED] == [n + 1 for n in users]
+    del run
+    assert [x.users for x in REPLACED] == users
 
 
 def test_other_threads_go_on_with_machine_code():
