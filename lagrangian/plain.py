@@ -165,7 +165,7 @@ def _by_python(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
 
 def _one_by_one(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
     """A function of `numba.vectorize`, which takes numbers and arrays, and maybe one to fill after these."""
-    inside = f.__wrapped__
+    inside = f._dispatcher.py_func
     takes = inside.__code__.co_argcount
     filled = (*given[takes:], *(named.pop("out", None) or ()))
     values = np.frompyfunc(inside, takes, 1)(*given[:takes], **named)
@@ -181,7 +181,8 @@ def name_of(x: Any) -> str:
     """What the user calls something that numba has made."""
     if type(x).__module__ == BOXES:
         return type(x).__name__
-    return str(getattr(x, "__name__", "") or x.kernel_ir.func_id.func_name)
+    inside = getattr(getattr(x, "kernel_ir", None), "func_id", None)  # of a stencil, which has no name
+    return str(getattr(x, "__name__", None) or getattr(inside, "func_name", type(x).__name__))
 
 
 def _refused(maker: str) -> Callable[..., Any]:

@@ -1,5 +1,6 @@
 """Whatever numba has made of a user's functions, and however a callback comes to it: checked or refused by name."""
 
+import pickle
 import threading
 import warnings
 
@@ -80,6 +81,12 @@ def test_a_vectorized_function_takes_numbers_arrays_and_one_to_fill():
     np.testing.assert_array_equal(filled, [8.0, 8.0])
 
 
+def test_so_does_one_that_has_been_pickled():
+    f = pickle.loads(pickle.dumps(numba_made.typed_from_table))
+    with InPython():
+        assert f(1) == 8.0
+
+
 # --- arithmetic
 
 
@@ -118,6 +125,22 @@ def in_place(n):
 def test_integers_are_not_divided_by_zero(make):
     with pytest.raises(SimulationError, match=r"^system\.force: .*t = 0\.3.*ZeroDivisionError"):
         simulate(falling(beyond(make)), Moreau(1e-2))
+
+
+def caught(t, q, v, p, out):
+    n = 1 if t < 0.1 else 0
+    try:
+        k = 8 // n
+    except Exception:
+        k = 8
+    out[0] = -k
+
+
+def test_what_is_caught_in_the_callback_goes_on():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = simulate(falling(caught, t_end=0.25), Moreau(1e-2))
+    assert run.q[-1, 0] == pytest.approx(0.75, abs=1e-12)
 
 
 def power(n):
