@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
 import json
+import os
+import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +16,7 @@ from lcpstep.files import replacing
 from lcpstep.simulation import Method
 
 COMPRESSION = {"zlib": True, "complevel": 4}
+FULL = 65536  # bytes: a disk with less than that has had no space for a dataset
 UNITS = {  # of the variables that results are made of
     "q": "m", "v": "m/s", "impact_phase": "1", "impact_before": "m/s", "impact_after": "m/s", "rpm": "1/min",
 }  # fmt: skip
@@ -66,9 +70,16 @@ def save(data: Any, file: Path | str, *, overwrite: bool = False) -> Path:
         file.parent.mkdir(parents=True, exist_ok=True)
         try:
             data.to_netcdf(draft, engine="netcdf4", encoding=packed)
-        except RuntimeError as error:  # what the library makes of a disk that is full
-            raise OSError(f"the NetCDF library says {error}") from error
+        except (RuntimeError, PermissionError) as error:  # what the library makes of a disk that is full
+            raise _reason(error, file.parent) from error
     return file
+
+
+def _reason(error: Exception, folder: Path) -> OSError:
+    """Why a dataset could not be written: the library has no word for a disk that is full."""
+    if shutil.disk_usage(folder).free < FULL:
+        return OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    return error if isinstance(error, OSError) else OSError(f"the NetCDF library says {error}")
 
 
 Progress = Callable[[int, int], None]

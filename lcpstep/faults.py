@@ -28,7 +28,7 @@ class Fault(NamedTuple):
     t: float
     q: Array
     v: Array
-    said: str = "an exception that it raises in machine code only"
+    said: str = "an exception that it raises in machine code only (integers have 64 bits there)"
     error: BaseException | None = None  # itself, where Python raised it
 
     def __str__(self) -> str:

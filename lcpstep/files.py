@@ -50,6 +50,17 @@ def replacing(file: Path | str) -> Iterator[Path]:
         raise NotWritten(file, error) from error
 
 
+@contextmanager
+def naming(file: Path | str) -> Iterator[None]:
+    """An OSError of a file that grows as results come in is a NotWritten that names it; what it has is kept."""
+    try:
+        yield
+    except NotWritten:
+        raise
+    except OSError as error:
+        raise NotWritten(file, error) from error
+
+
 def _settle(draft: Path, target: Path) -> None:
     """Put the draft in the place of the target, once it is on the disk and not only on its way there."""
     with draft.open("rb+") as written:

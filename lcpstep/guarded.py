@@ -24,11 +24,12 @@ from numba.core.ccallback import CFunc
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.compiler_machinery import register_pass
-from numba.core.lowering import Lower
 from numba.core.typed_passes import NativeLowering, NopythonTypeInference
 from numba.np.arrayobj import make_array, populate_array
 
 from lcpstep.faults import Fault, note
+from lcpstep.integers import Checked
+from lcpstep.unchecked import RefuseUnchecked
 from lcpstep.writing import RefuseWriting
 
 ALL_ONES = 0xFF  # the bytes of a not-a-number
@@ -51,7 +52,7 @@ def signature(n: int, ndim: int) -> tuple[Any, ...]:
     return types.float64, *(read,) * n, types.Array(types.float64, ndim, "C")
 
 
-class Wrapped(Lower):
+class Wrapped(Checked):
     """Lowering of a function together with the C function around it."""
 
     def create_cfunc_wrapper(self) -> None:
@@ -95,13 +96,25 @@ def array(context: Any, builder: Any, kind: Any, data: Any, shape: list[Any]) ->
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
+class LowerChecked(NativeLowering):
+    """From numba's intermediate representation to LLVM's, with integers checked."""
+
+    _name = "lower_checked"
+
+    @property
+    def lowering_class(self) -> type[Checked]:
+        """In the place of numba's own."""
+        return Checked
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
 class LowerWrapped(NativeLowering):
-    """From numba's intermediate representation to LLVM's, with the wrapper above."""
+    """The same with the wrapper above."""
 
     _name = "lower_wrapped"
 
     @property
-    def lowering_class(self) -> type[Lower]:
+    def lowering_class(self) -> type[Checked]:
         """In the place of numba's own."""
         return Wrapped
 
@@ -109,10 +122,16 @@ class LowerWrapped(NativeLowering):
 class CalleeCompiler(CompilerBase):
     """Compiler of functions that callbacks call."""
 
+    checks_indices = True  # numba's own do not
+    lowering = LowerChecked
+
     def define_pipelines(self) -> list[Any]:
-        """Numba's pipeline, and a look at what is written into."""
+        """Numba's pipeline but for the step of lowering, and a look at what is written into and what is called."""
         pipeline = DefaultPassBuilder.define_nopython_pipeline(self.state)
         pipeline.add_pass_after(RefuseWriting, NopythonTypeInference)
+        pipeline.add_pass_after(RefuseUnchecked, NopythonTypeInference)
+        pipeline.add_pass_after(self.lowering, NativeLowering)
+        pipeline.passes = [(step, text) for step, text in pipeline.passes if step is not NativeLowering]
         pipeline.finalize()
         return [pipeline]
 
@@ -120,13 +139,7 @@ class CalleeCompiler(CompilerBase):
 class Compiler(CalleeCompiler):
     """Compiler of a callback."""
 
-    def define_pipelines(self) -> list[Any]:
-        """The same but for the step of lowering."""
-        (pipeline,) = super().define_pipelines()
-        pipeline.add_pass_after(LowerWrapped, NativeLowering)
-        pipeline.passes = [(step, text) for step, text in pipeline.passes if step is not NativeLowering]
-        pipeline.finalize()
-        return [pipeline]
+    lowering = LowerWrapped
 
 
 class Guarded(CFunc):

@@ -163,7 +163,7 @@ def read(file: Path, owners: set[int]) -> Any:
 @cache
 def toolchain() -> str:
     """What turns a function into machine code, as a text that changes with it."""
-    names = ("fingerprint", "guarded", "writing")
+    names = ("fingerprint", "guarded", "integers", "unchecked", "writing")
     own = [Path(__file__).with_name(f"{name}.py").read_bytes() for name in names]
     versions = [sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__]
     settings = {k: v for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in HARMLESS}

@@ -1,9 +1,11 @@
 """Files appear complete or not at all: without space, folder or time the old one stays."""
 
+import argparse
 import errno
 import json
 import os
 from contextlib import contextmanager
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +14,7 @@ from lagrangian import scenes
 from lcpstep import Moreau
 from lcpstep.accuracy.study import study
 from lcpstep.accuracy.work_precision import Study
-from lcpstep.cli import main
+from lcpstep.cli import main, orbit
 from lcpstep.cli.common import DONE, FAILED
 from lcpstep.dataset import labelled, save
 from lcpstep.errors import LcpStepError, NotWritten
@@ -82,6 +84,44 @@ def test_a_part_without_space_is_named_and_those_before_are_kept(tmp_path):
     assert np.array_equal(store.load(0, 0)[0]["x"], NUMBERS[:10])
     assert store.load(0, 1) is None
     assert len(list((tmp_path / "s").iterdir())) == 2
+
+
+def long_branch(folder):
+    with orbit._points_bar(argparse.Namespace(out=folder, range=(0.0, 1.0)), "rpm") as progress:
+        for k in range(SPACE):
+            progress(k / SPACE, NUMBERS[:1], NUMBERS[:2])
+
+
+def test_a_branch_without_space_is_named(tmp_path):
+    with little_space(), pytest.raises(NotWritten, match=r"branch\.csv could not be written") as caught:
+        long_branch(tmp_path)
+    assert caught.value.code == errno.EFBIG
+    assert (tmp_path / "parts" / "branch.csv").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("error", "free", "said"),
+    [
+        (PermissionError(errno.EACCES, "Permission denied"), 0, "No space left on device$"),
+        (RuntimeError("NetCDF: HDF error"), 0, "No space left on device$"),
+        (
+            PermissionError(errno.EACCES, "Permission denied"),
+            10**9,
+            "Permission denied; choose another place$",
+        ),
+        (RuntimeError("NetCDF: HDF error"), 10**9, "the NetCDF library says NetCDF: HDF error$"),
+    ],
+)
+def test_a_full_disk_is_told_whatever_the_library_takes_it_for(tmp_path, monkeypatch, error, free, said):
+    data = labelled({"q": (("n",), NUMBERS)}, {}, {})
+
+    def fails(*_, **__):
+        raise error
+
+    monkeypatch.setattr(type(data), "to_netcdf", fails)
+    monkeypatch.setattr("lcpstep.dataset.shutil.disk_usage", lambda folder: SimpleNamespace(free=free))
+    with pytest.raises(NotWritten, match=rf"a\.nc could not be written: {said}"):
+        save(data, tmp_path / "a.nc")
 
 
 def test_a_study_keeps_its_last_whole_state(tmp_path):

@@ -127,6 +127,26 @@ def interrupted(words, folder, after, again=None):
     return out, err, time.perf_counter() - begin
 
 
+@pytest.mark.parametrize("after", [0.1, 0.3])
+def test_an_interrupt_while_modules_are_loaded_is_answered_without_a_traceback(after, tmp_path):
+    begun = "import lcpstep.command as c, sys; print('ready', flush=True); sys.argv[1:] = ['hard', '--full']; c.run()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", begun], cwd=tmp_path, env=environment(),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(after)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == interrupt.INTERRUPTED
+    assert "Traceback" not in err
+    assert said(err, "kept") == "nothing"
+    assert said(err, "start again with") == "lcpstep hard --full"
+
+
 def said(err, what):
     """What a command says after these words."""
     return next(
@@ -202,6 +222,21 @@ def test_a_motion_that_is_interrupted_is_saved_as_far_as_it_came(tmp_path):
     assert "interrupted at t = " in err
     with np.load(tmp_path / "motion.npz") as saved:
         assert 0.0 < saved["t"][-1] < 100.0
+    assert said(err, "start again with").endswith(
+        "--out motion --overwrite"
+    )  # which would be refused without
+
+
+@pytest.mark.parametrize("name", ["motion.npz", "motion.nc", "motion.csv"])
+def test_a_motion_is_saved_over_another_where_it_is_asked_to_be(name, tmp_path, capsys):
+    words = ["simulate", "bouncing-ball", "--h", "0.1", "--out", str(tmp_path / name)]
+    assert cli.main(words) == 0
+    before = (tmp_path / name).read_bytes()
+    assert cli.main([*words, "--t-end", "0.5"]) == 2
+    assert "exists already; --overwrite replaces it" in capsys.readouterr().err
+    assert (tmp_path / name).read_bytes() == before
+    assert cli.main([*words, "--t-end", "0.5", "--overwrite"]) == 0
+    assert (tmp_path / name).read_bytes() != before
 
 
 @pytest.mark.slow

@@ -34,6 +34,7 @@ from lcpstep.cli.studies import (
     work_bar,
 )
 from lcpstep.errors import UnknownName
+from lcpstep.files import naming
 from lcpstep.maps import EventMap, SwitchMap, iterate
 from lcpstep.maps.event import KINDS
 from lcpstep.plot import orbits as pictures
@@ -244,6 +245,7 @@ def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progres
     file = options.out / PARTS / "branch.csv"
     file.parent.mkdir(parents=True, exist_ok=True)
     with (
+        naming(file),
         file.open("w") as lines,
         tqdm(desc="branch", total=high - low, bar_format=form, disable=None, leave=False) as bar,
     ):

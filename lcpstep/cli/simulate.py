@@ -75,6 +75,7 @@ def add(commands: Any) -> None:
     p.add_argument(
         "--out", type=Path, metavar="FILE", help="save the motion (.npz; .nc for lcpstep.load; .csv)"
     )
+    p.add_argument("--overwrite", action="store_true", help="write over a motion that was saved before")
     p.add_argument("--picture", type=Path, metavar="FILE", help="draw the motion (.png, .pdf, .svg)")
     p.add_argument(
         "--film", type=Path, metavar="FILE", help="film the motion (.gif, .html, .mp4 with ffmpeg)"
@@ -94,7 +95,7 @@ def run_simulate(options: argparse.Namespace) -> int:
         raise ValueError(f"--energy: {scene.name!r} has modes, and no masses and forces to balance")
     _refuse_what_does_not_apply(options)
     method = METHODS[options.method](options)
-    options.out = _checked_name(options.out)
+    options.out = _checked_name(options.out, options.overwrite)
     _check_pictures(options)
     try:
         with progress_bar(scene, options.method) as progress:
@@ -102,9 +103,9 @@ def run_simulate(options: argparse.Namespace) -> int:
     except (SimulationError, SimulationInterrupted) as stopped:
         interrupt.answer()
         if options.out is not None:  # a long motion takes seconds to put together
-            _save(options.out, stopped.trajectory)
+            _save(options.out, stopped.trajectory, options.overwrite)
         raise
-    _save(options.out, run)
+    _save(options.out, run, options.overwrite)
     if options.picture:
         from lcpstep.plot.motion import overview
 
@@ -130,15 +131,15 @@ def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:
         setattr(options, name, default if value is None else value)
 
 
-def _checked_name(file: Path | None) -> Path | None:
+def _checked_name(file: Path | None, overwrite: bool) -> Path | None:
     """Where the motion is saved; a name without an ending gets that of numpy's files."""
     if file is None:
         return None
     file = file if file.suffix else file.with_name(f"{file.name}.npz")
     if file.suffix not in SAVED:
         raise ValueError(f"--out: expected a name that ends in {', '.join(SAVED)}, got {str(file)!r}")
-    if file.exists():
-        raise FileExistsError(f"--out: {file} exists already")
+    if file.exists() and not overwrite:
+        raise FileExistsError(f"--out: {file} exists already; --overwrite replaces it")
     return file
 
 
@@ -258,9 +259,9 @@ def _words(e: dict[str, Any]) -> str:
     )
 
 
-def _save(file: Path | None, run: Trajectory | HybridTrajectory) -> None:
+def _save(file: Path | None, run: Trajectory | HybridTrajectory, overwrite: bool) -> None:
     if file is not None and file.suffix == ".nc":
-        interrupt.wrote(run.save(file))
+        interrupt.wrote(run.save(file, overwrite=overwrite))
     elif file is not None and file.suffix == ".csv":
         save_text(run.to_dataframe().to_csv().rstrip("\n"), file)
     elif file is not None:

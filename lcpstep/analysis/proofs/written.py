@@ -18,7 +18,7 @@ import numpy as np
 from flint import arb
 
 from lagrangian.checks import said
-from lagrangian.plain import python
+from lagrangian.plain import InPython, source
 from lcpstep.analysis.proofs.errors import NotProved
 from lcpstep.analysis.proofs.obstacles import Formula
 
@@ -133,7 +133,8 @@ class Written:
     def _at(self, time: Any) -> Any:
         out = np.empty((self.rows, 3), dtype=object)
         try:
-            self.function(Series(time), None, None, self.p, out)
+            with InPython():
+                self.function(Series(time), None, None, self.p, out)
             return _raw(out[self.index, 0]) + 0 * time
         except Exception as error:  # the user's code may raise anything
             raise NotProved(
@@ -150,7 +151,7 @@ class Written:
 
 def on_series(name: str, f: Any) -> FunctionType:
     """A callback that computes with `Series`: the same code, other functions."""
-    plain = python(f)
+    plain = source(f)
     if not isinstance(plain, FunctionType):
         raise NotProved(f"{name}: {f!r} is no Python function, and cannot be enclosed")
     names = {key: _replaced(x) for key, x in plain.__globals__.items() if key in plain.__code__.co_names}
