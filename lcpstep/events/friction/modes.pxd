@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
+from lcpstep.events.friction.held cimport constrain, hold, hold_joints, hold_modes, list_multipliers
 from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.several cimport opened_or_closed
@@ -30,8 +30,9 @@ cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(leaning=Py_ssize_t)
 cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
-@cython.locals(stuck=Py_ssize_t, held=Py_ssize_t)
 cdef void stand_alone(Rubbing s) noexcept nogil
+@cython.locals(count=Py_ssize_t, depends=bint)
+cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil

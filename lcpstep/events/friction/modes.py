@@ -28,7 +28,7 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
-    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
+    from lcpstep.events.friction.held import constrain, hold, hold_joints, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
@@ -197,31 +197,28 @@ def adopt_modes(s: Rubbing) -> int:
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
         s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
         leaning += s.mode[c] == LEANS
-    if leaning > 0 and stand(s):
-        return DONE
-    if leaning > 0:
+    if leaning > 0 and not stand(s):
         stand_alone(s)
     return DONE if hold_modes(s) else PAINLEVE_INCONSISTENT
 
 
 def stand_alone(s: Rubbing) -> None:
-    """At the edge of the cone, with none that sticks to lean on: they stick until their forces leave it.
+    """Of those that lean those stick that nothing else keeps from sliding, until their forces leave the cone.
 
-    Of those that share a direction one sticks, and the others lean on it.
+    Of feet that share a direction one sticks and the others lean on it. Wedged between two surfaces, a body leans
+    with the forces found: to hold its tangent too would leave a normal without its force.
     """
-    stuck = 0
     for c in range(s.n_c):
-        stuck += s.mode[c] == STICKS
-    if stuck > 0:
-        return
-    for c in range(s.n_c):
-        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
-    hold_modes(s)
-    for c in range(s.n_c):
-        held = 0
-        for m in range(s.n_held):
-            held += s.held[m] == s.n_j + s.n_c + c
-        s.mode[c] = LEANS if s.mode[c] == STICKS and held == 0 else s.mode[c]
+        if s.mode[c] == LEANS and not (hold_modes(s) and is_carried(s, s.n_j + s.n_c + c)):
+            s.mode[c] = STICKS
+
+
+def is_carried(s: Rubbing, i: int) -> bool:
+    """Whether row i depends on the rows held."""
+    count = s.n_held
+    depends = hold(s, i) and s.n_held == count
+    s.n_held = count
+    return depends
 
 
 def stand(s: Rubbing) -> bool:
@@ -241,6 +238,8 @@ def stand(s: Rubbing) -> bool:
         if s.mode[c] == STICKS:
             most = (1.0 - EDGE) * s.mu_s[c] * s.multiplier[i]
             stands = stands and abs(s.multiplier[i + s.n_c]) < most
+        elif s.mode[c] == SLIDES:
+            stands = stands and s.multiplier[i] >= -force_noise(s)
     for c in range(s.n_c):
         s.mode[c] = s.mode[c] if stands else s.new_mode[c]
     return stands
