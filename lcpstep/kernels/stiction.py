@@ -1,8 +1,9 @@
 """Contacts of a step with coefficients of friction that differ between sticking and sliding.
 
 What stuck before the step goes on with mu_s as long as that keeps it from sliding, and has mu otherwise. What slides
-has mu; where it would turn about within the step it comes through rest, and sticks if mu_s holds it there. Each
-contact changes from mu to mu_s and back at most, so that this ends.
+has mu; where it would turn about within the step it comes through rest, and sticks if mu_s holds it there, whether or
+not it is pressed meanwhile: of more feet than a body stands on some are not. Each contact changes from mu to mu_s and
+back at most, so that this ends.
 """
 
 from __future__ import annotations
@@ -35,10 +36,12 @@ def solve_steps(
         again = False
         for f in range(n_f):
             i = c.ids[c.carrier[f]]
-            if slips(c, n_a, n_f, f) and k.tried[i] == STICKS:
+            turns = k.tried[i] == SLIDES and moves(c, n_a, n_f, f) and slip(c, n_a, n_f, f) * sliding[i] <= 0.0
+            pressed = c.impulse[c.carrier[f]] > 0.0
+            if turns:
+                k.tried[i], c.mu[i], again = STICKS, k.sticking[i], again or pressed
+            elif pressed and k.tried[i] == STICKS and moves(c, n_a, n_f, f):
                 k.tried[i], c.mu[i], again = GIVES_WAY, k.sliding[i], True
-            elif slips(c, n_a, n_f, f) and k.tried[i] == SLIDES and slip(c, n_a, n_f, f) * sliding[i] <= 0.0:
-                k.tried[i], c.mu[i], again = STICKS, k.sticking[i], True
         if not again:
             return True
 
@@ -52,7 +55,6 @@ def terms(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
     return size
 
 
-def slips(c: ContactProblem, n_a: int, n_f: int, f: int) -> bool:
-    """Whether the impulses found leave contact f closed, but do not keep it from sliding."""
-    pressed = c.impulse[c.carrier[f]] > 0.0
-    return pressed and abs(slip(c, n_a, n_f, f)) > AT_REST * terms(c, n_a, n_f, f)
+def moves(c: ContactProblem, n_a: int, n_f: int, f: int) -> bool:
+    """Whether the impulses found do not keep contact f from sliding."""
+    return abs(slip(c, n_a, n_f, f)) > AT_REST * terms(c, n_a, n_f, f)

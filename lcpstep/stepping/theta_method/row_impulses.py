@@ -87,7 +87,10 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
 
 
 def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
-    """Which contacts do not slide at the end of the step."""
+    """Which contacts do not slide at the end of the step, those among them that nothing presses at the moment.
+
+    Of more feet than a body stands on some carry no load: they may be needed to hold it in the next step.
+    """
     for i in range(s.n_c):
         s.sticks[i] = 0
     for f in range(n_f):
@@ -96,7 +99,7 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
         size = abs(c.T_t[i]) + terms(c.problem, n_a, n_f, f)
         for j in range(s.n_q):
             size += abs(c.T[i * s.n_q + j] * s.next_v[j])
-        s.sticks[i] = 1 if c.p[i] > 0.0 and abs(u) <= AT_REST * size else 0
+        s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
 
 
 def take_part(ids: Indices, carrier: Indices, rough: Indices, n_a: int, n_c: int, n_t: int, n_j: int) -> int:
