@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Moreau, SimulationError, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, SimulationError, Status, simulate
 
 G0 = 9.81
 FLOOR, ALONG = [[0.0, 1.0]], [[1.0, 0.0]]
@@ -155,6 +155,40 @@ def test_feet_that_share_a_direction_hold_together_with_what_each_holds_at_rest(
     assert abs(run.q[-1, 0] - x) < 1e-9
     fine = simulate(scene, Moreau(1e-5)).q[-1, 0]
     assert abs(fine - x) < 1e-4
+
+
+def on_feet(feet, mu, mu_s, pull, turn=0.0, rate=0.0):
+    """A block that is pulled, a little below its centre, by `pull` of its weight, and more with the time."""
+    ramp = Harmonic(constant=[pull * G0, -G0, turn], sine=[rate * G0, 0.0, 0.0], omega=1.0)
+    friction = Coulomb(mu, [[1.0, 0.0, 0.1]] * len(feet), mu_s=mu_s)
+    return Scene(
+        system=LinearSystem(np.diag([1.0, 1.0, 0.1]), force=ramp), q0=[0.0] * 3, v0=[0.0] * 3, t_span=(0.0, 0.3),
+        contacts=LinearContacts([[0.0, 1.0, x] for x in feet], friction=friction),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(0.01), Located(0.01, 4), Moreau(1e-3), Moreau(0.01, tolerance=1e-5)]
+)
+@pytest.mark.parametrize(
+    ("feet", "mu", "mu_s", "pull", "turn"),
+    [
+        ([0.3, 0.1, -0.1, -0.3], 0.3, 0.6, 0.59, -0.5),  # two feet carry all, or three
+        ([0.3, 0.0, -0.3], [0.3, 0.1, 0.3], None, 0.25, 0.0),  # held by the outer feet, not by the middle one
+    ],
+)
+def test_more_feet_than_are_needed_hold_where_their_cones_can(method, feet, mu, mu_s, pull, turn):
+    run = simulate(on_feet(feet, mu, mu_s, pull, turn), method)
+    assert run.status == Status.DONE
+    assert np.max(np.abs(run.q)) < 1e-30
+
+
+def test_more_feet_than_are_needed_hold_up_to_what_their_cones_can_in_any_way():
+    """The outer feet carry what they can: the turning moment leaves nothing to the one in the middle at last."""
+    run = simulate(on_feet([0.3, 0.0, -0.3], [0.3, 0.1, 0.3], None, 0.2, rate=1.0), EventDriven())
+    begin = math.asin(0.3 - 0.2)
+    assert abs(np.min(run.impacts.time[run.impacts.kind == Kind.SLIP]) - begin) < 1e-9
+    assert np.max(np.abs(run.at(np.linspace(0.0, begin, 50))[0])) < 1e-15
 
 
 def test_a_coefficient_that_becomes_negative_on_the_way_is_named():

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
@@ -21,7 +21,7 @@ if not cython.compiled:
         measure_rates,
         size_of,
     )
-    from lcpstep.events.friction.held import right_hand_side
+    from lcpstep.events.friction.held import is_held, right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import (
@@ -75,7 +75,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             s.value[k] = s.gap[i]
             total += s.gap[i]
             continue
-        if is_held(s, i):
+        if is_held(s, i) or (s.mode[c] == LEANS and is_held(s, i + s.n_c)):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
         if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1:
@@ -86,14 +86,6 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             s.value[k + 2] = most + s.multiplier[i + s.n_c]
         total += s.value[k] + s.value[k + 1] + s.value[k + 2]
     return total - total == 0.0
-
-
-def is_held(s: Rubbing, i: int) -> bool:
-    """Whether row i is among the rows held."""
-    found = False
-    for m in range(s.n_held):
-        found = found or s.held[m] == i
-    return found
 
 
 def begin_guards(s: Rubbing, t: float) -> bool:

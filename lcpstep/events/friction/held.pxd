@@ -8,14 +8,18 @@ from lcpstep.kernels.dynamics cimport total_force
 from lcpstep.kernels.vectors cimport add, clear, copy, product
 from lcpstep.pointers cimport abs, after
 
-cdef Py_ssize_t STICKS, SLIDES, REFINEMENTS
+cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
 cdef double DEPENDENT
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double entry(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil
+cdef void hold_leaning(Rubbing s) noexcept nogil
+@cython.locals(found=bint)
+cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint hold_again(Rubbing s) noexcept nogil
 cdef void solve_held(Rubbing s, double* x) noexcept nogil
 cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import SLIDES, STICKS
+from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
@@ -36,18 +36,28 @@ REFINEMENTS = 2
 
 
 def pull(s: Rubbing, i: int) -> float:
-    """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
+    """How much of the `other` force of its contact comes with that of row i.
+
+    -s mu of the tangent's with a normal that slides or leans; the inverse of the normal's where the tangent of a
+    contact that leans is held.
+    """
     c = i - s.n_j
     if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
         return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
-    return 0.0
+    c -= s.n_c
+    return -s.direction[c] / s.mu_s[c] if c >= 0 and s.mode[c] == LEANS else 0.0
+
+
+def other(s: Rubbing, i: int) -> int:
+    """The tangent of normal i, the normal of tangent i."""
+    return i + s.n_c if i < s.n_j + s.n_c else i - s.n_c
 
 
 def entry(s: Rubbing, i: int, k: int) -> float:
     """Row i of R M^-1 times column k of C^T."""
     share = pull(s, k)
     d = s.W[i * s.n_r + k]
-    return d + share * s.W[i * s.n_r + k + s.n_c] if share != 0.0 else d
+    return d + share * s.W[i * s.n_r + other(s, k)] if share != 0.0 else d
 
 
 def hold(s: Rubbing, i: int) -> bool:
@@ -67,7 +77,8 @@ def hold(s: Rubbing, i: int) -> bool:
         pivot -= s.L[k * r + j] * s.L[j * r + k]
         size += abs(s.L[k * r + j] * s.L[j * r + k])
     s.L[k * r + k] = pivot
-    if pivot > DEPENDENT * size:
+    # of a tangent that is held with its share of the normal's force the sign tells nothing
+    if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and i >= s.n_j + s.n_c and pull(s, i) != 0.0):
         s.n_held = k + 1
         return True
     return pivot > -DEPENDENT * size
@@ -97,7 +108,28 @@ def hold_modes(s: Rubbing) -> bool:
             if s.mode[c] >= SLIDES and s.loaded[c] == 1 - unloaded and not hold(s, s.n_j + c):
                 s.culprit = c
                 return False
+        if unloaded == 0:
+            hold_leaning(s)
     return True
+
+
+def hold_leaning(s: Rubbing) -> None:
+    """The tangents of loaded contacts that lean, whose normals depend on the rows held.
+
+    Three feet on a line share two normals and one tangent: their forces are known from these three rows.
+    """
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, i):
+            hold(s, i + s.n_c)
+
+
+def is_held(s: Rubbing, i: int) -> bool:
+    """Whether row i is among the rows held."""
+    found = False
+    for m in range(s.n_held):
+        found = found or s.held[m] == i
+    return found
 
 
 def hold_again(s: Rubbing) -> bool:
@@ -132,7 +164,7 @@ def push(s: Rubbing, i: int, x: float, a: Doubles) -> None:
     for j in range(n):
         a[j] += s.MR[i * n + j] * x
         if share != 0.0:
-            a[j] += share * s.MR[(i + s.n_c) * n + j] * x
+            a[j] += share * s.MR[other(s, i) * n + j] * x
 
 
 def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
@@ -219,7 +251,7 @@ def list_multipliers(s: Rubbing) -> None:
         s.multiplier[i] = s.multiplier[i] + s.x[m]
         share = pull(s, i)
         if share != 0.0:
-            s.multiplier[i + s.n_c] = s.multiplier[i + s.n_c] + share * s.x[m]
+            s.multiplier[other(s, i)] = s.multiplier[other(s, i)] + share * s.x[m]
 
 
 def project(s: Rubbing, t: float) -> bool:
@@ -289,4 +321,4 @@ def count_impulses(s: Rubbing, x: Doubles) -> None:
         add_impulse(s, i, x[m])
         share = pull(s, i)
         if share != 0.0:
-            add_impulse(s, i + s.n_c, share * x[m])
+            add_impulse(s, other(s, i), share * x[m])

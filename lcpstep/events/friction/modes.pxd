@@ -1,21 +1,25 @@
 cimport cython
-from lcpstep.events.friction.held cimport constrain, hold, hold_joints, hold_modes, list_multipliers
+from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
 from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.several cimport opened_or_closed
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, max
+from lcpstep.kernels.vectors cimport clear, copy, largest, product
+from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 cdef double EDGE
 
+@cython.locals(begins=bint)
 cdef Py_ssize_t decide(Rubbing s) noexcept nogil
-@cython.locals(some=bint, moves=bint)
+@cython.locals(some=bint, pressed=bint)
+cdef void rest_where_possible(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(some=bint, goes=bint)
 cdef bint begin_to_slide(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
@@ -31,7 +35,6 @@ cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept n
 @cython.locals(leaning=Py_ssize_t)
 cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
 cdef void stand_alone(Rubbing s) noexcept nogil
-@cython.locals(count=Py_ssize_t, depends=bint)
 cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
