@@ -1,5 +1,7 @@
 """Random scenes with friction; see `tests.random_friction`, which looks at any number of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,25 @@ def test_the_end_of_a_chattering_creates_no_energy(seed):
     """Walls and belts move; in 6000468 the other contact slides fast, and is not stopped with the one that hopped."""
     wrong, _ = complaints(seed)
     assert not wrong
+
+
+def in_another_unit(scene, unit):
+    """The same scene with gaps in another unit; forces of the normals are in another one, too."""
+    c = scene.contacts
+    friction = replace(c.friction, mu=unit * c.friction.mu)
+    return replace(scene, contacts=replace(c, G=unit * c.G, offset=unit * c.offset, friction=friction))
+
+
+@pytest.mark.parametrize("seed", [106, 1])
+def test_hops_end_in_whatever_unit_gaps_are_told(seed):
+    tolerance = 1e-10
+    method = EventDriven(tolerance, tolerance)
+    runs = [simulate(in_another_unit(draw(seed), unit), method) for unit in (1.0, 1e3, 1e-3)]
+    for run in runs[1:]:
+        assert run.status == Status.DONE
+        np.testing.assert_array_equal(run.impacts.kind, runs[0].impacts.kind)
+        np.testing.assert_allclose(run.impacts.time, runs[0].impacts.time, rtol=0, atol=tolerance)
+        np.testing.assert_allclose(run.q[-1], runs[0].q[-1], rtol=0, atol=tolerance)
 
 
 def test_two_sliding_contacts_with_several_answers_are_named():

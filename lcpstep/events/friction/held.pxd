@@ -9,7 +9,7 @@ from lcpstep.kernels.vectors cimport add, clear, copy, product
 from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
-cdef double DEPENDENT
+cdef double DEPENDENT, FREE
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
@@ -34,5 +34,6 @@ cdef bint is_on_rows(Rubbing s) noexcept nogil
 cdef bint take_rows(Rubbing s, double t) noexcept nogil
 cdef void push_by_change(Rubbing s, double* x) noexcept nogil
 cdef bint project(Rubbing s, double t) noexcept nogil
+cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
 cdef void count_impulses(Rubbing s, double* x) noexcept nogil

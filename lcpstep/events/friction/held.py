@@ -32,6 +32,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after
 
 DEPENDENT = 1e-12  # relative: what a row must have more of that the rows before it have not
+FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
 REFINEMENTS = 2
 
 
@@ -304,6 +305,29 @@ def push_by_change(s: Rubbing, x: Doubles) -> None:
     solve_held(s, s.change)
     for m in range(s.n_held):
         push(s, s.held[m], s.change[m], x)
+
+
+def lift(s: Rubbing, c: int) -> None:
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance.
+
+    Along its own way where a time cannot tell the difference, so that gaps that close at one instant, as those of two
+    corners of a block, go on closing together; else with the rows held where they are: what brings one of those back
+    takes the contact off its surface again, by more than the last hops of a chattering.
+    """
+    i, g, u, n = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c], s.n_q
+    way, speed = s.v, u
+    if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
+        way, speed = after(s.MR, i * n), s.W[i * s.n_r + i]
+        if s.n_held > 0:
+            copy(s.dv, way, n)
+            clear(s.shifted_rate, s.n_r)
+            constrain(s, s.dv, s.shifted_rate)
+            u = product(s.R, s.dv, i, n)
+            if abs(u) > FREE * speed:
+                way, speed = s.dv, u
+    for j in range(n):
+        s.q[j] -= way[j] * g / speed
+    s.gap[i] = 0.0
 
 
 def stop_rows(s: Rubbing) -> None:
