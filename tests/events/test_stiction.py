@@ -210,6 +210,15 @@ def nothing(t, q, u, p, out):
     pass
 
 
+def no_number(t, q, u, p, out):
+    out[0] = math.nan
+
+
+def beyond(t, q, u, p, out):
+    """Takes the velocities of the contacts for those of the coordinates."""
+    out[0] = 0.3 + u[1]
+
+
 def slope_gap(t, q, v, p, out):
     out[0] = q[1]
 
@@ -241,7 +250,15 @@ def curved(tangent):
         (lambda: belt(Coulomb(0.3, ALONG, mu_s=[0.4, 0.5])), "friction.mu_s"),
         (lambda: belt(Coulomb(stribeck, ALONG, mu_s=0.2), p=[0.1, 0.3, 1.0]), "friction.mu_s"),
         (lambda: belt(Coulomb(negative, ALONG)), "friction.mu: expected coefficients >= 0, got .*-0.1"),
-        (lambda: belt(Coulomb(nothing, ALONG)), "friction.mu: out .* not filled"),
+        (
+            lambda: belt(Coulomb(nothing, ALONG)),
+            r"friction.mu: out .* not filled .* sliding velocities u = \[0.2\]",
+        ),
+        (lambda: belt(Coulomb(no_number, ALONG)), "friction.mu: out .* not finite"),
+        (
+            lambda: belt(Coulomb(beyond, ALONG)),
+            r"friction.mu: f\(t, q, u, p, out\) with .* velocities u of shape \(1,\)",
+        ),
         (lambda: belt(Coulomb(0.3, [[0.0, 2.0]])), "friction.tangent: row 0 is parallel to the normal"),
         (lambda: belt(Coulomb(negative, [[0.0, 2.0]])), "friction.mu"),
         (lambda: curved(along_the_normal), "friction.tangent: row 0 is parallel"),
