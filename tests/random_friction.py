@@ -267,7 +267,11 @@ def resolved(scene, run, end):
     for begin, stop, step in [*close_impacts(run, end), (end, end, FINEST)]:
         for goal, h in ((begin, FINEST), (stop, step)):
             if goal > now and (goal - now) / h < MOST:
-                part = replace(scene, q0=q, v0=v, t_span=(now, goal))
+                deep = np.maximum(
+                    -scene.gap(now, q, v)[0], 0.0
+                )  # what steps have passed a surface by is no gap
+                surfaces = replace(scene.contacts, offset=scene.contacts.offset + 2.0 * deep)
+                part = replace(scene, q0=q, v0=v, t_span=(now, goal), contacts=surfaces)
                 done = simulate(part, Moreau((goal - now) / math.ceil((goal - now) / h)), keep=[goal])
                 q, v, now = done.q[-1], done.v[-1], done.t[-1]
     return q if now == end else np.full(scene.n_q, math.inf)
