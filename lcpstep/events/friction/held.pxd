@@ -1,7 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport (
-    add_impulse, free_motion, measure_biases, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
-)
+from lcpstep.events.friction.equations cimport add_impulse, free_motion, measure_biases, measure_rates, measure_rows
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.acceleration cimport inverse_mass
 from lcpstep.kernels.dynamics cimport total_force
@@ -9,7 +7,7 @@ from lcpstep.kernels.vectors cimport add, clear, copy, product
 from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
-cdef double DEPENDENT, FREE
+cdef double DEPENDENT
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
@@ -29,11 +27,5 @@ cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept n
 cdef void accelerate(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef void map_forces(Rubbing s) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
-@cython.locals(zero=bint)
-cdef bint is_on_rows(Rubbing s) noexcept nogil
-cdef bint take_rows(Rubbing s, double t) noexcept nogil
-cdef void push_by_change(Rubbing s, double* x) noexcept nogil
-cdef bint project(Rubbing s, double t) noexcept nogil
-cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
 cdef void count_impulses(Rubbing s, double* x) noexcept nogil

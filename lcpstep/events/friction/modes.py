@@ -223,8 +223,7 @@ def adopt_modes(s: Rubbing) -> int:
 def stand_alone(s: Rubbing) -> None:
     """Of those that lean those stick that nothing else keeps from sliding, until their forces leave the cone.
 
-    Of feet that share a direction one sticks and the others lean on it. What is wedged between two surfaces, or
-    stands on three feet, leans with the forces found: to hold a tangent too would leave a normal without its force.
+    What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
     """
     for c in range(s.n_c):
         if s.mode[c] == LEANS and not (hold_modes(s) and is_carried(s, s.n_j + s.n_c + c)):
