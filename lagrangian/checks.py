@@ -187,20 +187,32 @@ def mass_matrix(name: str, value: Array) -> Array:
     return value
 
 
-def evaluate(name: str, f: Callback, at: tuple[float, Array, Array, Array], shape: tuple[int, ...]) -> Array:
-    """Value of a callback in plain Python; an error if it does not fill `out` of the given shape."""
+def evaluate(
+    name: str,
+    f: Callback,
+    at: tuple[float, Array, Array, Array],
+    shape: tuple[int, ...],
+    speeds: tuple[str, str] = ("v", ""),
+) -> Array:
+    """Value of a callback in plain Python; an error if it does not fill `out` of the given shape.
+
+    speeds : what its third argument is called, and what it is if not the velocity of the coordinates
+    """
     out = np.full(shape, np.nan)
     t, q, v, p = at
-    where = f"at t = {t:.9g}, q = {shown(q)}, v = {shown(v)}"
+    letter, words = speeds
+    where = f"at t = {t:.9g}, q = {shown(q)}, {words}{letter} = {shown(v)}"
+    sizes = f"q of shape {q.shape}, {words}{letter}" if words else f"q, {letter}"
+    call = f"f(t, q, {letter}, p, out)"
     try:
         returned = python(f)(t, read_only(q), read_only(v), read_only(p), out)
     except Exception as error:  # the user's code may raise anything; the message says whose it is
         raise ValueError(
-            f"{name}: f(t, q, v, p, out) with q, v of shape {q.shape}, p of shape {p.shape} and out of "
-            f"shape {shape} failed {where}: {said(error)}"
+            f"{name}: {call} with {sizes} of shape {v.shape}, p of shape {p.shape} and out of "
+            f"shape {shape} failed {where}: {said(error, letter)}"
         ) from error
     if returned is not None:
-        raise ValueError(f"{name}: expected f(t, q, v, p, out) to fill `out`, but it returned {returned!r}")
+        raise ValueError(f"{name}: expected {call} to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
         raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {shown(out)}")
     return out
@@ -213,10 +225,10 @@ def read_only(x: Array) -> Array:
     return view
 
 
-def said(error: BaseException) -> str:
-    """What an exception says, and what it is."""
+def said(error: BaseException, letter: str = "v") -> str:
+    """What an exception says, and what it is; what the third argument of the callback is called."""
     if "read-only" in str(error):
-        return f"{error}; q, v and p are not the callback's to change"
+        return f"{error}; q, {letter} and p are not the callback's to change"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 

@@ -144,7 +144,8 @@ class Coulomb(Pickled):
             mu = np.asarray(self.mu)
             return mu, mu if self.mu_s is None else np.asarray(self.mu_s)
         mu, still = (
-            checks.evaluate("friction.mu", self.mu, (t, q, x, p), u.shape) for x in (u, np.zeros(u.shape))
+            checks.evaluate("friction.mu", self.mu, (t, q, x, p), u.shape, ("u", "sliding velocities "))
+            for x in (u, np.zeros(u.shape))
         )
         for x, value in ((u, mu), (0.0 * u, still)):
             if np.any(value < 0.0):

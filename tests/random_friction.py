@@ -10,6 +10,7 @@ import collections
 import itertools
 import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +19,8 @@ from lcpstep import EventDriven, Kind, Moreau, SimulationError, Status, energy, 
 
 G0 = 9.81
 STEP = 1e-4
+FINEST = STEP / 64.0
+MOST = 3e6  # steps
 ONCE = 1e-9  # s
 PARADOX = (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE)
 
@@ -157,9 +160,11 @@ def left_open(scene, run, end):
         return True
     times = [(t, True) for t in impacts] + [(t, False) for t in np.linspace(0.0, run.t[-1], 400)]
     for t, strikes in times:
-        if not 1e-9 < t <= end:
+        if t > end:
             continue
-        q, v = (x[0] for x in run.at(np.array([t - 1e-9 if strikes else t])))
+        before = strikes and t <= scene.t_span[0] + ONCE
+        at = t - ONCE if strikes and not before else t
+        q, v = (scene.q0, scene.v0) if before else (x[0] for x in run.at(np.array([at])))
         g, u = scene.gap(t, q, v)
         closed = np.flatnonzero(g < 1e-6)
         D, mu = np.vstack([c.G[closed], f.tangent[closed]]), f.mu[closed]
@@ -227,12 +232,49 @@ def parting(scene, run):
     if not np.any(apart):
         return None
     last = t[: np.argmax(apart) + 1]
-    for finer in (16.0, 64.0):  # the second where an impact falls into hops that the first does not resolve
-        finest = simulate(scene, Moreau(STEP / finer), keep=last)
+    for step in (STEP / 16.0, FINEST):  # the second where an impact falls into hops shorter than the first
+        finest = simulate(scene, Moreau(step), keep=last)
         left = np.max(np.abs(finest.q[-1] - q[len(last) - 1])) if len(finest.t) == len(last) else math.inf
         if left < 0.5 * off[len(last) - 1]:
             return None
+    if np.max(np.abs(resolved(scene, run, last[-1]) - q[len(last) - 1])) < 0.5 * off[len(last) - 1]:
+        return None
     return last[-1], off[len(last) - 1]
+
+
+def close_impacts(run, end):
+    """Where impacts of different contacts follow closer on one another than small steps resolve: begin, end, step."""
+    log = run.impacts[(run.impacts.kind == Kind.IMPACT) & (run.impacts.time < end)]
+    found = []
+    for one, two in itertools.pairwise(log):
+        apart = two.time - one.time
+        if one.contact == two.contact or not ONCE < apart < 10.0 * FINEST:
+            continue
+        begin = max(one.time - FINEST, run.t[0])
+        if found and begin <= found[-1][1]:
+            begin, _, step = found.pop()
+            apart = min(apart, 5.0 * step)
+        found.append((begin, min(two.time + FINEST, end), 0.2 * apart))
+    return found
+
+
+def resolved(scene, run, end):
+    """Where `Moreau` comes to by the smallest steps, and smaller ones where impacts of a run are closer than these.
+
+    A contact that hops by less than a step is as good as closed to it, and struck together with another one.
+    """
+    q, v, now = scene.q0, scene.v0, scene.t_span[0]
+    for begin, stop, step in [*close_impacts(run, end), (end, end, FINEST)]:
+        for goal, h in ((begin, FINEST), (stop, step)):
+            if goal > now and (goal - now) / h < MOST:
+                deep = np.maximum(
+                    -scene.gap(now, q, v)[0], 0.0
+                )  # what steps have passed a surface by is no gap
+                surfaces = replace(scene.contacts, offset=scene.contacts.offset + 2.0 * deep)
+                part = replace(scene, q0=q, v0=v, t_span=(now, goal), contacts=surfaces)
+                done = simulate(part, Moreau((goal - now) / math.ceil((goal - now) / h)), keep=[goal])
+                q, v, now = done.q[-1], done.v[-1], done.t[-1]
+    return q if now == end else np.full(scene.n_q, math.inf)
 
 
 if __name__ == "__main__":

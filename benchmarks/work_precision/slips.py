@@ -68,10 +68,10 @@ EVENTS: dict[str, tuple[Callable[[float], Scene], Run]] = {
 }
 
 
-def timed(run: Callable[..., Any], *given: Any) -> tuple[float, Any]:
+def timed(run: Callable[..., Any], *given: Any, **named: Any) -> tuple[float, Any]:
     """CPU time [s], and what was made."""
     begin = time.process_time()
-    made = run(*given)
+    made = run(*given, **named)
     return time.process_time() - begin, made
 
 
@@ -113,7 +113,7 @@ def periods() -> None:
         truth = scene.exact(times)[0] if scene.exact else reference(scene, times)
         methods: list[Any] = [EventDriven(), *(Moreau(h) for h in (1e-1, 1e-2, 1e-3, 1e-4))]
         for method in methods:
-            costs = [timed(simulate, scene, method, times) for _ in range(3)]
+            costs = [timed(simulate, scene, method, keep=times) for _ in range(3)]
             error = float(np.max(np.abs(costs[0][1].q - truth)))
             least = min(cost for cost, _ in costs)
             print(

@@ -91,18 +91,28 @@ def carried(solve: Solver) -> float:
 
 
 states(
-    "stick-slip-belt", "states", scenes.stick_slip_belt, period=TURN, moreau=FIRST_ORDER, event_driven=1e-10
+    "stick-slip-belt",
+    "states",
+    scenes.stick_slip_belt,
+    period=TURN,
+    moreau=FIRST_ORDER,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
 )
 
 
-@check("stick-slip-belt", "period of the orbit", period=TURN, event_driven=1e-11)
+@check("stick-slip-belt", "period of the orbit", period=TURN, event_driven=1e-11, located=SECOND_ORDER)
 def orbit_period(solve: Solver) -> float:
     slips = times(solve(scenes.stick_slip_belt()), Kind.SLIP)
     return float(np.max(np.abs(np.diff(slips) - stick_slip_period(0.2, 0.6, 1.0))))
 
 
 @check(
-    "stick-slip-belt", "period, Stribeck's coefficient, against a quadrature", period=TURN, event_driven=1e-10
+    "stick-slip-belt",
+    "period, Stribeck's coefficient, against a quadrature",
+    period=TURN,
+    event_driven=1e-10,
+    located=SECOND_ORDER,
 )
 def stribeck_period(solve: Solver) -> float:
     slips = times(solve(scenes.stick_slip_belt(decay=0.3)), Kind.SLIP)

@@ -1,15 +1,24 @@
 cimport cython
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem, slip, solve_contacts
+from lcpstep.kernels.repose cimport moves, stay
+from lcpstep.kernels.vectors cimport clear
 from lcpstep.pointers cimport abs
 
 cdef double AT_REST
 cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY
 
-@cython.locals(again=bint)
 cdef bint solve_steps(
     ContactProblem c, Coefficients k, Py_ssize_t* sticks, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f
 ) noexcept nogil
+@cython.locals(some=bint, turns=bint)
+cdef bint come_to_rest(
+    ContactProblem c, Coefficients k, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f
+) noexcept nogil
+@cython.locals(some=bint, pressed=bint)
+cdef bint give_way(ContactProblem c, Coefficients k, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(some=bint, was=bint)
+cdef void rest_where_possible(
+    ContactProblem c, Py_ssize_t* sticks, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f
+) noexcept nogil
 cdef double terms(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t f) noexcept nogil
-@cython.locals(pressed=bint)
-cdef bint slips(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t f) noexcept nogil

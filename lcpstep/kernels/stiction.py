@@ -1,8 +1,9 @@
 """Contacts of a step with coefficients of friction that differ between sticking and sliding.
 
 What stuck before the step goes on with mu_s as long as that keeps it from sliding, and has mu otherwise. What slides
-has mu; where it would turn about within the step it comes through rest, and sticks if mu_s holds it there. Each
-contact changes from mu to mu_s and back at most, so that this ends.
+has mu; where it would turn about within the step it comes through rest, and sticks if mu_s holds it there, whether or
+not it is pressed meanwhile: of more feet than a body stands on some are not. Each contact changes from mu to mu_s and
+back at most, so that this ends.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem, slip, solve_contacts
+    from lcpstep.kernels.repose import moves, stay
+    from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import Doubles, Indices, abs
 
-AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding
+AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; see `repose`
 SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
 
 
@@ -32,15 +35,50 @@ def solve_steps(
     while True:
         if not solve_contacts(c, n_a, n_f):
             return False
-        again = False
-        for f in range(n_f):
-            i = c.ids[c.carrier[f]]
-            if slips(c, n_a, n_f, f) and k.tried[i] == STICKS:
-                k.tried[i], c.mu[i], again = GIVES_WAY, k.sliding[i], True
-            elif slips(c, n_a, n_f, f) and k.tried[i] == SLIDES and slip(c, n_a, n_f, f) * sliding[i] <= 0.0:
-                k.tried[i], c.mu[i], again = STICKS, k.sticking[i], True
-        if not again:
+        if come_to_rest(c, k, sliding, n_a, n_f):
+            continue
+        rest_where_possible(c, sticks, sliding, n_a, n_f)
+        if not give_way(c, k, n_a, n_f):
             return True
+
+
+def come_to_rest(c: ContactProblem, k: Coefficients, sliding: Doubles, n_a: int, n_f: int) -> bool:
+    """Give those that would turn about the coefficient of what sticks; whether one of them is pressed."""
+    some = False
+    for f in range(n_f):
+        i = c.ids[c.carrier[f]]
+        turns = k.tried[i] == SLIDES and slip(c, n_a, n_f, f) * sliding[i] <= 0.0
+        if turns and moves(c, c.impulse, n_a + f, n_a + n_f):
+            k.tried[i], c.mu[i] = STICKS, k.sticking[i]
+            some = some or c.impulse[c.carrier[f]] > 0.0
+    return some
+
+
+def give_way(c: ContactProblem, k: Coefficients, n_a: int, n_f: int) -> bool:
+    """Give those that are pressed, and not kept from sliding, the coefficient of what slides; are there any?"""
+    some = False
+    for f in range(n_f):
+        i = c.ids[c.carrier[f]]
+        pressed = c.impulse[c.carrier[f]] > 0.0
+        if k.tried[i] == STICKS and pressed and moves(c, c.impulse, n_a + f, n_a + n_f):
+            k.tried[i], c.mu[i], some = GIVES_WAY, k.sliding[i], True
+    return some
+
+
+def rest_where_possible(c: ContactProblem, sticks: Indices, sliding: Doubles, n_a: int, n_f: int) -> None:
+    """Take impulses that leave contacts at rest for those found, where these set one in motion that has been so.
+
+    sticks, sliding : (n_c,)   whether a contact stuck before the step; its sliding velocity then
+    """
+    some = False
+    for f in range(n_f if n_f > 1 else 0):
+        i = c.ids[c.carrier[f]]
+        was = sticks[i] == 1 or slip(c, n_a, n_f, f) * sliding[i] <= 0.0
+        was = was and c.impulse[c.carrier[f]] > 0.0
+        some = some or (was and moves(c, c.impulse, n_a + f, n_a + n_f))
+    if some:
+        clear(c.sum, n_a)
+        stay(c, n_a, n_f)
 
 
 def terms(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
@@ -50,9 +88,3 @@ def terms(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
     for b in range(m):
         size += abs(c.mobility[(n_a + f) * m + b] * c.impulse[b])
     return size
-
-
-def slips(c: ContactProblem, n_a: int, n_f: int, f: int) -> bool:
-    """Whether the impulses found leave contact f closed, but do not keep it from sliding."""
-    pressed = c.impulse[c.carrier[f]] > 0.0
-    return pressed and abs(slip(c, n_a, n_f, f)) > AT_REST * terms(c, n_a, n_f, f)

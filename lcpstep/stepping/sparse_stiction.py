@@ -67,24 +67,23 @@ class Stiction:
             if impact or not self.kernel.two or not point.solved:
                 return point
             u, size = self.rates(coupled, problem, point)
-            slips = (point.modes > STICK) & (np.abs(u) > AT_REST * size)
-            gives_way = slips & (tried == STICKS)
-            turns = slips & (tried == SLIDES) & (u * sliding <= 0.0)
-            if not np.any(gives_way | turns):
+            moves = problem.rough & (np.abs(u) > AT_REST * size)
+            gives_way = moves & (point.modes > STICK) & (tried == STICKS)
+            turns = moves & (tried == SLIDES) & (u * sliding <= 0.0)
+            if not np.any(gives_way | (turns & (point.modes > STICK))):
                 return point
             tried = np.where(gives_way, GIVES_WAY, np.where(turns, STICKS, tried))
             mu = np.where(gives_way, self.mu, np.where(turns, self.mu_s, mu))
             modes, p = point.modes, point.p
 
     def note(self, coupled: Coupled, problem: Problem, point: Point, u: Array, rebound: Any) -> None:
-        """Which contacts do not slide at the end of a step.
+        """Which contacts do not slide at the end of a step, those among them that nothing presses at the moment.
 
         u, rebound : (n_c,)   their sliding velocities then; what restitution has added to those of the problem
         """
         size = self.rates(coupled, problem, point)[1]
         still = ((point.modes == STICK) & (rebound == 0.0)) | (np.abs(u) <= AT_REST * size)
-        pressed = point.p[coupled.n_j : coupled.n_j + coupled.n_c] > 0.0
-        self.sticks = problem.rough & pressed & still
+        self.sticks = problem.rough & still
 
     def rates(self, coupled: Coupled, problem: Problem, point: Point) -> tuple[Array, Array]:
         """Sliding velocities at an answer, and the sizes of their terms."""

@@ -1,10 +1,12 @@
 """Random scenes with friction; see `tests.random_friction`, which looks at any number of them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from lcpstep import EventDriven, Status, simulate
-from tests.random_friction import answers, complaints, draw, nowhere_to_go
+from lcpstep import EventDriven, Kind, Moreau, Status, simulate
+from tests.random_friction import answers, close_impacts, complaints, draw, left_open, nowhere_to_go
 
 PER_TEST = 20
 
@@ -32,6 +34,25 @@ def test_the_end_of_a_chattering_creates_no_energy(seed):
     assert not wrong
 
 
+def in_another_unit(scene, unit):
+    """The same scene with gaps in another unit; forces of the normals are in another one, too."""
+    c = scene.contacts
+    friction = replace(c.friction, mu=unit * c.friction.mu)
+    return replace(scene, contacts=replace(c, G=unit * c.G, offset=unit * c.offset, friction=friction))
+
+
+@pytest.mark.parametrize("seed", [106, 1])
+def test_hops_end_in_whatever_unit_gaps_are_told(seed):
+    tolerance = 1e-10
+    method = EventDriven(tolerance, tolerance)
+    runs = [simulate(in_another_unit(draw(seed), unit), method) for unit in (1.0, 1e3, 1e-3)]
+    for run in runs[1:]:
+        assert run.status == Status.DONE
+        np.testing.assert_array_equal(run.impacts.kind, runs[0].impacts.kind)
+        np.testing.assert_allclose(run.impacts.time, runs[0].impacts.time, rtol=0, atol=tolerance)
+        np.testing.assert_allclose(run.q[-1], runs[0].q[-1], rtol=0, atol=tolerance)
+
+
 def test_two_sliding_contacts_with_several_answers_are_named():
     """A block on belts that run against each other may stay, or tip over either foot."""
     scene = draw(5000929)
@@ -44,6 +65,34 @@ def test_two_sliding_contacts_with_several_answers_are_named():
     run = simulate(scene, EventDriven())
     assert run.status == Status.PAINLEVE_INDETERMINATE
     assert "beside what else is held" in run.message
+
+
+def test_a_body_wedged_between_two_walls_is_let_go_as_the_force_along_the_smooth_one_turns():
+    """Three forces hold two coordinates: the friction of the rough wall alone is beyond its cone all the time."""
+    scene = draw(7000502)
+    smooth, force = scene.contacts.friction.tangent[0], scene.system.force
+    first = np.arccos(-smooth @ np.array(force.constant) / (smooth @ np.array(force.cosine))) / force.omega
+    run = simulate(scene, EventDriven())
+    let_go = run.impacts.time[(run.impacts.kind == Kind.RELEASE) & (run.impacts.time > 0.6)]
+    expected = first + 2.0 * np.pi / force.omega * np.array([1, 2])
+    np.testing.assert_allclose(let_go, expected, atol=1e-10)
+    assert complaints(7000502) == ([], "DONE")
+
+
+def test_impacts_closer_than_small_steps_are_judged_by_smaller_ones():
+    """One contact hops by 1e-7 as the other is struck; then they strike in turn, eight times within a microsecond."""
+    scene = draw(7002395)
+    run = simulate(scene, EventDriven(1e-10, 1e-10))
+    (window,) = close_impacts(run, 0.36)
+    assert window[2] < 1e-8
+    assert complaints(7002395) == ([], "DONE")
+
+
+def test_a_start_with_several_answers_is_left_open():
+    scene = draw(5000929)
+    assert left_open(scene, simulate(scene, Moreau(1e-4)), 0.0)
+    scene = draw(7000502)
+    assert not left_open(scene, simulate(scene, Moreau(1e-4)), 0.0)
 
 
 @pytest.mark.parametrize("seed", [37, 482, 725])

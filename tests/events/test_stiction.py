@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Moreau, SimulationError, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, SimulationError, Status, simulate
 
 G0 = 9.81
 FLOOR, ALONG = [[0.0, 1.0]], [[1.0, 0.0]]
@@ -157,6 +157,40 @@ def test_feet_that_share_a_direction_hold_together_with_what_each_holds_at_rest(
     assert abs(fine - x) < 1e-4
 
 
+def on_feet(feet, mu, mu_s, pull, turn=0.0, rate=0.0):
+    """A block that is pulled, a little below its centre, by `pull` of its weight, and more with the time."""
+    ramp = Harmonic(constant=[pull * G0, -G0, turn], sine=[rate * G0, 0.0, 0.0], omega=1.0)
+    friction = Coulomb(mu, [[1.0, 0.0, 0.1]] * len(feet), mu_s=mu_s)
+    return Scene(
+        system=LinearSystem(np.diag([1.0, 1.0, 0.1]), force=ramp), q0=[0.0] * 3, v0=[0.0] * 3, t_span=(0.0, 0.3),
+        contacts=LinearContacts([[0.0, 1.0, x] for x in feet], friction=friction),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(0.01), Located(0.01, 4), Moreau(1e-3), Moreau(0.01, tolerance=1e-5)]
+)
+@pytest.mark.parametrize(
+    ("feet", "mu", "mu_s", "pull", "turn"),
+    [
+        ([0.3, 0.1, -0.1, -0.3], 0.3, 0.6, 0.59, -0.5),  # two feet carry all, or three
+        ([0.3, 0.0, -0.3], [0.3, 0.1, 0.3], None, 0.25, 0.0),  # held by the outer feet, not by the middle one
+    ],
+)
+def test_more_feet_than_are_needed_hold_where_their_cones_can(method, feet, mu, mu_s, pull, turn):
+    run = simulate(on_feet(feet, mu, mu_s, pull, turn), method)
+    assert run.status == Status.DONE
+    assert np.max(np.abs(run.q)) < 1e-30
+
+
+def test_more_feet_than_are_needed_hold_up_to_what_their_cones_can_in_any_way():
+    """The outer feet carry what they can: the turning moment leaves nothing to the one in the middle at last."""
+    run = simulate(on_feet([0.3, 0.0, -0.3], [0.3, 0.1, 0.3], None, 0.2, rate=1.0), EventDriven())
+    begin = math.asin(0.3 - 0.2)
+    assert abs(np.min(run.impacts.time[run.impacts.kind == Kind.SLIP]) - begin) < 1e-9
+    assert np.max(np.abs(run.at(np.linspace(0.0, begin, 50))[0])) < 1e-15
+
+
 def test_a_coefficient_that_becomes_negative_on_the_way_is_named():
     """mu = 0.5 - 0.2 u, of a block that is pulled faster and faster."""
     pulled = belt(Coulomb(falling, ALONG), v0=0.1, k=0.0, force=[30.0, -2.0 * G0], p=[0.5, 0.2])
@@ -174,6 +208,15 @@ def negative(t, q, u, p, out):
 
 def nothing(t, q, u, p, out):
     pass
+
+
+def no_number(t, q, u, p, out):
+    out[0] = math.nan
+
+
+def beyond(t, q, u, p, out):
+    """Takes the velocities of the contacts for those of the coordinates."""
+    out[0] = 0.3 + u[1]
 
 
 def slope_gap(t, q, v, p, out):
@@ -207,7 +250,15 @@ def curved(tangent):
         (lambda: belt(Coulomb(0.3, ALONG, mu_s=[0.4, 0.5])), "friction.mu_s"),
         (lambda: belt(Coulomb(stribeck, ALONG, mu_s=0.2), p=[0.1, 0.3, 1.0]), "friction.mu_s"),
         (lambda: belt(Coulomb(negative, ALONG)), "friction.mu: expected coefficients >= 0, got .*-0.1"),
-        (lambda: belt(Coulomb(nothing, ALONG)), "friction.mu: out .* not filled"),
+        (
+            lambda: belt(Coulomb(nothing, ALONG)),
+            r"friction.mu: out .* not filled .* sliding velocities u = \[0.2\]",
+        ),
+        (lambda: belt(Coulomb(no_number, ALONG)), "friction.mu: out .* not finite"),
+        (
+            lambda: belt(Coulomb(beyond, ALONG)),
+            r"friction.mu: f\(t, q, u, p, out\) with .* velocities u of shape \(1,\)",
+        ),
         (lambda: belt(Coulomb(0.3, [[0.0, 2.0]])), "friction.tangent: row 0 is parallel to the normal"),
         (lambda: belt(Coulomb(negative, [[0.0, 2.0]])), "friction.mu"),
         (lambda: curved(along_the_normal), "friction.tangent: row 0 is parallel"),

@@ -22,7 +22,8 @@ cdef void measure_velocities(Rubbing s, double* v) noexcept nogil
 cdef double size_of(Rubbing s, Py_ssize_t i, double* v) noexcept nogil
 cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef double speed_tolerance(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef double least_effect(Rubbing s, Py_ssize_t i, double* x) noexcept nogil
 @cython.locals(own=bint)
-cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil

@@ -145,26 +145,23 @@ def gap_size(s: Rubbing, c: int) -> float:
 
 def gap_tolerance(s: Rubbing, c: int) -> float:
     """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
-    i, least = s.n_j + c, -1.0
+    return least_effect(s, s.n_j + c, s.q)
+
+
+def speed_tolerance(s: Rubbing, i: int) -> float:
+    """The velocity of row i that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, i, s.v)
+
+
+def least_effect(s: Rubbing, i: int, x: Doubles) -> float:
+    """What row i can change of itself without changing an x by more than its tolerance, in whatever unit it has."""
+    least = -1.0
     for j in range(s.n_q):
         moved = abs(s.MR[i * s.n_q + j])
         if moved > 0.0:
-            here = (s.atol + s.rtol * abs(s.q[j])) * s.W[i * s.n_r + i] / moved
+            here = (s.atol + s.rtol * abs(x[j])) * s.W[i * s.n_r + i] / moved
             least = here if least < 0.0 or here < least else least
     return max(least, 0.0)
-
-
-def lift(s: Rubbing, c: int) -> None:
-    """Put q onto the surface of contact c, which it misses by no more than the tolerance.
-
-    Along its own way where a time cannot tell the difference, so that gaps that close at one instant, as those of two
-    corners of a block, go on closing together.
-    """
-    i, g, u = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c]
-    own = s.rate[i] == 0.0 and u < 0.0 and abs(g) <= -s.clock.untold(s.length) * u
-    for j in range(s.n_q):
-        s.q[j] -= s.v[j] * g / u if own else s.MR[i * s.n_q + j] * g / s.W[i * s.n_r + i]
-    s.gap[i] = 0.0
 
 
 def apply(s: Rubbing, i: int, p: float) -> None:

@@ -1,6 +1,8 @@
 cimport cython
-from lcpstep.events.friction.equations cimport gap_size, measure_friction, measure_gaps, measure_rates, size_of
-from lcpstep.events.friction.held cimport right_hand_side
+from lcpstep.events.friction.equations cimport (
+    gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, size_of, speed_tolerance
+)
+from lcpstep.events.friction.held cimport is_held, right_hand_side
 from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
@@ -8,16 +10,15 @@ from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, max, min
 
-cdef Py_ssize_t OPEN, SLIDES, STICKS, STAGES, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
-cdef double NEAR, RESOLVED, OFF
+cdef Py_ssize_t LEANS, OPEN, SLIDES, STICKS, STAGES, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
+cdef double NEAR, RESOLVED, LOW, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
 cdef bint look_at_stage(Rubbing s, Py_ssize_t stage, double t, double* y) noexcept nogil
 @cython.locals(opened=bint)
 cdef bint read(Rubbing s, double t, double* y) noexcept nogil
-@cython.locals(found=bint)
-cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
+cdef double no_gap(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(fine=bint, error=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil

@@ -10,18 +10,20 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
         gap_size,
+        gap_tolerance,
         measure_friction,
         measure_gaps,
         measure_rates,
         size_of,
+        speed_tolerance,
     )
-    from lcpstep.events.friction.held import right_hand_side
+    from lcpstep.events.friction.held import is_held, right_hand_side
     from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import (
@@ -42,6 +44,7 @@ RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest v
 REFINEMENTS = 6  # of an event's time by repeated steps
 NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
 UNKNOWN = -2  # in place of a guard: one is not finite
+LOW = 1e-2  # of a hop's height
 OFF = 1.0  # value of a guard that a contact does not have
 
 
@@ -75,7 +78,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             s.value[k] = s.gap[i]
             total += s.gap[i]
             continue
-        if is_held(s, i):
+        if is_held(s, i) or (s.mode[c] == LEANS and is_held(s, i + s.n_c)):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
         if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1:
@@ -88,32 +91,32 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
     return total - total == 0.0
 
 
-def is_held(s: Rubbing, i: int) -> bool:
-    """Whether row i is among the rows held."""
-    found = False
-    for m in range(s.n_held):
-        found = found or s.held[m] == i
-    return found
-
-
 def begin_guards(s: Rubbing, t: float) -> bool:
     """Bands of the guards, and which of them are beyond theirs, as modes begin; False where one is not finite."""
     if not look(s, t, s.y):
         return False
-    # The second is for where all terms vanish, as in the tail of a pulse
-    forces, nothing = force_noise(s), NOISE * s.atol
+    forces = force_noise(s)
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            s.band[k] = max(NOISE * gap_size(s, c) + nothing, -2.0 * s.value[k])  # deeper than it is now
+            s.band[k] = max(NOISE * gap_size(s, c) + no_gap(s, i), -2.0 * s.value[k])  # deeper than it is now
         else:
-            s.band[k] = forces + nothing
-            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + nothing
+            none = NOISE * speed_tolerance(s, i) / s.W[i * s.n_r + i]
+            s.band[k] = forces + none
+            s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + none
             if s.mode[c] == SLIDES:
-                s.band[k + 1] = NOISE * size_of(s, i + s.n_c, s.v) + nothing
+                T = i + s.n_c
+                s.band[k + 1] = NOISE * (size_of(s, T, s.v) + speed_tolerance(s, T))
         for g in range(k, k + GUARDS):
             s.armed[g] = 1 if s.value[g] > s.band[g] else 0
     return True
+
+
+def no_gap(s: Rubbing, i: int) -> float:
+    """The gap of row i that is none where all its terms vanish: little beside a hop that begins."""
+    least, u = NOISE * gap_tolerance(s, i - s.n_j), product(s.R, s.v, i, s.n_q) + s.rate[i]
+    alpha = product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
+    return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
 
 
 def first_event(s: Rubbing, h: float) -> int:

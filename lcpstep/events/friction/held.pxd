@@ -1,21 +1,23 @@
 cimport cython
-from lcpstep.events.friction.equations cimport (
-    add_impulse, free_motion, measure_biases, measure_friction, measure_gaps, measure_rates, measure_rows, renew_mass, respond
-)
+from lcpstep.events.friction.equations cimport add_impulse, free_motion, measure_biases, measure_rates, measure_rows
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.acceleration cimport inverse_mass
 from lcpstep.kernels.dynamics cimport total_force
 from lcpstep.kernels.vectors cimport add, clear, copy, product
 from lcpstep.pointers cimport abs, after
 
-cdef Py_ssize_t STICKS, SLIDES, REFINEMENTS
+cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
 cdef double DEPENDENT
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double entry(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil
+cdef void hold_leaning(Rubbing s) noexcept nogil
+@cython.locals(found=bint)
+cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint hold_again(Rubbing s) noexcept nogil
 cdef void solve_held(Rubbing s, double* x) noexcept nogil
 cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
@@ -25,10 +27,5 @@ cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept n
 cdef void accelerate(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef void map_forces(Rubbing s) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
-@cython.locals(zero=bint)
-cdef bint is_on_rows(Rubbing s) noexcept nogil
-cdef bint take_rows(Rubbing s, double t) noexcept nogil
-cdef void push_by_change(Rubbing s, double* x) noexcept nogil
-cdef bint project(Rubbing s, double t) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
 cdef void count_impulses(Rubbing s, double* x) noexcept nogil

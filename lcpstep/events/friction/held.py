@@ -11,19 +11,15 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import SLIDES, STICKS
+from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
         add_impulse,
         free_motion,
         measure_biases,
-        measure_friction,
-        measure_gaps,
         measure_rates,
         measure_rows,
-        renew_mass,
-        respond,
     )
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.acceleration import inverse_mass
@@ -36,18 +32,28 @@ REFINEMENTS = 2
 
 
 def pull(s: Rubbing, i: int) -> float:
-    """How much of the tangent's force comes with that of row i: -s mu for a normal that slides or leans."""
+    """How much of the `other` force of its contact comes with that of row i.
+
+    -s mu of the tangent's with a normal that slides or leans; the inverse of the normal's where the tangent of a
+    contact that leans is held.
+    """
     c = i - s.n_j
     if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
         return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
-    return 0.0
+    c -= s.n_c
+    return -s.direction[c] / s.mu_s[c] if c >= 0 and s.mode[c] == LEANS else 0.0
+
+
+def other(s: Rubbing, i: int) -> int:
+    """The tangent of normal i, the normal of tangent i."""
+    return i + s.n_c if i < s.n_j + s.n_c else i - s.n_c
 
 
 def entry(s: Rubbing, i: int, k: int) -> float:
     """Row i of R M^-1 times column k of C^T."""
     share = pull(s, k)
     d = s.W[i * s.n_r + k]
-    return d + share * s.W[i * s.n_r + k + s.n_c] if share != 0.0 else d
+    return d + share * s.W[i * s.n_r + other(s, k)] if share != 0.0 else d
 
 
 def hold(s: Rubbing, i: int) -> bool:
@@ -67,7 +73,8 @@ def hold(s: Rubbing, i: int) -> bool:
         pivot -= s.L[k * r + j] * s.L[j * r + k]
         size += abs(s.L[k * r + j] * s.L[j * r + k])
     s.L[k * r + k] = pivot
-    if pivot > DEPENDENT * size:
+    # of a tangent that is held with its share of the normal's force the sign tells nothing
+    if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and i >= s.n_j + s.n_c and pull(s, i) != 0.0):
         s.n_held = k + 1
         return True
     return pivot > -DEPENDENT * size
@@ -97,7 +104,28 @@ def hold_modes(s: Rubbing) -> bool:
             if s.mode[c] >= SLIDES and s.loaded[c] == 1 - unloaded and not hold(s, s.n_j + c):
                 s.culprit = c
                 return False
+        if unloaded == 0:
+            hold_leaning(s)
     return True
+
+
+def hold_leaning(s: Rubbing) -> None:
+    """The tangents of loaded contacts that lean, whose normals depend on the rows held.
+
+    Three feet on a line share two normals and one tangent: their forces are known from these three rows.
+    """
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, i):
+            hold(s, i + s.n_c)
+
+
+def is_held(s: Rubbing, i: int) -> bool:
+    """Whether row i is among the rows held."""
+    found = False
+    for m in range(s.n_held):
+        found = found or s.held[m] == i
+    return found
 
 
 def hold_again(s: Rubbing) -> bool:
@@ -132,7 +160,7 @@ def push(s: Rubbing, i: int, x: float, a: Doubles) -> None:
     for j in range(n):
         a[j] += s.MR[i * n + j] * x
         if share != 0.0:
-            a[j] += share * s.MR[(i + s.n_c) * n + j] * x
+            a[j] += share * s.MR[other(s, i) * n + j] * x
 
 
 def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
@@ -219,59 +247,7 @@ def list_multipliers(s: Rubbing) -> None:
         s.multiplier[i] = s.multiplier[i] + s.x[m]
         share = pull(s, i)
         if share != 0.0:
-            s.multiplier[i + s.n_c] = s.multiplier[i + s.n_c] + share * s.x[m]
-
-
-def project(s: Rubbing, t: float) -> bool:
-    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero.
-
-    The impulses that take the velocities are left in `change`; False where rows have become dependent.
-    """
-    for _ in range(2):
-        measure_gaps(s, t, s.y)
-        if is_on_rows(s) or not take_rows(s, t):
-            break
-        for m in range(s.n_held):
-            i = s.held[m]
-            s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
-        push_by_change(s, s.q)
-    if not take_rows(s, t):
-        return False
-    for m in range(s.n_held):
-        i = s.held[m]
-        s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
-    push_by_change(s, s.v)
-    return True
-
-
-def is_on_rows(s: Rubbing) -> bool:
-    """Whether the gaps of all rows held are exactly zero."""
-    zero = True
-    for m in range(s.n_held):
-        i = s.held[m]
-        zero = zero and (i >= s.n_j + s.n_c or s.gap[i] == 0.0)
-    return zero
-
-
-def take_rows(s: Rubbing, t: float) -> bool:
-    """Rows, rates and factors of the rows held at the base state; False where these have become dependent."""
-    if s.constant:
-        measure_rates(s, t, s.y)
-        return True
-    if not renew_mass(s, t, s.y):
-        return False
-    measure_rates(s, t, s.y)
-    respond(s)
-    return measure_friction(s, t, s.y) and hold_again(s)
-
-
-def push_by_change(s: Rubbing, x: Doubles) -> None:
-    """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
-    if nothing(s.change, s.n_held):
-        return
-    solve_held(s, s.change)
-    for m in range(s.n_held):
-        push(s, s.held[m], s.change[m], x)
+            s.multiplier[other(s, i)] = s.multiplier[other(s, i)] + share * s.x[m]
 
 
 def stop_rows(s: Rubbing) -> None:
@@ -289,4 +265,4 @@ def count_impulses(s: Rubbing, x: Doubles) -> None:
         add_impulse(s, i, x[m])
         share = pull(s, i)
         if share != 0.0:
-            add_impulse(s, i + s.n_c, share * x[m])
+            add_impulse(s, other(s, i), share * x[m])

@@ -27,6 +27,7 @@ if not cython.compiled:
         measure,
         measure_velocities,
         size_of,
+        speed_tolerance,
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import log, put_on_account
@@ -198,8 +199,7 @@ def find_free(s: Rubbing) -> None:
 
 def still(s: Rubbing, i: int) -> float:
     """The velocity of row i below which it is zero."""
-    size = size_of(s, i, s.v)
-    return NOISE * size + STILL * (s.atol + s.rtol * size)
+    return NOISE * size_of(s, i, s.v) + STILL * speed_tolerance(s, i)
 
 
 def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
@@ -222,8 +222,7 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
 
     What other contacts make of the impacts that are left out is of the size of the speed, not of the height.
     """
-    i = s.n_j + c
-    slow = s.n_c == 1 or u <= s.atol + s.rtol * size_of(s, i, s.v)
+    slow = s.n_c == 1 or u <= speed_tolerance(s, s.n_j + c)
     return height <= gap_tolerance(s, c) and (slow or height <= SEEN * RESOLUTION * gap_size(s, c))
 
 

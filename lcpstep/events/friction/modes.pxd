@@ -6,16 +6,20 @@ from lcpstep.events.friction.several cimport opened_or_closed
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, max
+from lcpstep.kernels.vectors cimport clear, copy, largest, product
+from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 cdef double EDGE
 
+@cython.locals(begins=bint)
 cdef Py_ssize_t decide(Rubbing s) noexcept nogil
-@cython.locals(some=bint, moves=bint)
+@cython.locals(some=bint, pressed=bint)
+cdef void rest_where_possible(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+@cython.locals(some=bint, goes=bint)
 cdef bint begin_to_slide(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
@@ -30,8 +34,8 @@ cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(leaning=Py_ssize_t)
 cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
-@cython.locals(stuck=Py_ssize_t, held=Py_ssize_t)
 cdef void stand_alone(Rubbing s) noexcept nogil
+cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil

@@ -35,11 +35,12 @@ if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs, max
+    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.pointers import abs, after, max
 
-EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it lies on it
+EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike
 
 
 def decide(s: Rubbing) -> int:
@@ -55,6 +56,7 @@ def decide(s: Rubbing) -> int:
     eliminate_joints(s)
     for c in range(s.n_c):
         s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
+    begins = True
     while True:
         n_a, n_f = list_unknowns(s)
         if n_a == 0:
@@ -66,9 +68,25 @@ def decide(s: Rubbing) -> int:
         code = find_forces(s, n_a, n_f)
         if code != DONE:
             return code
+        if begins and n_f > 1:
+            rest_where_possible(s, n_a, n_f)
+        begins = False
         if not (s.coefficients.two and begin_to_slide(s, n_a, n_f)):
             read_modes(s, n_a, n_f)
             return DONE
+
+
+def rest_where_possible(s: Rubbing, n_a: int, n_f: int) -> None:
+    """Take forces that leave what is at rest there for those found, where there are such and these do not."""
+    some = False
+    for f in range(n_f):
+        pressed = s.problem.impulse[s.problem.carrier[f]] > 0.0
+        some = some or (pressed and moves(s.problem, s.problem.impulse, n_a + f, n_a + n_f))
+    if some:
+        for a in range(n_a):
+            c = s.problem.ids[a]
+            s.problem.sum[a] = 1.0 if s.free[c] == 0 and s.coefficients.rough[c] == 1 else 0.0
+        stay(s.problem, n_a, n_f)
 
 
 def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
@@ -76,8 +94,8 @@ def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
     some = False
     for f in range(n_f):
         c, rate = s.problem.ids[s.problem.carrier[f]], acceleration(s, n_a + f, n_a, n_f)
-        moves = abs(rate) > NOISE * size_of_terms(s, n_a + f, n_a, n_f)
-        if moves and s.problem.mu[c] != s.mu[c]:
+        goes = abs(rate) > NOISE * size_of_terms(s, n_a + f, n_a, n_f)
+        if goes and s.problem.mu[c] != s.mu[c]:
             s.problem.mu[c] = s.mu[c]
             some = True
     return some
@@ -198,31 +216,28 @@ def adopt_modes(s: Rubbing) -> int:
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
         s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
         leaning += s.mode[c] == LEANS
-    if leaning > 0 and stand(s):
-        return DONE
-    if leaning > 0:
+    if leaning > 0 and not stand(s):
         stand_alone(s)
     return DONE if hold_modes(s) else PAINLEVE_INCONSISTENT
 
 
 def stand_alone(s: Rubbing) -> None:
-    """At the edge of the cone, with none that sticks to lean on: they stick until their forces leave it.
+    """Of those that lean those stick that nothing else keeps from sliding, until their forces leave the cone.
 
-    Of those that share a direction one sticks, and the others lean on it.
+    What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
     """
-    stuck = 0
     for c in range(s.n_c):
-        stuck += s.mode[c] == STICKS
-    if stuck > 0:
-        return
-    for c in range(s.n_c):
-        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
-    hold_modes(s)
-    for c in range(s.n_c):
-        held = 0
-        for m in range(s.n_held):
-            held += s.held[m] == s.n_j + s.n_c + c
-        s.mode[c] = LEANS if s.mode[c] == STICKS and held == 0 else s.mode[c]
+        if s.mode[c] == LEANS and not (hold_modes(s) and is_carried(s, s.n_j + s.n_c + c)):
+            s.mode[c] = STICKS
+
+
+def is_carried(s: Rubbing, i: int) -> bool:
+    """Whether row i depends on the rows held: what moves it alone does not, once these are kept."""
+    a, still = s.dv, s.shifted_rate
+    copy(a, after(s.MR, i * s.n_q), s.n_q)
+    clear(still, s.n_r)
+    constrain(s, a, still)
+    return abs(product(s.R, a, i, s.n_q)) <= EDGE * s.W[i * s.n_r + i]
 
 
 def stand(s: Rubbing) -> bool:
@@ -242,6 +257,8 @@ def stand(s: Rubbing) -> bool:
         if s.mode[c] == STICKS:
             most = (1.0 - EDGE) * s.mu_s[c] * s.multiplier[i]
             stands = stands and abs(s.multiplier[i + s.n_c]) < most
+        elif s.mode[c] == SLIDES:
+            stands = stands and s.multiplier[i] >= -force_noise(s)
     for c in range(s.n_c):
         s.mode[c] = s.mode[c] if stands else s.new_mode[c]
     return stands

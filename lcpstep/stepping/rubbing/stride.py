@@ -8,11 +8,12 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import count_impulses, hold_modes, project
+    from lcpstep.events.friction.held import count_impulses, hold_modes
     from lcpstep.events.friction.keep import keep, keep_event, store_dense
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.friction.step import arrive, find_standing, of_force
+    from lcpstep.events.friction.surfaces import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy

@@ -4,7 +4,7 @@ from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
-from lcpstep.kernels.stiction cimport AT_REST, solve_steps, terms
+from lcpstep.kernels.stiction cimport AT_REST, rest_where_possible, solve_steps, terms
 from lcpstep.pointers cimport abs, after, max
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities
@@ -20,6 +20,7 @@ cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH
 cdef Py_ssize_t impulses(
     Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
 ) noexcept nogil
+@cython.locals(found=bint)
 cdef bint solve(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
 cdef void note_sticking(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t take_part(

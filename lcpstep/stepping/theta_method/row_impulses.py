@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.stiction import AT_REST, solve_steps, terms
+    from lcpstep.kernels.stiction import AT_REST, rest_where_possible, solve_steps, terms
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
@@ -78,16 +78,23 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
     if impact and c.in_turn:
         c.coefficients.use(c.problem.mu)
         return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
-    if n_f == 0 or not c.coefficients.two:
-        return solve_contacts(c.problem, n_a, n_f)
-    if impact:
+    if impact and c.coefficients.two:
         c.coefficients.use(c.problem.mu)
+    if n_f == 0 or impact:
         return solve_contacts(c.problem, n_a, n_f)
+    if not c.coefficients.two:
+        found = solve_contacts(c.problem, n_a, n_f)
+        if found:
+            rest_where_possible(c.problem, s.sticks, c.sliding, n_a, n_f)
+        return found
     return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f)
 
 
 def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
-    """Which contacts do not slide at the end of the step."""
+    """Which contacts do not slide at the end of the step, those among them that nothing presses at the moment.
+
+    Of more feet than a body stands on some carry no load: they may be needed to hold it in the next step.
+    """
     for i in range(s.n_c):
         s.sticks[i] = 0
     for f in range(n_f):
@@ -96,7 +103,7 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
         size = abs(c.T_t[i]) + terms(c.problem, n_a, n_f, f)
         for j in range(s.n_q):
             size += abs(c.T[i * s.n_q + j] * s.next_v[j])
-        s.sticks[i] = 1 if c.p[i] > 0.0 and abs(u) <= AT_REST * size else 0
+        s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
 
 
 def take_part(ids: Indices, carrier: Indices, rough: Indices, n_a: int, n_c: int, n_t: int, n_j: int) -> int:

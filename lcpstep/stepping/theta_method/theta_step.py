@@ -153,7 +153,7 @@ def step(
         s.iteration += 1
         if s.iteration >= MAX_ITERATIONS:
             return NEWTON_FAILED
-    if c.coefficients.two:
+    if c.coefficients.two or n_f > 1:
         note_sticking(s, c, n_a, n_f)
     position(plan, s)
     if c.n_j == 0:

@@ -1,0 +1,15 @@
+cimport cython
+from lcpstep.events.friction.equations cimport measure_friction, measure_gaps, measure_rates, renew_mass, respond
+from lcpstep.events.friction.held cimport constrain, hold_again, nothing, push, solve_held
+from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, after
+
+cdef double FREE
+
+cdef bint project(Rubbing s, double t) noexcept nogil
+@cython.locals(zero=bint)
+cdef bint is_on_rows(Rubbing s) noexcept nogil
+cdef bint take_rows(Rubbing s, double t) noexcept nogil
+cdef void push_by_change(Rubbing s, double* x) noexcept nogil
+cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -1,0 +1,95 @@
+"""Positions and velocities on the rows held, and on the surface of a contact that has come to it, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.friction.equations import (
+        measure_friction,
+        measure_gaps,
+        measure_rates,
+        renew_mass,
+        respond,
+    )
+    from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import Doubles, abs, after
+
+FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
+
+
+def project(s: Rubbing, t: float) -> bool:
+    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero.
+
+    The impulses that take the velocities are left in `change`; False where rows have become dependent.
+    """
+    for _ in range(2):
+        measure_gaps(s, t, s.y)
+        if is_on_rows(s) or not take_rows(s, t):
+            break
+        for m in range(s.n_held):
+            i = s.held[m]
+            s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
+        push_by_change(s, s.q)
+    if not take_rows(s, t):
+        return False
+    for m in range(s.n_held):
+        i = s.held[m]
+        s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
+    push_by_change(s, s.v)
+    return True
+
+
+def is_on_rows(s: Rubbing) -> bool:
+    """Whether the gaps of all rows held are exactly zero."""
+    zero = True
+    for m in range(s.n_held):
+        i = s.held[m]
+        zero = zero and (i >= s.n_j + s.n_c or s.gap[i] == 0.0)
+    return zero
+
+
+def take_rows(s: Rubbing, t: float) -> bool:
+    """Rows, rates and factors of the rows held at the base state; False where these have become dependent."""
+    if s.constant:
+        measure_rates(s, t, s.y)
+        return True
+    if not renew_mass(s, t, s.y):
+        return False
+    measure_rates(s, t, s.y)
+    respond(s)
+    return measure_friction(s, t, s.y) and hold_again(s)
+
+
+def push_by_change(s: Rubbing, x: Doubles) -> None:
+    """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
+    if nothing(s.change, s.n_held):
+        return
+    solve_held(s, s.change)
+    for m in range(s.n_held):
+        push(s, s.held[m], s.change[m], x)
+
+
+def lift(s: Rubbing, c: int) -> None:
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance.
+
+    Along its own way where a time cannot tell the difference, so that gaps that close at one instant, as those of two
+    corners of a block, go on closing together; else with the rows held where they are: what brings one of those back
+    takes the contact off its surface again, by more than the last hops of a chattering.
+    """
+    i, g, u, n = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c], s.n_q
+    way, speed = s.v, u
+    if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
+        way, speed = after(s.MR, i * n), s.W[i * s.n_r + i]
+        if s.n_held > 0:
+            copy(s.dv, way, n)
+            clear(s.shifted_rate, s.n_r)
+            constrain(s, s.dv, s.shifted_rate)
+            u = product(s.R, s.dv, i, n)
+            if abs(u) > FREE * speed:
+                way, speed = s.dv, u
+    for j in range(n):
+        s.q[j] -= way[j] * g / speed
+    s.gap[i] = 0.0

@@ -1,0 +1,16 @@
+cimport cython
+from lcpstep.kernels.coulomb cimport ContactProblem
+from lcpstep.kernels.vectors cimport clear
+from lcpstep.lcp.kernel cimport solve_small
+from lcpstep.pointers cimport abs
+
+cdef double AT_REST
+cdef Py_ssize_t SOLVED
+
+@cython.locals(some=bint)
+cdef bint stay(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef void spread(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef void gather(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef bint moves(ContactProblem c, double* p, Py_ssize_t i, Py_ssize_t m) noexcept nogil
+@cython.locals(some=bint)
+cdef bint infects(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
