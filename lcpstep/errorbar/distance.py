@@ -56,7 +56,9 @@ def alike(run: Trajectory, other: Trajectory, resolution: float, apart: Apart) -
 
     def again(time: Array, jump: Array) -> Array:
         events = event_times(run, other)
-        last = np.append(np.flatnonzero(np.diff(events) > resolution), len(events) - 1)  # of those at one time
+        last = np.append(
+            np.flatnonzero(np.diff(events) > resolution), len(events) - 1
+        )  # of those at one time
         following = np.append(events[1:], math.inf)
         first = last[np.searchsorted(last, np.searchsorted(events, time))]
         end = np.minimum(first + np.arange(FURTHER)[:, None], len(events) - 1)  # (FURTHER, k)
