@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.held cimport constrain, hold_joints
-from lcpstep.events.friction.impact cimport touching
+from lcpstep.events.friction.surfaces cimport touching
 from lcpstep.events.friction.modes cimport decide
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.vectors cimport clear, copy, product

@@ -17,9 +17,9 @@ from lcpstep.kernels.status import NOT_FINITE
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.held import constrain, hold_joints
-    from lcpstep.events.friction.impact import touching
     from lcpstep.events.friction.modes import decide
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.surfaces import touching
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, min
 

@@ -3,7 +3,7 @@ from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
 from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
 from lcpstep.kernels.linear cimport positive_definite
-from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t LEANS, SLIDES, STICKS
@@ -24,6 +24,8 @@ cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double speed_tolerance(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double least_effect(Rubbing s, Py_ssize_t i, double* x) noexcept nogil
+cdef double force_noise(Rubbing s) noexcept nogil
+cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil
 @cython.locals(own=bint)
 cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil

@@ -14,7 +14,7 @@ if not cython.compiled:
     from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
     from lcpstep.kernels.linear import positive_definite
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max
 
 
@@ -162,6 +162,21 @@ def least_effect(s: Rubbing, i: int, x: Doubles) -> float:
             here = (s.atol + s.rtol * abs(x[j])) * s.W[i * s.n_r + i] / moved
             least = here if least < 0.0 or here < least else least
     return max(least, 0.0)
+
+
+def force_noise(s: Rubbing) -> float:
+    """Rounding of the forces of contacts."""
+    size = largest(s.force, largest(s.multiplier, 0.0, s.n_r), s.n_q)
+    for j in range(s.n_q):
+        size = max(size, load_terms(s, j))
+    return NOISE * size
+
+
+def load_terms(s: Rubbing, j: int) -> float:
+    """Size of the terms of a harmonic load on coordinate j, which may cancel; of callbacks nothing finer is known."""
+    if not s.contacts.linear or s.contacts.force.given or s.contacts.omega == 0.0:
+        return 0.0
+    return abs(s.contacts.constant[j]) + abs(s.contacts.cosine[j]) + abs(s.contacts.sine[j])
 
 
 def apply(s: Rubbing, i: int, p: float) -> None:

@@ -1,17 +1,15 @@
 cimport cython
 from lcpstep.events.friction.equations cimport (
-    gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, size_of, speed_tolerance
+    force_noise, gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, size_of, speed_tolerance
 )
 from lcpstep.events.friction.held cimport is_held, right_hand_side
-from lcpstep.events.friction.modes cimport force_noise
 from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
 from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
-from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, max, min
 
-cdef Py_ssize_t LEANS, OPEN, SLIDES, STICKS, STAGES, SAMPLES, PARTS, REFINEMENTS, UNKNOWN
-cdef double NEAR, RESOLVED, LOW, OFF
+cdef Py_ssize_t LEANS, OPEN, SLIDES, STICKS, STAGES, SAMPLES, PARTS, UNKNOWN
+cdef double RESOLVED, LOW, OFF
 
 cdef bint look(Rubbing s, double t, double* y) noexcept nogil
 cdef bint look_at_stage(Rubbing s, Py_ssize_t stage, double t, double* y) noexcept nogil
@@ -30,6 +28,3 @@ cdef bint look_between(Rubbing s, double place, double t) noexcept nogil
 cdef double first_fall(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint rises(Rubbing s, Py_ssize_t g, double place) noexcept nogil
 cdef void arm(Rubbing s) noexcept nogil
-cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
-cdef double missing(Rubbing s, Py_ssize_t g) noexcept nogil
-cdef double creep(Rubbing s, Py_ssize_t g, double tau, double change, double longest) noexcept nogil

@@ -15,6 +15,7 @@ from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
+        force_noise,
         gap_size,
         gap_tolerance,
         measure_friction,
@@ -24,7 +25,6 @@ if not cython.compiled:
         speed_tolerance,
     )
     from lcpstep.events.friction.held import is_held, right_hand_side
-    from lcpstep.events.friction.modes import force_noise
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import (
         CHECKS,
@@ -34,15 +34,12 @@ if not cython.compiled:
         first_rise,
         taylor,
     )
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 
 SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
-REFINEMENTS = 6  # of an event's time by repeated steps
-NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
 UNKNOWN = -2  # in place of a guard: one is not finite
 LOW = 1e-2  # of a hop's height
 OFF = 1.0  # value of a guard that a contact does not have
@@ -261,50 +258,3 @@ def arm(s: Rubbing) -> None:
         for j in range(SAMPLES):
             if s.samples[g * SAMPLES + j] > s.band[g]:
                 s.armed[g] = 1
-
-
-def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
-    """Time from now at which guard g acts: secants on steps of that length, of which the last one is left, complete.
-
-    UNKNOWN where a state is not finite.
-    """
-    t0, change = s.clock.t0, 0.0
-    tau = min(s.found * h, longest)
-    if tau <= 0.0:
-        return 0.0
-    for k in range(REFINEMENTS + 1):
-        if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
-            return UNKNOWN
-        change = missing(s, g)
-        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
-            break
-        if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
-            break
-        tau = min(tau + change, longest)
-    if not s.complete(t0, tau):
-        return UNKNOWN
-    return creep(s, g, tau, change, longest) if abs(change) <= NEAR * tau else tau
-
-
-def missing(s: Rubbing, g: int) -> float:
-    """How much later guard g acts than at the state last looked at."""
-    return -s.value[g] / s.slope if s.slope < 0.0 and s.risen else 0.0
-
-
-def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:
-    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base."""
-    t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
-    if abs(change) <= 2.0 * RESOLUTION * (abs(s.clock.t0) + tau):
-        return tau
-    copy(s.y_stage, s.y_new, s.n)
-    copy(s.dy, f, s.n)
-    for k in range(REFINEMENTS):
-        gone = min(gone + change, longest - tau)
-        for i in range(s.n):
-            s.y_new[i] = s.y_stage[i] + 0.5 * gone * (f[i] + s.dy[i])
-        if not look(s, t + gone, s.y_new):
-            return UNKNOWN
-        change = missing(s, g)
-        if k > 0 and abs(change) <= 2.0 * RESOLUTION * abs(t):
-            break
-    return tau + gone

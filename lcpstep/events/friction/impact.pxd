@@ -15,7 +15,7 @@ from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after, inf, min
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
-cdef double SEEN, STILL, LATE, TOGETHER
+cdef double SEEN, STILL
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(hit=bint)
@@ -40,6 +40,4 @@ cdef bint slides_on(Rubbing s, Py_ssize_t i, double slip) noexcept nogil
 cdef bint leaves_cone(Rubbing s, Py_ssize_t c) noexcept nogil
 @cython.locals(direction=double, mode=Py_ssize_t)
 cdef void take_back(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef double touching(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef void find_touching(Rubbing s) noexcept nogil
 cdef void forget_terms(Rubbing s) noexcept nogil

@@ -44,8 +44,6 @@ if not cython.compiled:
 
 ROUNDS = 1000  # problems of impacts at one instant
 SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
-TOGETHER = 1e-3  # of the tolerance of a gap
-LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
@@ -279,21 +277,6 @@ def take_back(s: Rubbing, c: int) -> None:
         copy(s.impulse, s.account, s.n_r)
         stop_rows(s)
     s.mode[c], s.direction[c] = mode, direction
-
-
-def touching(s: Rubbing, c: int) -> float:
-    """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance.
-
-    Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
-    """
-    late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
-    return NOISE * gap_size(s, c) + TOGETHER * gap_tolerance(s, c) + late
-
-
-def find_touching(s: Rubbing) -> None:
-    """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
-    for c in range(s.n_c):
-        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c) else 0
 
 
 def forget_terms(s: Rubbing) -> None:

@@ -2,10 +2,11 @@ cimport cython
 from lcpstep.events.friction.balance cimport opens_any, reconsider
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.guards cimport begin_guards
-from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still, touching
+from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey, adopt_modes, undecided
 from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.events.friction.surfaces cimport touching
 from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally

@@ -17,10 +17,11 @@ if not cython.compiled:
     from lcpstep.events.friction.balance import opens_any, reconsider
     from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.guards import begin_guards
-    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still, touching
+    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.surfaces import touching
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally

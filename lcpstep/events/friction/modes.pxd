@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.events.friction.equations cimport force_noise
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, list_multipliers
 from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
@@ -8,8 +9,8 @@ from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear, copy, largest, product
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.kernels.vectors cimport clear, copy, product
+from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
@@ -40,5 +41,3 @@ cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint stand(Rubbing s) noexcept nogil
 cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint turned(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef double force_noise(Rubbing s) noexcept nogil
-cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil

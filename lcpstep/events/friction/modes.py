@@ -28,6 +28,7 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
+    from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
@@ -37,8 +38,8 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import abs, after, max
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import abs, after
 
 EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike
 
@@ -284,18 +285,3 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
 def turned(s: Rubbing, c: int) -> bool:
     """Whether contact c slides the other way than when last told."""
     return s.coefficients.rough[c] == 1 and s.direction[c] != s.was_direction[c]
-
-
-def force_noise(s: Rubbing) -> float:
-    """Rounding of the forces of contacts."""
-    size = largest(s.force, largest(s.multiplier, 0.0, s.n_r), s.n_q)
-    for j in range(s.n_q):
-        size = max(size, load_terms(s, j))
-    return NOISE * size
-
-
-def load_terms(s: Rubbing, j: int) -> float:
-    """Size of the terms of a harmonic load on coordinate j, which may cancel; of callbacks nothing finer is known."""
-    if not s.contacts.linear or s.contacts.force.given or s.contacts.omega == 0.0:
-        return 0.0
-    return abs(s.contacts.constant[j]) + abs(s.contacts.cosine[j]) + abs(s.contacts.sine[j])

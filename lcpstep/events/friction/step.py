@@ -12,13 +12,14 @@ if not cython.compiled:
     from math import sqrt
 
     from lcpstep.events.friction.equations import add_impulse, measure
-    from lcpstep.events.friction.guards import UNKNOWN, first_event, locate
+    from lcpstep.events.friction.guards import UNKNOWN, first_event
     from lcpstep.events.friction.held import hold_modes, right_hand_side
-    from lcpstep.events.friction.impact import find_touching, forget_terms, still
+    from lcpstep.events.friction.impact import forget_terms, still
     from lcpstep.events.friction.keep import keep, store_dense
     from lcpstep.events.friction.modes import decide, undecided
+    from lcpstep.events.friction.moments import locate
     from lcpstep.events.friction.state import GUARDS, Rubbing
-    from lcpstep.events.friction.surfaces import lift, project
+    from lcpstep.events.friction.surfaces import find_touching, lift, project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy

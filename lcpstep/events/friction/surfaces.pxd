@@ -1,11 +1,15 @@
 cimport cython
-from lcpstep.events.friction.equations cimport measure_friction, measure_gaps, measure_rates, renew_mass, respond
+from lcpstep.events.friction.equations cimport (
+    gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, renew_mass, respond
+)
 from lcpstep.events.friction.held cimport constrain, hold_again, nothing, push, solve_held
-from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport clear, copy, product
 from lcpstep.pointers cimport abs, after
 
-cdef double FREE
+cdef Py_ssize_t OPEN
+cdef double FREE, LATE, TOGETHER
 
 cdef bint project(Rubbing s, double t) noexcept nogil
 @cython.locals(zero=bint)
@@ -13,3 +17,5 @@ cdef bint is_on_rows(Rubbing s) noexcept nogil
 cdef bint take_rows(Rubbing s, double t) noexcept nogil
 cdef void push_by_change(Rubbing s, double* x) noexcept nogil
 cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef double touching(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void find_touching(Rubbing s) noexcept nogil

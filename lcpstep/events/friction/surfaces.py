@@ -1,11 +1,17 @@
-"""Positions and velocities on the rows held, and on the surface of a contact that has come to it, as kernels."""
+"""Positions and velocities on the rows held, and on the surface of a contact that has come to it,
+and which contacts have, as kernels.
+"""
 
 from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import OPEN
+
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
+        gap_size,
+        gap_tolerance,
         measure_friction,
         measure_gaps,
         measure_rates,
@@ -13,11 +19,14 @@ if not cython.compiled:
         respond,
     )
     from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
-    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import Doubles, abs, after
 
 FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
+TOGETHER = 1e-3  # of the tolerance of a gap
+LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
 
 
 def project(s: Rubbing, t: float) -> bool:
@@ -93,3 +102,18 @@ def lift(s: Rubbing, c: int) -> None:
     for j in range(n):
         s.q[j] -= way[j] * g / speed
     s.gap[i] = 0.0
+
+
+def touching(s: Rubbing, c: int) -> float:
+    """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance.
+
+    Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
+    """
+    late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
+    return NOISE * gap_size(s, c) + TOGETHER * gap_tolerance(s, c) + late
+
+
+def find_touching(s: Rubbing) -> None:
+    """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c) else 0

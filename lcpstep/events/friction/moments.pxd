@@ -1,0 +1,13 @@
+cimport cython
+from lcpstep.events.friction.guards cimport UNKNOWN, look, look_at_stage
+from lcpstep.events.friction.state cimport Rubbing
+from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.kernels.vectors cimport copy
+from lcpstep.pointers cimport abs, after, min
+
+cdef Py_ssize_t STAGES, REFINEMENTS
+cdef double NEAR
+
+cdef double locate(Rubbing s, Py_ssize_t g, double h, double longest) noexcept nogil
+cdef double missing(Rubbing s, Py_ssize_t g) noexcept nogil
+cdef double creep(Rubbing s, Py_ssize_t g, double tau, double change, double longest) noexcept nogil

@@ -1,0 +1,64 @@
+"""When a guard acts that is known to act within a step: its root, by steps that end there, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.kernels.dop853 import STAGES
+
+if not cython.compiled:
+    from lcpstep.events.friction.guards import UNKNOWN, look, look_at_stage
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, after, min
+
+REFINEMENTS = 6  # of an event's time by repeated steps
+NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
+
+
+def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
+    """Time from now at which guard g acts: secants on steps of that length, of which the last one is left, complete.
+
+    UNKNOWN where a state is not finite.
+    """
+    t0, change = s.clock.t0, 0.0
+    tau = min(s.found * h, longest)
+    if tau <= 0.0:
+        return 0.0
+    for k in range(REFINEMENTS + 1):
+        if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
+            return UNKNOWN
+        change = missing(s, g)
+        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
+            break
+        if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
+            break
+        tau = min(tau + change, longest)
+    if not s.complete(t0, tau):
+        return UNKNOWN
+    return creep(s, g, tau, change, longest) if abs(change) <= NEAR * tau else tau
+
+
+def missing(s: Rubbing, g: int) -> float:
+    """How much later guard g acts than at the state last looked at."""
+    return -s.value[g] / s.slope if s.slope < 0.0 and s.risen else 0.0
+
+
+def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:
+    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base."""
+    t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
+    if abs(change) <= 2.0 * RESOLUTION * (abs(s.clock.t0) + tau):
+        return tau
+    copy(s.y_stage, s.y_new, s.n)
+    copy(s.dy, f, s.n)
+    for k in range(REFINEMENTS):
+        gone = min(gone + change, longest - tau)
+        for i in range(s.n):
+            s.y_new[i] = s.y_stage[i] + 0.5 * gone * (f[i] + s.dy[i])
+        if not look(s, t + gone, s.y_new):
+            return UNKNOWN
+        change = missing(s, g)
+        if k > 0 and abs(change) <= 2.0 * RESOLUTION * abs(t):
+            break
+    return tau + gone
