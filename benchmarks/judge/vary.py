@@ -23,6 +23,7 @@ from lcpstep.trajectory import Kind
 ROUNDING = 1e-12  # of the size of the motion: the disturbance of companions
 NOISE, TOLD = 300.0, 1e-4
 STRONG = 1e-3  # of the fastest impact: what is looked for in the other log
+FALL = 100.0  # roundings of a gap
 LATE = 1e-6  # of the shortest time: how far apart partners may be where nothing else says more
 
 
@@ -167,6 +168,7 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
 
     Which of these carries the impulse is no part of the answer. A tolerance promises velocities v to within ten times
     tolerance (1 + |v|), and with them gap velocities G v: a slower approach is one of a contact that rests as well.
+    So is one as slow as a fall u^2 = 2 a e from a gap e of rounding, with which a run may begin anew.
     """
     logs = [impacts(b.run), impacts(other)]
     rows = jacobians(b.d, np.array(b.d.q0))
@@ -178,7 +180,9 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
     sizes = b.run.scales(b.d)
     fast = max(fast, 1e-6 * sizes.reach / sizes.time)
     end = min(b.told, b.grazes, b.alone, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
-    slow = np.maximum(STRONG * fast, promised(b.run) * np.sum(np.abs(rows), axis=-1))
+    far = np.sum(np.abs(rows), axis=-1)
+    fallen = np.sqrt(2.0 * FALL * EPS * sizes.place * far * sizes.reach) / sizes.time
+    slow = np.maximum(np.maximum(STRONG * fast, fallen), promised(b.run) * far)
     found = []
     for i, j in ((0, 1), (1, 0)):
         strong = (np.abs(logs[i].before) > slow[contacts[i]]) & (times[i] < end) & (times[i] > start)

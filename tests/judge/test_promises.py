@@ -10,7 +10,7 @@ from benchmarks.judge import agree, checks
 from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
-from benchmarks.judge.physics import rates, room, swinging
+from benchmarks.judge.physics import gaps, rates, room, swinging
 from benchmarks.judge.runs import run
 from benchmarks.judge.variants import VARIANTS, Variant, rest
 from benchmarks.judge.vary import base, jams, nearest, same
@@ -80,6 +80,26 @@ def test_impacts_slower_than_velocities_are_promised_need_no_partner(faster, fou
     log.before[:] = faster * log.before
     other = replace(other, motion=replace(other.motion, impacts=log))
     assert 0.0 < np.max(np.abs(log.before)) < 1.0
+    assert kinds(same(base(d, r), other, Variant("span in two parts", part))) == found
+
+
+@pytest.mark.parametrize(("faster", "found"), [(1.0, set()), (1e4, {"other events: span in two parts"})])
+def test_a_fall_from_a_gap_of_rounding_needs_no_partner(faster, found):
+    d = Description(
+        M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(0.0,) * 3, v0=(0.0,) * 3, t_span=(0.0, 0.0313702),
+        h=0.00023, G=((-1.74, -2.3, 0.748),), offset=(0.1284,), restitution=0.75, K=((4180.0, 2510.0, 411.0),
+        (2510.0, 27300.0, 1920.0), (411.0, 1920.0, 181.0)), constant=(0.0, 0.0, -9.81), bend=(-0.428,), round=(0.3,),
+        general=True, spread=0.93, pendulum=0.364, b=(-0.445, 0.298, 0.61),
+    )  # fmt: skip
+    r = run(d, "located-4")
+    q, v = r.motion.at(0.01173)
+    part = replace(d, q0=tuple(q), v0=tuple(v), t_span=(0.01173, 0.0313702))
+    assert 0.0 < gaps(part, 0.01173, q)[0] < 1e-15
+    other = run(part, "located-4")
+    log = other.motion.impacts.copy()
+    log.before[:] = faster * log.before
+    other = replace(other, motion=replace(other.motion, impacts=log))
+    assert 1e-8 < np.max(np.abs(log.before)) < 1.0
     assert kinds(same(base(d, r), other, Variant("span in two parts", part))) == found
 
 
