@@ -20,19 +20,26 @@ STILL = 1e-14  # of the speed that forces would give: what is left of one by rou
 
 @dataclass(frozen=True)
 class Variant:
-    """A scene in other words: its time is t + shift, its coordinates q / unit, its contacts `order` of these."""
+    """A scene in other words: its time is t + shift, its coordinates q / unit, its contacts `order` of these.
+
+    until : time up to which steps are those of the scene
+    """
 
     name: str
     scene: Description
     shift: float = 0.0
     unit: Any = 1.0
     order: Any = None
+    until: float = np.inf
 
 
 def longer(d: Description, rng: Any) -> Variant:
-    """The same up to a later end, by whole steps."""
+    """The same up to a later end, by whole steps; where the last step is cut short by the end, up to that one."""
     start, end = d.t_span
-    return Variant("another end", replace(d, t_span=(start, end + d.h * int(rng.integers(1, 9)))))
+    steps, whole = d.length / d.h, round(d.length / d.h)
+    until = np.inf if abs(steps - whole) < 1e-6 else start + d.h * int(steps)
+    new = replace(d, t_span=(start, end + d.h * int(rng.integers(1, 9))))
+    return Variant("another end", new, until=until)
 
 
 def later(d: Description, rng: Any) -> Variant:

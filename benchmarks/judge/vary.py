@@ -126,7 +126,7 @@ def same(b: Base, other: Run, v: Variant) -> Iterator[Finding]:
         if b.told == np.inf and not jams(v.scene, other):
             yield Finding(b.run.method, f"other: {v.name}", f"{other.status} in place of DONE; {v.scene!r}")
         return
-    found = list(_first(b, distance(other, b.looks, b.q, v), v.name, v.scene))
+    found = list(_first(b, distance(other, b.looks, b.q, v), v.name, v.scene, v.until))
     yield from found or same_events(b, other, v)
 
 
@@ -143,8 +143,8 @@ def jams(d: Description, r: Run) -> bool:
     return room(d, float(r.motion.t[-1])) <= 1e-9 * sizes.length + 1e3 * EPS * float(np.max(sizes.place))
 
 
-def _first(b: Base, apart: Any, name: str, scene: Any = None) -> Iterator[Finding]:
-    bad = np.flatnonzero((apart > b.allowed) & (b.looks < min(b.told, b.grazes)))
+def _first(b: Base, apart: Any, name: str, scene: Any = None, until: float = np.inf) -> Iterator[Finding]:
+    bad = np.flatnonzero((apart > b.allowed) & (b.looks < min(b.told, b.grazes, until)))
     if len(bad):
         k = int(bad[0])
         text = f"{apart[k]:.3g} off at t = {b.looks[k]:.9g} in a motion of size {b.size:.3g}"
@@ -179,7 +179,9 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
     fast = max((float(np.max(np.abs(x.before), initial=0.0)) for x in logs), default=0.0)
     sizes = b.run.scales(b.d)
     fast = max(fast, 1e-6 * sizes.reach / sizes.time)
-    end = min(b.told, b.grazes, b.alone, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
+    end = (
+        min(b.told, b.grazes, b.alone, v.until, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
+    )
     far = np.sum(np.abs(rows), axis=-1)
     fallen = np.sqrt(2.0 * FALL * EPS * sizes.place * far * sizes.reach) / sizes.time
     slow = np.maximum(np.maximum(STRONG * fast, fallen), promised(b.run) * far)

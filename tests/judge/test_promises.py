@@ -219,3 +219,19 @@ def test_a_contact_may_let_go_where_its_step_begins_whatever_the_step(monkeypatc
 
     monkeypatch.setattr(agree, "run", shaken)
     assert kinds(agrees(reference, shaken(d, "located"))) == {"disagrees"}
+
+
+@pytest.mark.parametrize(("end", "until"), [(0.97, 0.9), (1.0, np.inf)])
+def test_a_later_end_is_held_against_a_run_up_to_the_step_that_its_own_end_cuts_short(end, until):
+    """Of order two, an impact within is at another time where the step is whole; here it is at t = 0.95."""
+    d = Description(
+        M=((1.0,),), q0=(0.45125,), v0=(0.0,), t_span=(0.0, end), h=0.1, G=((1.0,),), offset=(0.0,), restitution=0.5,
+        constant=(-1.0,),
+    )  # fmt: skip
+    r, v = run(d, "located"), VARIANTS["end"](d, np.random.default_rng(0))
+    other = run(v.scene, "located")
+    assert v.until == pytest.approx(until)
+    assert kinds(same(base(d, r), other, v)) == set()
+    log = np.delete(other.motion.impacts, 0).view(np.recarray)
+    other = replace(other, motion=replace(other.motion, impacts=log))
+    assert bool(kinds(same(base(d, r), other, v))) is (until == np.inf)
