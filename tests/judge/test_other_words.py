@@ -42,3 +42,18 @@ def test_a_body_that_rests_on_a_moving_wall_strikes_another_at_any_time():
     later = replace(d, t_span=(64.0, 64.4764), phase=(-69.76,) * 4)
     a, b = (run(x, "located").motion.q[-1] for x in (d, later))
     np.testing.assert_allclose(a, b, atol=1e-11)
+
+
+@pytest.mark.parametrize("method", ["located-4", "located-4-tolerance", "located-tolerance"])
+def test_a_body_that_joints_and_smooth_walls_wedge_is_not_left_open(method):
+    """Forces of the walls that press against each other may be any, the motion is none."""
+    d = Description(
+        M=((1.14, 0.0534), (0.0534, 0.54)), q0=(0.321, 0.236), v0=(0.0, 0.0), t_span=(0.0, 0.332647), h=0.0106,
+        G=((-0.282, -1.64), (0.219, 0.0881)), offset=(0.47756199999999993, -0.0910906), restitution=0.037,
+        K=((0.211, 0.238), (0.238, 0.272)), constant=(0.0, -5.3), cosine=(2.37, 0.825), sine=(-4.36, 0.499),
+        force_omega=0.332, J=((1.1, -0.7),), joint_offset=(-0.18790000000000004,), general=True, pendulum=0.119,
+        b=(0.46, 0.718), family="jointed",
+    )  # fmt: skip
+    r = run(d, method)
+    assert r.status == "DONE"
+    assert np.max(np.abs(r.motion.q - d.q0)) < 1e-12

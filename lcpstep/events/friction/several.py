@@ -2,8 +2,9 @@
 
     0 <= A p + b  complementary to  p >= 0,    A = R_N M^-1 (R_N - s mu R_T)^T
 
-With friction A is not symmetric. There is one answer where its symmetric part is positive definite; elsewhere every
-set of contacts that carry a force is tried. Two such answers leave the motion open, as where belts that run against
+Without friction A is symmetric, and all answers leave the same accelerations, as those of a body wedged between
+walls. With friction there is one answer where its symmetric part is positive definite; elsewhere every set of
+contacts that carry a force is tried. Two such answers leave the motion open, as where belts that run against
 each other may tip a block over either of its feet.
 Source: R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (SIAM 2009), chapter 3.
 """
@@ -24,7 +25,7 @@ CLEARLY = 1e-9  # relative: forces and accelerations that are less may be zero
 
 def opened_or_closed(c: ContactProblem, n: int) -> int:
     """The first of n sliding contacts with a force by one alone of two answers, `impulse` and another; or -1."""
-    if n < 2 or n > MOST or is_sure(c, n):
+    if n < 2 or n > MOST or is_smooth(c, n) or is_sure(c, n):
         return -1
     for pressed in range(1 << n):
         if answers(c, n, pressed):
@@ -32,6 +33,14 @@ def opened_or_closed(c: ContactProblem, n: int) -> int:
                 if (c.b[i] > 0.0) != (c.impulse[i] > 0.0):
                     return i
     return -1
+
+
+def is_smooth(c: ContactProblem, n: int) -> bool:
+    """Whether none of the contacts has friction."""
+    smooth = True
+    for a in range(n):
+        smooth = smooth and c.mu[c.ids[a]] == 0.0
+    return smooth
 
 
 def is_sure(c: ContactProblem, n: int) -> bool:
