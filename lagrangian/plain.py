@@ -40,31 +40,14 @@ def source(f: Any) -> Any:
 
 def python(f: Any) -> Callable[..., Any]:
     """A callback that runs in Python alone."""
-    f, machine_code = source(f), Set()
+    f, in_python = source(f), InPython()
 
     @functools.wraps(f, updated=())
     def plain(*given: Any) -> Any:
-        machine_code.aside()
-        LOCAL.depth += 1
-        try:
+        with in_python:
             return f(*given)
-        finally:
-            LOCAL.depth -= 1
 
     return plain
-
-
-class InPython:
-    """What this thread calls in the meantime runs in Python, whoever has compiled it."""
-
-    def __enter__(self) -> None:
-        self.machine_code = Set()
-        self.machine_code.aside()
-        LOCAL.depth += 1
-
-    def __exit__(self, *what: object) -> None:
-        LOCAL.depth -= 1
-        del self.machine_code
 
 
 class Depth(threading.local):
@@ -73,24 +56,30 @@ class Depth(threading.local):
     depth = 0
 
 
-class Set:
-    """As long as this is there, and has been asked for, calls of machine code look whether a callback calls them."""
+class InPython:
+    """What this thread calls within runs in Python, whoever has compiled it; `with` takes it again and again.
+
+    From the first time on, as long as this is there, calls of machine code look whether a callback calls them.
+    """
 
     def __init__(self) -> None:
         self.begun: list[Replaced] = []
         self.seen = (0, 0)  # modules and classes there were
         weakref.finalize(self, _end, self.begun).atexit = False
 
-    def aside(self) -> None:
-        """Again where something has been imported since."""
+    def __enter__(self) -> None:
         boxes = _specialized()
-        if self.seen != (len(sys.modules), len(boxes)):
+        if self.seen != (len(sys.modules), len(boxes)):  # something has been imported since
             self.seen = (len(sys.modules), len(boxes))
             with LOCK:
                 for x in [*REPLACED, *map(_boxed, boxes.values())]:
                     if x not in self.begun and x.found():
                         x.begin()
                         self.begun.append(x)
+        LOCAL.depth += 1
+
+    def __exit__(self, *what: object) -> None:
+        LOCAL.depth -= 1
 
 
 def _end(begun: list[Replaced]) -> None:

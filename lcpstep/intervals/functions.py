@@ -184,8 +184,7 @@ def interpolated(x: Any, xp: Any, fp: Any, left: Any = None, right: Any = None, 
         return left
     if right is not None and x > xp[-1]:
         return right
-    places, values = xp, fp
-    places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
+    places, values = np.asarray(xp, dtype=float), np.asarray(fp, dtype=float)
     lo, hi = np.atleast_1d(x.lo), np.atleast_1d(x.hi)
     a, b = np.interp(lo, places, values), np.interp(hi, places, values)
     least_, most_ = np.minimum(a, b), np.maximum(a, b)

@@ -37,14 +37,14 @@ def stay(c: ContactProblem, n_a: int, n_f: int) -> bool:
         return False
     gather(c, n_a, n_f)
     for i in range(m):
-        a = i if i < n_a else c.carrier[i - n_a]
+        a = contact_of(c, i, n_a)
         if c.z[a] > 0.0 and moves(c, c.z, i, m):
             c.sum[a] = 1.0
     while infects(c, n_a, n_f):
         pass
     some = False
     for i in range(m):
-        a = i if i < n_a else c.carrier[i - n_a]
+        a = contact_of(c, i, n_a)
         if c.sum[a] == 0.0:
             c.impulse[i] = c.z[i]
             some = True
@@ -82,6 +82,11 @@ def gather(c: ContactProblem, n_a: int, n_f: int) -> None:
         c.z[a], c.z[T] = one + two, mu * (one - two)
 
 
+def contact_of(c: ContactProblem, i: int, n_a: int) -> int:
+    """Whose normal or tangent unknown i is, as the number of its normal."""
+    return i if i < n_a else c.carrier[i - n_a]
+
+
 def moves(c: ContactProblem, p: Doubles, i: int, m: int) -> bool:
     """Whether the impulses p leave the row of unknown i in motion."""
     u, size = c.rate[i], abs(c.rate[i])
@@ -95,9 +100,9 @@ def infects(c: ContactProblem, n_a: int, n_f: int) -> bool:
     """Mark those that impulses connect with one marked; whether there were any."""
     m, some = n_a + n_f, False
     for i in range(m):
-        a = i if i < n_a else c.carrier[i - n_a]
+        a = contact_of(c, i, n_a)
         for k in range(m):
-            b = k if k < n_a else c.carrier[k - n_a]
+            b = contact_of(c, k, n_a)
             if c.sum[a] == 1.0 and c.sum[b] == 0.0 and c.mobility[k * m + i] != 0.0:
                 c.sum[b], some = 1.0, True
     return some

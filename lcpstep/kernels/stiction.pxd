@@ -5,7 +5,6 @@ from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.vectors cimport clear
 from lcpstep.pointers cimport abs
 
-cdef double AT_REST
 cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY
 
 cdef bint solve_steps(

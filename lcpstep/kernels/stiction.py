@@ -17,7 +17,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import Doubles, Indices, abs
 
-AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; see `repose`
 SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
 
 

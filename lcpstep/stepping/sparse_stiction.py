@@ -17,7 +17,7 @@ from lcpstep.stepping.sparse_coulomb import Coupled, Point, Problem
 from lcpstep.stepping.sparse_path import STICK
 
 Array = NDArray[np.float64]
-AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; this and the next: `kernels.stiction`
+AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; see `kernels.repose`, `stiction`
 SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
 
 

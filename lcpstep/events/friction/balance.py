@@ -16,11 +16,11 @@ from lcpstep.kernels.status import NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import constrain, hold_joints
+    from lcpstep.events.friction.held import accelerate_on_joints
     from lcpstep.events.friction.modes import decide
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.surfaces import touching
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
@@ -54,9 +54,7 @@ def reconsider(s: Rubbing, t: float, longest: float) -> int:
 def foresee(s: Rubbing, t: float, tau: float) -> bool:
     """What the accelerations of the rows, with joints alone, change by from t to t + tau, into `doubt`."""
     n = s.n_q
-    copy(s.a, s.a_free, n)
-    hold_joints(s)
-    constrain(s, s.a, s.bias)
+    accelerate_on_joints(s)
     for i in range(s.n_r):
         s.doubt[i] = product(s.R, s.a, i, n) + s.bias[i]
     for j in range(n):
@@ -64,9 +62,7 @@ def foresee(s: Rubbing, t: float, tau: float) -> bool:
         s.seen[n + j] = s.v[j] + tau * s.a[j]
     if not measure(s, t + tau, s.seen):
         return False
-    copy(s.a, s.a_free, n)
-    hold_joints(s)
-    constrain(s, s.a, s.bias)
+    accelerate_on_joints(s)
     for i in range(s.n_r):
         s.doubt[i] = DOUBTFUL * abs(product(s.R, s.a, i, n) + s.bias[i] - s.doubt[i])
     return measure(s, t, s.y)

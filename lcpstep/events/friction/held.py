@@ -87,6 +87,13 @@ def hold_joints(s: Rubbing) -> None:
         hold(s, i)
 
 
+def accelerate_on_joints(s: Rubbing) -> None:
+    """The acceleration with the joints alone held, into `a`; everything must be measured."""
+    copy(s.a, s.a_free, s.n_q)
+    hold_joints(s)
+    constrain(s, s.a, s.bias)
+
+
 def hold_modes(s: Rubbing) -> bool:
     """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`).
 

@@ -6,7 +6,7 @@ from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump
 from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, obey, adopt_modes, undecided
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.events.friction.surfaces cimport touching
+from lcpstep.events.friction.surfaces cimport find_touching
 from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally

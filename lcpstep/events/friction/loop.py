@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.events.friction.surfaces import touching
+    from lcpstep.events.friction.surfaces import find_touching
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -100,8 +100,7 @@ def begin(s: Rubbing) -> int:
     s.clock.find_corners(s.clock.t0)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    for c in range(s.n_c):
-        s.touches[c] = 1 if s.gap[s.n_j + c] <= touching(s, c) else 0
+    find_touching(s)
     forget_terms(s)
     s.next = JUMP
     return DONE

@@ -29,7 +29,7 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
-    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, list_multipliers
+    from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
     from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
@@ -51,9 +51,7 @@ def decide(s: Rubbing) -> int:
     """
     for c in range(s.n_c):
         s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
-    copy(s.a, s.a_free, s.n_q)
-    hold_joints(s)
-    constrain(s, s.a, s.bias)
+    accelerate_on_joints(s)
     eliminate_joints(s)
     for c in range(s.n_c):
         s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]

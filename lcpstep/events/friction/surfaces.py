@@ -1,6 +1,4 @@
-"""Positions and velocities on the rows held, and on the surface of a contact that has come to it,
-and which contacts have, as kernels.
-"""
+"""Positions and velocities on the rows held, and on the surfaces that contacts have come to, as kernels."""
 
 from __future__ import annotations
 

@@ -4,7 +4,8 @@ from lcpstep.kernels.energetic cimport strike_in_turn
 from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
-from lcpstep.kernels.stiction cimport AT_REST, rest_where_possible, solve_steps, terms
+from lcpstep.kernels.repose cimport AT_REST
+from lcpstep.kernels.stiction cimport rest_where_possible, solve_steps, terms
 from lcpstep.pointers cimport abs, after, max
 from lcpstep.kernels.coulomb cimport solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities

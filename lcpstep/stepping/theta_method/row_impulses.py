@@ -17,7 +17,8 @@ if not cython.compiled:
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.stiction import AT_REST, rest_where_possible, solve_steps, terms
+    from lcpstep.kernels.repose import AT_REST
+    from lcpstep.kernels.stiction import rest_where_possible, solve_steps, terms
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
