@@ -1,5 +1,7 @@
 from libc.math cimport floor
 from lcpstep.arrays cimport doubles
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport abs, inf, max, min
 
 cdef double RESOLUTION, NUDGE
@@ -12,6 +14,9 @@ cdef class Clock:
     cdef Py_ssize_t n_corners
     cdef double after(self, double tau) noexcept nogil
     cdef void start_at(self, double t) noexcept nogil
+    cdef void log(
+        self, Record record, Tally tally, double t, Py_ssize_t c, Py_ssize_t kind, double before, double later, double p
+    ) noexcept nogil
     cdef double untold(self, double length) noexcept nogil
     cdef double inside(self, double t) noexcept nogil
     cdef void find_corners(self, double t) noexcept nogil

@@ -15,6 +15,8 @@ if not cython.compiled:
     from math import floor
 
     from lcpstep.arrays import doubles
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import abs, inf, max, min
 
 RESOLUTION = 2.0**-52
@@ -58,6 +60,14 @@ class Clock:
         """The next piece begins at time t."""
         self.t0 = t
         self.t0_rest, self.rest = self.rest, 0.0
+
+    def log(
+        self, record: Record, tally: Tally, t: float, c: int, kind: int, before: float, later: float, p: float
+    ) -> None:
+        """Note an event of contact c; those that pass without the time going on are counted."""
+        record.note(t, c, before, later, p, kind)
+        tally.add_event(abs(self.t0 - self.last_event) <= 4.0 * RESOLUTION * abs(self.t0))
+        self.last_event = self.t0
 
     def untold(self, length: float) -> float:
         """What cannot be told of a time at most `length` after the base: some roundings."""

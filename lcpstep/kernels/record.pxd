@@ -1,6 +1,7 @@
 cimport cython
 from lcpstep.arrays cimport doubles
-from lcpstep.pointers cimport after, whole
+from lcpstep.kernels.vectors cimport add, copy
+from lcpstep.pointers cimport after, inf, whole
 
 cdef Py_ssize_t TIME, MODE, LENGTH, LEAD, COLUMNS
 
@@ -19,17 +20,20 @@ cdef class Record:
     cdef double* dense_row(self, Py_ssize_t row) noexcept nogil
     cdef void keep(self, double t, double mode, double* q, double* v, double* impulse) noexcept nogil
     cdef void keep_one(self, double t, double q, double v, double* impulse) noexcept nogil
+    cdef void keep_awaited(self, double* q, double* v, double* impulse) noexcept nogil
+    cdef void store(self, double* motion, double length) noexcept nogil
     cdef void note(
         self, double t, Py_ssize_t contact, double before, double after_, double p, Py_ssize_t kind
     ) noexcept nogil
     cdef bint full(self, Py_ssize_t more) noexcept nogil
+    cdef double awaited(self) noexcept nogil
     cdef bint wants(self, double stop, bint last) noexcept nogil
     cdef void split(
         self, double* t, double* mode, double* length, double* q, double* v, double* impulse
     ) noexcept nogil
     cdef bint is_due(self, Py_ssize_t step) noexcept nogil
     cdef bint keeps_events(self) noexcept nogil
-    cdef bint take_back(self, double t) noexcept nogil
+    cdef bint take_back(self, double t, double* impulse) noexcept nogil
     cdef Py_ssize_t quiet_until(
         self, Py_ssize_t step, double h, double t0, Py_ssize_t first, Py_ssize_t last
     ) noexcept nogil

@@ -11,7 +11,8 @@ from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH, MODE, TIME
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles, after, whole
+    from lcpstep.kernels.vectors import add, copy
+    from lcpstep.pointers import Doubles, after, inf, whole
 
 Columns = tuple[Any, Any, Any, Any, Any, Any]  # times, modes, durations, q, v and impulses of rows
 
@@ -74,6 +75,17 @@ class Record:
         impulse[0] = 0.0
         self.row += 1
 
+    def keep_awaited(self, q: Doubles, v: Doubles, impulse: Doubles) -> None:
+        """Keep the state that is asked for next."""
+        self.keep(self.awaited(), 0.0, q, v, impulse)
+        self.next_time += 1
+
+    def store(self, motion: Doubles, length: float) -> None:
+        """Keep the motion from the last kept state on, if motions are kept, and how long it goes on so."""
+        if self.dense_size > 0:
+            copy(self.dense_row(self.row - 1), motion, self.dense_size)
+            self.last_row()[LENGTH] = length
+
     def note(self, t: float, contact: int, before: float, after_: float, p: float, kind: int) -> None:
         """One line of the impact log."""
         event = after(self.events, self.event * COLUMNS)
@@ -87,10 +99,12 @@ class Record:
 
     def wants(self, stop: float, last: bool) -> bool:
         """Whether a state is asked for before the time `stop` (or at it, at the span's end), and there is room."""
-        if self.next_time >= self.n_times or self.row >= self.row_capacity:
-            return False
-        t = self.times[self.next_time]
-        return t < stop or (t == stop and last)
+        t = self.awaited()
+        return self.row < self.row_capacity and (t < stop or (t == stop and last))
+
+    def awaited(self) -> float:
+        """The time at which a state is asked for next; infinite where none is."""
+        return self.times[self.next_time] if self.next_time < self.n_times else inf
 
     def split(
         self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
@@ -137,10 +151,14 @@ class Record:
         """Whether the states after events are to be kept."""
         return self.on_events or self.every == 1
 
-    def take_back(self, t: float) -> bool:
-        """Take back the last kept state if it is of time t: events at one time share a row. Whether it was."""
+    def take_back(self, t: float, impulse: Doubles) -> bool:
+        """Take back the last kept state if it is of time t: events at one time share a row. Whether it was.
+
+        Its impulses count to those of the row that takes its place.
+        """
         if self.row == 0 or self.last_row()[TIME] != t:
             return False
+        add(impulse, 1.0, after(self.last_row(), LEAD + 2 * self.n_q), self.n_c)
         self.row -= 1
         return True
 

@@ -28,7 +28,6 @@ cdef double stride(double g, double u, double most) noexcept nogil
 cdef double leave(double u, double bend, double second, double third, double noise) noexcept nogil
 cdef void step(Arc s) noexcept nogil
 cdef void turn(Arc s, double t) noexcept nogil
-cdef void take_back(Arc s) noexcept nogil
 cdef void keep(Arc s, double tau, double t) noexcept nogil
 cdef void keep_times(Arc s, double stop, bint last) noexcept nogil
 cpdef object show(Arc s)

@@ -88,9 +88,7 @@ def begin(s: Arc) -> None:
 
 def note(s: Arc, kind: int) -> None:
     """Log an event at the base time; the sliding velocity is zero there."""
-    s.record.note(s.t0, 0, 0.0, 0.0, 0.0, kind)
-    s.tally.add_event(abs(s.t0 - s.last_event) <= 4.0 * RESOLUTION * abs(s.t0))
-    s.last_event = s.t0
+    s.log(s.record, s.tally, s.t0, 0, kind, 0.0, 0.0, 0.0)
 
 
 def decide(s: Arc) -> None:
@@ -207,16 +205,8 @@ def turn(s: Arc, t: float) -> None:
             note(s, REVERSE)
     follow(s, False)
     if s.record.keeps_events():
-        if s.record.take_back(t):
-            take_back(s)
+        s.record.take_back(t, s.impulse)
         keep(s, 0.0, t)
-
-
-def take_back(s: Arc) -> None:
-    """Events at one time share a row: count the impulses of the one that has been taken back again."""
-    row = s.record.row * s.record.row_size + s.record.row_size - 2
-    s.impulse[0] += s.record.rows[row]
-    s.impulse[1] += s.record.rows[row + 1]
 
 
 def keep(s: Arc, tau: float, t: float) -> None:
@@ -229,7 +219,7 @@ def keep(s: Arc, tau: float, t: float) -> None:
 def keep_times(s: Arc, stop: float, last: bool) -> None:
     """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
     while s.record.wants(stop, last):
-        t = s.record.times[s.record.next_time]
+        t = s.record.awaited()
         keep(s, t - s.t0, t)
         s.record.next_time += 1
 

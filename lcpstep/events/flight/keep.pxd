@@ -1,6 +1,5 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.flight.motion cimport Flight, rebase, state_at
-from lcpstep.kernels.record cimport LEAD
 
 
 cdef void keep(Flight s, double t) noexcept nogil

@@ -9,7 +9,6 @@ import cython
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.flight.motion import Flight, rebase, state_at
-    from lcpstep.kernels.record import LEAD
 
 
 def keep(s: Flight, t: float) -> None:
@@ -20,7 +19,7 @@ def keep(s: Flight, t: float) -> None:
 def keep_times(s: Flight, stop: float, last: bool) -> None:
     """Keep the states asked for before the time `stop` (and at it, at the end of the span)."""
     while s.record.wants(stop, last):
-        t = s.record.times[s.record.next_time]
+        t = s.record.awaited()
         state_at(s, t)
         keep(s, t)
         s.record.next_time += 1
@@ -30,8 +29,7 @@ def keep_event(s: Flight) -> None:
     """Keep the state after an event, if these are kept."""
     if s.record.keeps_events():
         s.q[0], s.v[0] = s.q0, s.v0
-        if s.record.take_back(s.now) and s.record.n_c > 0:  # events at one time share a row
-            s.impulse[0] += s.record.rows[s.record.row * s.record.row_size + LEAD + 2]
+        s.record.take_back(s.now, s.impulse)
         keep(s, s.now)
 
 

@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport apply, measure_velocities
 from lcpstep.events.friction.held cimport hold_joints, hold_modes, stop_rows
-from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.recurrence cimport CERTAIN, FOR_EVER, left, proportion

@@ -12,7 +12,6 @@ from lcpstep.events.friction.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.equations import apply, measure_velocities
     from lcpstep.events.friction.held import hold_joints, hold_modes, stop_rows
-    from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import CERTAIN, FOR_EVER, left, proportion
@@ -67,7 +66,7 @@ def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> 
         p = rest * s.turn_impulse[c]
         if p > 0.0:
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-            log(s, record, tally, t, c, ACCUMULATION, before, 0.0, p)
+            s.clock.log(record, tally, t, c, ACCUMULATION, before, 0.0, p)
             if s.mode[c] == OPEN:
                 rough = s.coefficients.rough[c] == 1
                 s.mode[c] = STICKS if rough and rests(s, s.n_j + s.n_c + c, ratio) else SLIDES

@@ -30,7 +30,7 @@ if not cython.compiled:
         speed_tolerance,
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
-    from lcpstep.events.friction.keep import log, put_on_account
+    from lcpstep.events.friction.keep import put_on_account
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
@@ -122,7 +122,7 @@ def strike_with(
             kind = JAM if c == jammed else IMPACT
             if plastic and s.contacts.restitution[c] > 0.0:
                 kind = ACCUMULATION
-            log(s, record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
+            s.clock.log(record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
         s.mode[c] = OPEN if u > s.terms[c] else SLIDES
 
 
@@ -210,7 +210,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         hops = s.mode[c] == OPEN and s.touches[c] == 1 and alpha < 0.0 and s.contacts.restitution[c] < 1.0
         if hops and is_over(s, c, u, -0.5 * u * u / alpha):
             close(s, c)
-            log(s, record, tally, t, c, ACCUMULATION, u, 0.0, 0.0)
+            s.clock.log(record, tally, t, c, ACCUMULATION, u, 0.0, 0.0)
             return True
     return False
 

@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.events.friction.equations cimport force_noise
 from lcpstep.events.friction.held cimport accelerate_on_joints, constrain, hold_modes, list_multipliers
-from lcpstep.events.friction.keep cimport log
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.several cimport opened_or_closed
 from lcpstep.events.friction.state cimport NOISE, Rubbing

@@ -30,7 +30,6 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
-    from lcpstep.events.friction.keep import log
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
@@ -270,13 +269,15 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
         now = STICKS if now == LEANS else now
         slip = s.velocity[i + s.n_c]
         if (was == OPEN) != (now == OPEN):
-            log(s, record, tally, t, c, RELEASE if now == OPEN else STAYS_CLOSED, 0.0, s.velocity[i], 0.0)
+            s.clock.log(
+                record, tally, t, c, RELEASE if now == OPEN else STAYS_CLOSED, 0.0, s.velocity[i], 0.0
+            )
         elif was == SLIDES and now == STICKS:
-            log(s, record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
+            s.clock.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:
-            log(s, record, tally, t, c, SLIP, 0.0, slip, 0.0)
+            s.clock.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
         elif was == SLIDES and now == SLIDES and turned(s, c):
-            log(s, record, tally, t, c, REVERSE, slip, slip, 0.0)
+            s.clock.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
 
 

@@ -4,7 +4,7 @@ from lcpstep.events.friction.equations cimport add_impulse, measure
 from lcpstep.events.friction.guards cimport UNKNOWN, first_event
 from lcpstep.events.friction.held cimport hold_modes, right_hand_side
 from lcpstep.events.friction.impact cimport forget_terms, still
-from lcpstep.events.friction.keep cimport keep, store_dense
+from lcpstep.events.friction.keep cimport keep
 from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.moments cimport locate
 from lcpstep.events.friction.state cimport GUARDS, Rubbing

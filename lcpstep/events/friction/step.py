@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.events.friction.guards import UNKNOWN, first_event
     from lcpstep.events.friction.held import hold_modes, right_hand_side
     from lcpstep.events.friction.impact import forget_terms, still
-    from lcpstep.events.friction.keep import keep, store_dense
+    from lcpstep.events.friction.keep import keep
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.moments import locate
     from lcpstep.events.friction.state import GUARDS, Rubbing
@@ -136,13 +136,13 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
     pressed = 0.0
     clear(s.counted, s.n_r)
     while record.wants(t, t >= s.t_end):
-        wanted = record.times[record.next_time] - s.clock.t0
+        wanted = record.awaited() - s.clock.t0
         press_between(s, pressed, wanted)
         pressed = wanted
         keep_wanted(s, record, wanted)
     if tau > 0.0:
         press_rest(s, pressed, tau)
-        store_dense(s, record)
+        record.store(s.F, s.length)
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
     if tau > 0.0 and s.n_held > 0:
@@ -151,7 +151,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
 
 def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
     """Keep the state asked for next, tau from now: on the rows held, which dense output leaves by its own error."""
-    t = record.times[record.next_time]
+    t = record.awaited()
     if tau > 0.0:
         s.at(tau / s.length, s.seen)
         copy(s.dy, s.y, 2 * s.n_q)

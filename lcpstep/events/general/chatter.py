@@ -19,7 +19,6 @@ if not cython.compiled:
     from lcpstep.events.general.equations import bias_of, biases, constraint_rows, measure_again
     from lcpstep.events.general.held import constrain, hold_contacts, is_held, right_hand_side, solve_held
     from lcpstep.events.general.impact import apply, speed_noise
-    from lcpstep.events.general.keep import log
     from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.state import NOISE, Mechanism
@@ -59,7 +58,7 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
         T, u, alpha = s.contact.rest[c], s.contact.speed[c], s.contact.curve[c]
         if T >= 0.0 and u != 0.0:
             p = max(-alpha * T - u, 0.0) / s.D[(s.n_j + c) * s.n_r + s.n_j + c]
-            log(s, record, tally, t + T, c, ACCUMULATION, -abs(u), 0.0, p)
+            s.log(record, tally, t + T, c, ACCUMULATION, -abs(u), 0.0, p)
             s.contact.chatter_end[c] = t + T
     stop(s)
     owe(s)

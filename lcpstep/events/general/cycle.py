@@ -9,7 +9,6 @@ from lcpstep.events.general.ends import ACCUMULATION
 if not cython.compiled:
     from lcpstep.events.general.chatter import stop
     from lcpstep.events.general.impact import apply, speed_noise
-    from lcpstep.events.general.keep import log
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, left, proportion
@@ -51,7 +50,7 @@ def sum_up(s: Mechanism, record: Record, tally: Tally, ratio: float) -> None:
     before = s.t0
     for c in range(n_c):
         if s.change[n_j + c] > 0.0:
-            log(s, record, tally, before, c, ACCUMULATION, s.contact.speed[c], 0.0, s.change[n_j + c])
+            s.log(record, tally, before, c, ACCUMULATION, s.contact.speed[c], 0.0, s.change[n_j + c])
     apply(s)
     for c in range(n_c):
         if s.change[n_j + c] > 0.0:

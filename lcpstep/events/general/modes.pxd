@@ -6,7 +6,7 @@ from lcpstep.events.general.equations cimport measure_again
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_contacts, note
 from lcpstep.events.general.impact cimport speed_noise, strike
-from lcpstep.events.general.keep cimport keep_event, log
+from lcpstep.events.general.keep cimport keep_event
 from lcpstep.events.general.motion cimport lift, rebase, rounding_of_gap
 from lcpstep.events.general.parabolas cimport polish, synchronise
 from lcpstep.events.general.state cimport JUMP, Mechanism

@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_contacts, note
     from lcpstep.events.general.impact import speed_noise, strike
-    from lcpstep.events.general.keep import keep_event, log
+    from lcpstep.events.general.keep import keep_event
     from lcpstep.events.general.motion import lift, rebase, rounding_of_gap
     from lcpstep.events.general.parabolas import polish, synchronise
     from lcpstep.events.general.state import JUMP, Mechanism
@@ -155,7 +155,7 @@ def tell_impacts(s: Mechanism, record: Record, tally: Tally, t: float) -> None:
         before, noise = s.left.speed[c], speed_noise(s, c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
-            log(s, record, tally, t, c, IMPACT, before, u, p)
+            s.log(record, tally, t, c, IMPACT, before, u, p)
             s.contact.since[c], s.contact.struck[c] = t - s.contact.struck[c], t
         else:
             u = s.contact.speed[c]
@@ -220,6 +220,6 @@ def tell_modes(s: Mechanism, record: Record, tally: Tally, t: float) -> bool:
             kind = STICK if s.contact.closed[c] == 1 else RELEASE
             some = some or kind == STICK
             when = max(t, s.contact.chatter_end[c]) if kind == STICK else t
-            log(s, record, tally, when, c, kind, 0.0, s.contact.speed[c], 0.0)
+            s.log(record, tally, when, c, kind, 0.0, s.contact.speed[c], 0.0)
             s.contact.was_closed[c] = s.contact.closed[c]
     return some

@@ -1,5 +1,5 @@
 from lcpstep.events.general.held cimport solve_held
-from lcpstep.events.general.keep cimport keep, keep_wanted, store_dense
+from lcpstep.events.general.keep cimport keep, keep_wanted
 from lcpstep.events.general.motion cimport press, rebase, state_at
 from lcpstep.events.general.state cimport JUMP, Mechanism
 from lcpstep.kernels.quadratic cimport first_zero

@@ -10,7 +10,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.held import solve_held
-    from lcpstep.events.general.keep import keep, keep_wanted, store_dense
+    from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import press, rebase, state_at
     from lcpstep.events.general.state import JUMP, Mechanism
     from lcpstep.kernels.quadratic import first_zero
@@ -36,13 +36,13 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
     s.length = tau
     pressed = 0.0
     while record.wants(t, meets < 0):
-        wanted = record.times[record.next_time] - s.t0
+        wanted = record.awaited() - s.t0
         press(s, wanted - pressed)
         pressed = wanted
         keep_wanted(s, record)
     press(s, tau - pressed)
     state_at(s, tau)
-    store_dense(s, record)
+    record.store(s.a, tau)
     for c in range(n_c):
         if s.contact.closed[c] == 0:
             u, alpha = s.contact.speed[c], s.contact.curve[c]

@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_again, note, parted, project
     from lcpstep.events.general.hops import carry, find_landings, reach_corner, shortest_hop, speed_at
-    from lcpstep.events.general.keep import keep, keep_wanted, store_dense
+    from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import arrive, press_between, rebase
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
     from lcpstep.events.general.switching import SWITCHES, reach_guard, watch
@@ -187,13 +187,13 @@ def take_over(s: Mechanism, record: Record, tally: Tally, t: float, tau: float) 
     tally.steps += 1
     pressed = 0.0
     while record.wants(t, t >= s.t_end):
-        wanted = record.times[record.next_time] - s.t0
+        wanted = record.awaited() - s.t0
         press_between(s, pressed, wanted)
         pressed = wanted
         keep_wanted(s, record)
     if tau > 0.0:
         press_between(s, pressed, tau)
-        store_dense(s, record)
+        record.store(s.smooth.F, s.length)
         copy(s.q, s.smooth.y_new, 2 * s.n_q)
         if s.n_held > 0:
             project(s, t)

@@ -1,8 +1,8 @@
 from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, MODE, TIME, Record
+from lcpstep.kernels.record cimport MODE, TIME, Record
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport after, max, min
+from lcpstep.pointers cimport max, min
 from lcpstep.stepping.pieces.smooth cimport refactor, settle_state
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.times cimport within

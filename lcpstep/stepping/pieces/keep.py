@@ -7,9 +7,9 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, MODE, TIME, Record
+    from lcpstep.kernels.record import MODE, TIME, Record
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import after, max, min
+    from lcpstep.pointers import max, min
     from lcpstep.stepping.pieces.smooth import refactor, settle_state
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
@@ -17,21 +17,18 @@ if not cython.compiled:
 
 def keep_times(w: Work, record: Record, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
-    while record.next_time < record.n_times and record.times[record.next_time] < before:
-        t = record.times[record.next_time]
-        tau = max(0.0, t - now)
+    while record.awaited() < before:
+        tau = max(0.0, record.awaited() - now)
         for i in range(w.n_q):
             w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
             w.v_try[i] = w.v[i] + tau * w.a[i]
-        record.keep(t, 0.0, w.q_try, w.v_try, w.impulse)
-        record.next_time += 1
+        record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 
 def keep_now(w: Work, record: Record, before: float) -> None:
     """Keep the current state for the times asked for before the given one."""
-    while record.next_time < record.n_times and record.times[record.next_time] < before:
-        record.keep(record.times[record.next_time], 0.0, w.q, w.v, w.impulse)
-        record.next_time += 1
+    while record.awaited() < before:
+        record.keep_awaited(w.q, w.v, w.impulse)
 
 
 def remember(w: Work) -> None:
@@ -51,8 +48,8 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
     for c in range(n_c):
         w.residual[c] = w.impulse[c] - w.impulse_from[c]  # which `settle_state` leaves alone
         w.impulse[c] = w.impulse_from[c]
-    while record.next_time < record.n_times and record.times[record.next_time] < end:
-        t = record.times[record.next_time]
+    while record.awaited() < end:
+        t = record.awaited()
         s = min(max(0.0, t - base), tau)
         r = s / tau
         for i in range(n):
@@ -64,8 +61,7 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
             w.impulse[c] += (r - share) * w.residual[c]
         share = r
         settle_state(m, plan, w, t, w.q_try)
-        record.keep(t, 0.0, w.q_try, w.v_try, w.impulse)
-        record.next_time += 1
+        record.keep_awaited(w.q_try, w.v_try, w.impulse)
     for c in range(n_c):
         w.impulse[c] += (1.0 - share) * w.residual[c]
     if not plan.constant:  # `settle_state` has looked elsewhere
@@ -80,9 +76,6 @@ def keep(w: Work, record: Record, t: float, jump: float) -> None:
     """
     if record.row > 0:
         t = max(t, record.last_row()[TIME])
-    if record.take_back(t):
-        row = after(record.rows, record.row * record.row_size)
-        jump = max(jump, row[MODE])
-        for c in range(w.n_c + w.n_j):
-            w.impulse[c] += row[LEAD + 2 * w.n_q + c]
+    if record.take_back(t, w.impulse):
+        jump = max(jump, record.rows[record.row * record.row_size + MODE])
     record.keep(t, jump, w.q, w.v, w.impulse)

@@ -212,7 +212,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
     if w.joined:
         load_joints(w)
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
-    wanted = record.next_time < record.n_times and record.times[record.next_time] < end
+    wanted = record.awaited() < end
     if wanted and plan.plain:
         keep_times(w, record, now, end)
     elif wanted:

@@ -143,11 +143,10 @@ def follow(
     """Go on to w.sigma + tau along the polynomial."""
     now = t + w.sigma
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
-    while record.next_time < record.n_times and record.times[record.next_time] < end:
-        state_at(m, plan, w, z, now, max(0.0, record.times[record.next_time] - now))
-        settle_state(m, plan, w, record.times[record.next_time], z.q)
-        record.keep(record.times[record.next_time], 0.0, z.q, z.v, w.impulse)
-        record.next_time += 1
+    while record.awaited() < end:
+        state_at(m, plan, w, z, now, max(0.0, record.awaited() - now))
+        settle_state(m, plan, w, record.awaited(), z.q)
+        record.keep_awaited(z.q, z.v, w.impulse)
     w.sigma = w.end if ends else w.sigma + tau
     if tau == 0.0:
         return FINISHED

@@ -110,7 +110,7 @@ def room(plan: Plan, w: Work, record: Record) -> int:
 
 def racing(w: Work, record: Record, t: float) -> bool:
     """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
-    wanted = record.next_time < record.n_times and record.times[record.next_time] <= t + w.end
+    wanted = record.awaited() <= t + w.end
     return w.n_c > 1 and w.closed_now == 0 and not wanted
 
 

@@ -15,7 +15,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import LEAD, Record
+    from lcpstep.kernels.record import Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -56,14 +56,11 @@ def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, 
 
 def keep_impact(w: Work, record: Record, t: float, tau: float) -> None:
     """Keep the state at tau; states at one time share a row."""
-    n = w.n_q
-    for i in range(n):
+    for i in range(w.n_q):
         s = tau - w.q_time[i]
         w.q_try[i] = w.q[i] + s * (w.v[i] + 0.5 * s * w.a[i])
         w.v_try[i] = w.v[i] + s * w.a[i]
-    if record.take_back(t + tau):
-        for d in range(w.n_c):
-            w.impulse[d] += record.rows[record.row * record.row_size + LEAD + 2 * n + d]
+    record.take_back(t + tau, w.impulse)
     record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
 
 

@@ -3,7 +3,7 @@ from libc.math cimport pow
 from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.kernels.vectors cimport product
 from lcpstep.pointers cimport max, min
 from lcpstep.stepping.pieces.codes cimport (
     ACCUMULATION, CLOSED, FINISHED, GROUND, IMPACT, INERTIA, LCP_FAILED, NOT_FINITE, ROUNDING

@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import product
     from lcpstep.pointers import max, min
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -149,13 +149,11 @@ def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         if w.joined:
             turn_with_joints(w, within(plan, w, t))
         measure(m, plan, w, t)
-    while record.next_time < record.n_times and record.times[record.next_time] < t:
-        at = record.times[record.next_time]
-        copy(w.v_try, w.v, w.n_q)
+    while record.awaited() < t:
+        left = t - record.awaited()
         for i in range(w.n_q):
-            w.q_try[i] = w.q[i] - (t - at) * w.v[i]
-        record.keep(at, 0.0, w.q_try, w.v_try, w.impulse)
-        record.next_time += 1
+            w.q_try[i] = w.q[i] - left * w.v[i]
+        record.keep_awaited(w.q_try, w.v, w.impulse)
     if not renew_forces(m, plan, w, t):
         return NOT_FINITE
     if record.keeps_events():

@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.events.friction.equations cimport measure
 from lcpstep.events.friction.held cimport count_impulses, hold_modes
 from lcpstep.events.friction.surfaces cimport project
-from lcpstep.events.friction.keep cimport keep, keep_event, store_dense
+from lcpstep.events.friction.keep cimport keep, keep_event
 from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.state cimport GUARDS
 from lcpstep.events.friction.step cimport arrive, find_standing, of_force

@@ -9,7 +9,7 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
     from lcpstep.events.friction.held import count_impulses, hold_modes
-    from lcpstep.events.friction.keep import keep, keep_event, store_dense
+    from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.friction.step import arrive, find_standing, of_force
@@ -115,7 +115,7 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     if put_back:
         count_impulses(s, s.change)
     while record.wants(t, t >= s.t_end):  # the end of the span
-        keep(s, record, record.times[record.next_time], s.y)
+        keep(s, record, record.awaited(), s.y)
         record.next_time += 1
 
 
@@ -139,15 +139,15 @@ def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
     if record.dense_size > 0 or record.wants(t, False):
         s.complete(s.clock.t0, tau)
     while record.wants(t, False):
-        place = (record.times[record.next_time] - s.clock.t0) / tau
+        place = (record.awaited() - s.clock.t0) / tau
         copy(s.seen, s.y, s.n)
         if place > 0.0:
             press(s, pressed, place)
             s.at(place, s.seen)
             pressed = place
-        keep(s, record, record.times[record.next_time], s.seen)
+        keep(s, record, record.awaited(), s.seen)
         record.next_time += 1
-    store_dense(s, record)
+    record.store(s.F, s.length)
     return pressed
 
 

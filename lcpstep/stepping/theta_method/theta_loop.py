@@ -162,14 +162,12 @@ def measure(m: Model, s: State, c: Rows, t: float) -> None:
 
 def keep_times(h: float, s: State, record: Record, t: float, t_next: float) -> None:
     """Keep the states asked for within the step, q and v interpolated linearly."""
-    while record.next_time < record.n_times and record.times[record.next_time] <= t_next + LATE * h:
-        at = record.times[record.next_time]
-        share = min(1.0, (at - t) / (t_next - t))
+    while record.awaited() <= t_next + LATE * h:
+        share = min(1.0, (record.awaited() - t) / (t_next - t))
         for i in range(s.n_q):
             s.q_between[i] = (1.0 - share) * s.q[i] + share * s.next_q[i]
             s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
-        record.keep(at, 0.0, s.q_between, s.v_between, s.impulse)
-        record.next_time += 1
+        record.keep_awaited(s.q_between, s.v_between, s.impulse)
 
 
 def prepare(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
