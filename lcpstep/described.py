@@ -36,8 +36,8 @@ from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.arcs.run import Arcs
 from lcpstep.events.flight.run import Flights
-from lcpstep.events.general.run import Moved
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
+from lcpstep.events.running import Moved
 from lcpstep.recording import States
 from lcpstep.stepping.interpolation import Bent, Linear, Parabolic
 from lcpstep.stepping.located import Located

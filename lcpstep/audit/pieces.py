@@ -24,7 +24,7 @@ from lcpstep.events.arcs.run import Arcs
 from lcpstep.events.flight.contact import CLOSED
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
-from lcpstep.events.general.run import Moved
+from lcpstep.events.running import Moved
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.states import extremes
 from lcpstep.model import looked_at

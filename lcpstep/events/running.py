@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.general.ends import STATUS
+from lcpstep.events.general.ends import NO_FORCES, STATUS
 from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
@@ -22,6 +23,9 @@ from lcpstep.trajectory import Counts, Status
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within an interval that failed
+MOST_ROWS = 2**22  # numbers in a buffer of kept states
+QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
+FIRST_STEP = 0.1  # of the scan interval
 
 
 class EventRun(Run):
@@ -102,6 +106,58 @@ class EventRun(Run):
         return f"{closing}: {words}" if closing else words
 
 
+class Integrated(EventRun):
+    """One run whose motion between events is a chain of Runge-Kutta steps, or of constant accelerations.
+
+    clock, motion   times of the motion; its steps, which have the state reached
+    scan            longest interval between two looks for events
+    constant        accelerations are constant between events, and gaps linear in q
+    """
+
+    def __init__(
+        self, method: Any, scene: Scene, kept: Kept, clock: Any, motion: Any, scan: float, columns: int,
+        constant: bool,
+    ) -> None:  # fmt: skip
+        super().__init__(method, scene, kept, recorder_for(scene, kept, columns, constant))
+        self.clock, self.motion, self.scan, self.constant = clock, motion, scan, constant
+
+    @property
+    @abstractmethod
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+
+    @property
+    def now(self) -> float:
+        """Time reached [s]."""
+        return float(self.clock.t0)
+
+    @property
+    def interval_end(self) -> float:
+        """End of the interval at hand [s]."""
+        return min(self.scene.t_span[1], self.now + self.scan)
+
+    @property
+    def state(self) -> tuple[Array, Array]:
+        """Last known q and v."""
+        q, v = np.split(self.motion.state, 2)
+        return q, v
+
+    @property
+    def evaluations(self) -> int:
+        """How often forces were evaluated."""
+        return int(self.motion.evaluations)
+
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time, from the kept ones and the motion from each to the next."""
+        return Moved(without_impulses(s), self.kept.all, self.constant, self.recorder.dense())
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == NO_FORCES:
+            return f"no forces of the closed contacts {self.closed_ones} keep them from passing {self.where}"
+        return f"{super().why(code)}; closed contacts {self.closed_ones}"
+
+
 @dataclass(eq=False)
 class Between(ABC):
     """States at any time, from the kept state before each; a function of times (m,) that can be pickled."""
@@ -123,3 +179,52 @@ class Between(ABC):
 def without_impulses(s: States) -> States:
     """The states alone: their impulses are the trajectory's."""
     return s._replace(impulse=np.zeros((0, 0)))
+
+
+def recorder_for(scene: Scene, kept: Kept, columns: int, constant: bool) -> Recorder:
+    """What is kept, with so many impulses, and the motion after each state: its acceleration, or dense output."""
+    width = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
+    rows = max(16, min(PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
+    return Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+
+
+@dataclass(eq=False)
+class Moved(Between):
+    """States between kept ones, under constant accelerations or by the dense output of the steps."""
+
+    constant: bool
+    F: Array  # after each kept state
+
+    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
+        """The states, each from that row of the kept ones."""
+        if np.all(times == self.s.t[row]):
+            return self.s.q[row], self.s.v[row]
+        moved = moved_constant if self.constant else moved_by_step
+        return moved(self.s, self.F, times, row)
+
+
+def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
+    """States at times after the kept rows, under the acceleration kept with each."""
+    tau, a = (times - s.t[row])[:, None], F[row, 0]
+    a[times >= s.t[-1]] = 0.0  # no motion has been kept beyond the last state
+    return s.q[row] + tau * (s.v[row] + 0.5 * tau * a), s.v[row] + tau * a
+
+
+def moved_by_step(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
+    """The same by the dense output of the step after each row."""
+    tau = times - s.t[row]
+    moved = along(F[row], tau / np.where(s.length[row] > 0.0, s.length[row], 1.0))
+    moved[tau == 0.0] = 0.0
+    n = s.q.shape[1]
+    return s.q[row] + moved[:, :n], s.v[row] + moved[:, n:]
+
+
+def along(F: Array, share: Array) -> Array:
+    """What states have moved by (m, n) at these fractions (m,) of their steps; see `rungekutta.RungeKutta.at`.
+
+    F : (m, 7, n)   dense output of each
+    """
+    moved, share = np.zeros((len(F), F.shape[2])), share[:, None]
+    for k in range(F.shape[1]):
+        moved = (moved + F[:, F.shape[1] - 1 - k]) * (share if k % 2 == 0 else 1.0 - share)
+    return moved

@@ -23,12 +23,24 @@ def free_acceleration(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, y:
 
 def divide_by_mass(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, y: Doubles, a: Doubles) -> bool:
     """A <- M^-1 a at this state; False where M is singular or a is not finite."""
-    if m.mass.given:
-        mass(m, t, q, v, M)
-        if not positive_definite(M, m.n_q):
-            return False
+    if not factor_mass(m, t, q, v, M):
+        return False
     inverse_mass(m, M, y, a)
     return a[0] - a[0] == 0.0
+
+
+def factor_mass(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles) -> bool:
+    """The factor of a mass matrix that changes, at this state, into M; False where that is singular."""
+    if not m.mass.given:
+        return True
+    mass(m, t, q, v, M)
+    return positive_definite(M, m.n_q)
+
+
+def response(m: Model, M: Doubles, y: Doubles, row: Doubles, out: Doubles) -> None:
+    """Out <- M^-1 row: what an impulse along a row does to the velocities."""
+    copy(out, row, m.n_q)
+    inverse_mass(m, M, y, out)
 
 
 def inverse_mass(m: Model, M: Doubles, y: Doubles, x: Doubles) -> None:

@@ -34,5 +34,5 @@ cdef bint solve_three_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noe
 cdef bint solve_four_rows(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 @cython.locals(slides=bint)
 cdef bint solve_sliding(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
-cdef double slip(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t f) noexcept nogil
+cdef (double, double) motion_of(ContactProblem c, double* p, Py_ssize_t i, Py_ssize_t m) noexcept nogil
 cdef void begin(ContactProblem c, Py_ssize_t m, Py_ssize_t n) noexcept nogil

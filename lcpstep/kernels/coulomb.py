@@ -191,17 +191,18 @@ def solve_sliding(c: ContactProblem, n_a: int, n_f: int) -> bool:
         c.impulse[T] = -c.mu[c.ids[k]] * c.z[k] if c.rate[T] > 0.0 else c.mu[c.ids[k]] * c.z[k]
     slides = True
     for f in range(n_f):
-        slides = slides and (c.z[c.carrier[f]] == 0.0 or slip(c, n_a, n_f, f) * c.rate[n_a + f] > 0.0)
+        u, _ = motion_of(c, c.impulse, n_a + f, n_a + n_f)
+        slides = slides and (c.z[c.carrier[f]] == 0.0 or u * c.rate[n_a + f] > 0.0)
     return slides
 
 
-def slip(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
-    """The sliding velocity of tangent f under the impulses found."""
-    m = n_a + n_f
-    u = c.rate[n_a + f]
-    for b in range(m):
-        u += c.mobility[(n_a + f) * m + b] * c.impulse[b]
-    return u
+def motion_of(c: ContactProblem, p: Doubles, i: int, m: int) -> tuple[float, float]:
+    """The velocity, or acceleration, of unknown i's row of m under impulses p, and the size of its terms."""
+    u, size = c.rate[i], abs(c.rate[i])
+    for k in range(m):
+        u += c.mobility[i * m + k] * p[k]
+        size += abs(c.mobility[i * m + k] * p[k])
+    return u, size
 
 
 def begin(c: ContactProblem, m: int, n: int) -> None:

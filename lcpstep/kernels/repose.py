@@ -17,7 +17,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.coulomb import ContactProblem
+    from lcpstep.kernels.coulomb import ContactProblem, motion_of
     from lcpstep.kernels.vectors import clear
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.pointers import Doubles, abs
@@ -89,10 +89,7 @@ def contact_of(c: ContactProblem, i: int, n_a: int) -> int:
 
 def moves(c: ContactProblem, p: Doubles, i: int, m: int) -> bool:
     """Whether the impulses p leave the row of unknown i in motion."""
-    u, size = c.rate[i], abs(c.rate[i])
-    for k in range(m):
-        u += c.mobility[i * m + k] * p[k]
-        size += abs(c.mobility[i * m + k] * p[k])
+    u, size = motion_of(c, p, i, m)
     return abs(u) > AT_REST * size
 
 

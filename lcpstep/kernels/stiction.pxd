@@ -1,9 +1,8 @@
 cimport cython
 from lcpstep.kernels.coefficients cimport Coefficients
-from lcpstep.kernels.coulomb cimport ContactProblem, slip, solve_contacts
+from lcpstep.kernels.coulomb cimport ContactProblem, motion_of, solve_contacts
 from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.vectors cimport clear
-from lcpstep.pointers cimport abs
 
 cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY
 
@@ -20,4 +19,3 @@ cdef bint give_way(ContactProblem c, Coefficients k, Py_ssize_t n_a, Py_ssize_t 
 cdef void rest_where_possible(
     ContactProblem c, Py_ssize_t* sticks, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f
 ) noexcept nogil
-cdef double terms(ContactProblem c, Py_ssize_t n_a, Py_ssize_t n_f, Py_ssize_t f) noexcept nogil

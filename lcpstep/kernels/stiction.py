@@ -12,10 +12,10 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.coefficients import Coefficients
-    from lcpstep.kernels.coulomb import ContactProblem, slip, solve_contacts
+    from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
     from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import Doubles, Indices, abs
+    from lcpstep.pointers import Doubles, Indices
 
 SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
 
@@ -46,7 +46,8 @@ def come_to_rest(c: ContactProblem, k: Coefficients, sliding: Doubles, n_a: int,
     some = False
     for f in range(n_f):
         i = c.ids[c.carrier[f]]
-        turns = k.tried[i] == SLIDES and slip(c, n_a, n_f, f) * sliding[i] <= 0.0
+        u, _ = motion_of(c, c.impulse, n_a + f, n_a + n_f)
+        turns = k.tried[i] == SLIDES and u * sliding[i] <= 0.0
         if turns and moves(c, c.impulse, n_a + f, n_a + n_f):
             k.tried[i], c.mu[i] = STICKS, k.sticking[i]
             some = some or c.impulse[c.carrier[f]] > 0.0
@@ -72,18 +73,10 @@ def rest_where_possible(c: ContactProblem, sticks: Indices, sliding: Doubles, n_
     some = False
     for f in range(n_f if n_f > 1 else 0):
         i = c.ids[c.carrier[f]]
-        was = sticks[i] == 1 or slip(c, n_a, n_f, f) * sliding[i] <= 0.0
+        u, _ = motion_of(c, c.impulse, n_a + f, n_a + n_f)
+        was = sticks[i] == 1 or u * sliding[i] <= 0.0
         was = was and c.impulse[c.carrier[f]] > 0.0
         some = some or (was and moves(c, c.impulse, n_a + f, n_a + n_f))
     if some:
         clear(c.sum, n_a)
         stay(c, n_a, n_f)
-
-
-def terms(c: ContactProblem, n_a: int, n_f: int, f: int) -> float:
-    """Size of the terms of the same velocity, their signs left aside."""
-    m = n_a + n_f
-    size = abs(c.rate[n_a + f])
-    for b in range(m):
-        size += abs(c.mobility[(n_a + f) * m + b] * c.impulse[b])
-    return size

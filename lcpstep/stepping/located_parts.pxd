@@ -13,7 +13,7 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport COLLAPSE
 from lcpstep.stepping.step_control cimport Control, follow_on, stamp
 
-cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, OWN, ROWS
+cdef Py_ssize_t LEVELS, OWN
 
 
 cdef class Parts(Control):
@@ -21,14 +21,12 @@ cdef class Parts(Control):
     cdef Model m
     cdef Plan plan
     cdef Work w, saved
-    cdef Record record
-    cdef object make, own_row, own_made, matrices
+    cdef object own_row
     cdef double* row
     cdef Py_ssize_t saved_row, saved_event, saved_time, n_numbers, n_marks, n_matrices
     cdef double* A_inverse
     cdef double* AG
     cdef double* WA
-    cdef Py_ssize_t* made
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed

@@ -6,16 +6,17 @@ A part ends at its first event. The state at the start of the step is kept, so t
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import cython
 import numpy as np
 
-from lcpstep.stepping.adaptive import LEVELS, PAUSED, REACHED, WANTED
+from lcpstep.stepping.adaptive import LEVELS
 from lcpstep.stepping.pieces.state import Work
 from lcpstep.stepping.step_control import Control
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
+    from lcpstep.arrays import doubles
     from lcpstep.kernels.record import COLUMNS
     from lcpstep.kernels.vectors import clear, copy, largest
     from lcpstep.pointers import Doubles, after, inf, nan, whole
@@ -24,24 +25,21 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.led import Led, copy_state
     from lcpstep.stepping.pieces.loop import Steps
     from lcpstep.stepping.pieces.smooth import invert
-    from lcpstep.stepping.pieces.state import Plan
     from lcpstep.stepping.pieces.switches import COLLAPSE
     from lcpstep.stepping.step_control import follow_on, stamp
 
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 OWN = LEVELS + 2  # place of those of a part as long as none
-ROWS = 8  # that a step may keep besides the times asked for
 
 
 class Parts(Control):
     """What a run of `Located` by a tolerance compares.
 
     way                     the loop, which takes the parts of a step
-    m, plan, w, record      as it has them; the matrices of the plan are those of the part at hand
+    m, plan, w              as it has them; the matrices of the plan are those of the part at hand
     saved, row              the state at the start of the step, and the last row, which an event at its time changes
     saved_row, saved_event, saved_time    counters of the record there
     A_inverse, AG, WA       of every level, and last of a part as long as none
-    made                    levels of which there are any
     rough                   gaps are no quadratics, as which they are looked at
     means                   forces of closed contacts are means over a piece
     alike                   a piece moves as a longer one does
@@ -53,27 +51,26 @@ class Parts(Control):
     Parameters
     ----------
     way : Steps
-    make : the plan of steps of a size
+    make     the matrices of steps of a size
     span, h, tolerance, order    see `Control`
     """
 
     def __init__(
-        self, way: Steps, make: Callable[[float], Plan], span: tuple[float, float], h: float, tolerance: float,
-        order: int,
+        self, way: Steps, make: Callable[[float], dict[str, Any]], span: tuple[float, float], h: float,
+        tolerance: float, order: int,
     ) -> None:  # fmt: skip
-        super().__init__(span, h, tolerance, order)
-        plan, w, record = way.plan, way.w, way.record
-        self.way, self.m, self.plan, self.w, self.record, self.make = way, way.m, plan, w, record, make
-        self.saved, self.own_row = Work(w.n_q, w.n_c, w.joints), np.zeros(record.row_size)
+        super().__init__(way.record, make, span, h, tolerance, order)
+        plan, w = way.plan, way.w
+        self.way, self.m, self.plan, self.w = way, way.m, plan, w
+        self.saved, self.own_row = Work(w.n_q, w.n_c, w.joints), np.zeros(way.record.row_size)
         self.row = doubles(self.own_row)
         self.saved_row = self.saved_event = self.saved_time = 0
         self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
         self.n_matrices = 0 if plan.constant else len(w.matrices)
         fields, places = plan.fields, OWN + 1 if plan.trapezoidal else 1
-        self.matrices = [np.zeros((places, *np.shape(fields[name]))) for name in MATRICES]
-        self.A_inverse, self.AG = doubles(self.matrices[0]), doubles(self.matrices[1])
-        self.WA, self.own_made = doubles(self.matrices[2]), np.zeros(OWN, dtype=np.intp)
-        self.own_made[:], self.made = not plan.trapezoidal, indices(self.own_made)
+        self.matrices = {name: np.zeros((places, *np.shape(fields[name]))) for name in MATRICES}
+        self.A_inverse, self.AG = doubles(self.matrices["A_inverse"]), doubles(self.matrices["AG"])
+        self.WA, self.own_made[:] = doubles(self.matrices["WA"]), not plan.trapezoidal
         second = order == 2
         self.rough, self.means = second and not plan.plain, second and plan.trapezoidal
         self.alike = second and not plan.trapezoidal
@@ -84,21 +81,6 @@ class Parts(Control):
         w.pausing = True
         for c in range(w.n_c):
             self.w.last[c] = -1.0
-
-    def prepare(self) -> None:
-        """Matrices of the level at hand and of its halves."""
-        for level in (self.level, self.level + 1):
-            if not self.made[level]:
-                fields = self.make(self.step_size(level)).fields
-                for i in range(len(MATRICES)):
-                    self.matrices[i][level] = fields[MATRICES[i]]
-                self.made[level] = 1
-
-    def refusal(self) -> int:
-        """Whether there is room for the states of a step, and whether its matrices are made."""
-        if self.record.row_capacity - self.record.row < self.record.n_times - self.record.next_time + ROWS:
-            return PAUSED
-        return REACHED if self.made[self.level] and self.made[self.level + 1] else WANTED
 
     def compare(self, start: float, end: float, entire: bool, until: float) -> None:
         """A single piece up to a time; from the same start a half, and both halves, at most to an event.

@@ -10,7 +10,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.theta_loop cimport Steps
 
-cdef Py_ssize_t LEVELS, PAUSED, REACHED, WANTED, FINISHED, BUFFER_FULL, ROWS, SAVED
+cdef Py_ssize_t LEVELS, FINISHED, BUFFER_FULL, SAVED
 cdef double LATE
 
 
@@ -20,13 +20,12 @@ cdef class Attempts(Control):
     cdef Plan plan
     cdef State s
     cdef Rows rows
-    cdef Record record
     cdef Switches switches
-    cdef object make, matrices, own_made, kept
+    cdef object kept
     cdef bint struck
     cdef double share
     cdef double* times
-    cdef Py_ssize_t n_times, steps_before, row, event, asked
+    cdef Py_ssize_t steps_before, row, event, asked
     cdef double* q
     cdef double* v
     cdef double* force
@@ -43,7 +42,6 @@ cdef class Attempts(Control):
     cdef double* restitution
     cdef double* impulse
     cdef Py_ssize_t* closed
-    cdef Py_ssize_t* made
     cdef double* A_q
     cdef double* A_v
     cdef double* A_f

@@ -17,11 +17,12 @@ slower than the tolerance resolves is closed without rebound, so that chattering
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import cython
 import numpy as np
 
-from lcpstep.stepping.adaptive import LEVELS, PAUSED, REACHED, WANTED
+from lcpstep.stepping.adaptive import LEVELS
 from lcpstep.stepping.step_control import Control
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
@@ -32,10 +33,8 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
-    from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.theta_loop import Steps
 
-ROWS = 4  # that a step may keep besides the times asked for
 SAVED = 9  # vectors of n_q numbers
 
 
@@ -43,8 +42,8 @@ class Attempts(Control):
     """A run of `Moreau` by a tolerance.
 
     way                         the loop, which takes the parts of a step
-    m, plan, s, rows, record    as it has them; the matrices of the plan are those of the part at hand
-    times, n_times, next_time   states asked for, which are kept here and not by the loop
+    m, plan, s, rows            as it has them; the matrices of the plan are those of the part at hand
+    times                       states asked for, which are kept here and not by the loop
     restitution                 the scene's own, (n_c,)
     q, v, force, g, u, closed, impulse    the state (marks of what sticks follow `closed`) at the start of the step
     steps, row, event, asked    counters there
@@ -55,36 +54,26 @@ class Attempts(Control):
     share                       of the error allowed, in those that a step with an event may make; at least 1
     switches                    contacts that open, and friction
     A_q, A_v, A_f, X, W         of every level, where the system is linear
-    made                        levels of which there are any
 
     Parameters
     ----------
     way : Steps
-    make : the plan of steps of a size
+    make     the matrices of steps of a size
     span, h, tolerance, order    see `Control`
     """
 
     def __init__(
-        self, way: Steps, make: Callable[[float], Plan], span: tuple[float, float], h: float, tolerance: float,
-        order: int,
+        self, way: Steps, make: Callable[[float], dict[str, Any]], span: tuple[float, float], h: float,
+        tolerance: float, order: int,
     ) -> None:  # fmt: skip
-        super().__init__(span, h, tolerance, order)
-        m, plan, s, rows, record = way.m, way.plan, way.s, way.rows, way.record
-        self.way, self.m, self.plan, self.s, self.rows, self.record, self.make = (
-            way,
-            m,
-            plan,
-            s,
-            rows,
-            record,
-            make,
-        )
-        self.n_times, self.times, self.record.n_times = record.n_times, self.record.times, 0
+        super().__init__(way.record, make, span, h, tolerance, order)
+        m, plan, s, rows = way.m, way.plan, way.s, way.rows
+        self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
+        self.times, self.record.n_times = self.record.times, 0
         self.switches, self.struck, self.share = Switches(s.n_c, rows.n_c + rows.n_t), False, 1.0
         places = LEVELS + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
-        self.own_made = np.full(LEVELS + 2, not m.linear, dtype=np.intp)
-        self.made = indices(self.own_made)
+        self.own_made[:] = not m.linear
         self.A_q, self.A_v = doubles(self.matrices["A_q"]), doubles(self.matrices["A_v"])
         self.A_f, self.X = doubles(self.matrices["A_f"]), doubles(self.matrices["X"])
         self.W = doubles(self.matrices["W"])
@@ -106,21 +95,6 @@ class Attempts(Control):
         self.u, self.part_g = after(self.g, n_c), after(self.g, 2 * n_c)
         self.part_u, self.restitution = after(self.g, 3 * n_c), after(self.g, 4 * n_c)
         self.impulse = after(self.g, 5 * n_c)
-
-    def prepare(self) -> None:
-        """Matrices of the level at hand and of its halves."""
-        for level in (self.level, self.level + 1):
-            if not self.made[level]:
-                made = self.make(self.step_size(level)).matrices
-                for name in made:
-                    self.matrices[name][level] = made[name]
-                self.made[level] = 1
-
-    def refusal(self) -> int:
-        """Whether there is room for the states of a step, and whether its matrices are made."""
-        if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
-            return PAUSED
-        return REACHED if self.made[self.level] and self.made[self.level + 1] else WANTED
 
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""

@@ -26,6 +26,7 @@ from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
 from lcpstep.stepping.theta_method.plan import Plan
+from lcpstep.stepping.theta_method.row_impulses import constant_rows
 from lcpstep.trajectory import Counts, Status
 
 if TYPE_CHECKING:
@@ -63,7 +64,9 @@ class MoreauRun(StepRun):
         if self.method.tolerance is not None:
             order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
             span, h = self.scene.t_span, self.method.h
-            self.controlled_by(Attempts(self.loop, self.plan_for, span, h, tolerance, order))
+            self.controlled_by(
+                Attempts(self.loop, lambda h: self.plan_for(h).matrices, span, h, tolerance, order)
+            )
         return Status.DONE
 
     def take(self, last: int) -> int:
@@ -89,7 +92,7 @@ class MoreauRun(StepRun):
         """What steps of size h multiply with."""
         made = plan(self.model, self.rows, h, self.method.theta, self.slack, self.constant)
         if self.constant and self.rows.n > self.rows.n_c:
-            loop.prepare(self.model, made, self.place, self.rows, self.scene.t_span[0])
+            constant_rows(self.model, made, self.place, self.rows, self.scene.t_span[0])
         return made
 
     def solve_outside(self) -> bool:

@@ -1,14 +1,19 @@
 cimport cython
 from libc.math cimport ldexp
+from lcpstep.arrays cimport indices
 from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
 from lcpstep.kernels.record cimport COLUMNS, TIME, Record
 from lcpstep.pointers cimport abs, inf, max, min
 
-cdef Py_ssize_t REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
+cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
 cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
 
 
 cdef class Control(Course):
+    cdef Record record
+    cdef object make, matrices, own_made
+    cdef Py_ssize_t n_times
+    cdef Py_ssize_t* made
     cdef public long long position, end, tried
     cdef public int level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into

@@ -16,18 +16,24 @@ S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), sect
 
 from __future__ import annotations
 
-import cython
+from collections.abc import Callable
+from typing import Any
 
-from lcpstep.stepping.adaptive import NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
+import cython
+import numpy as np
+
+from lcpstep.stepping.adaptive import LEVELS, NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
 
 if not cython.compiled:
     from math import ldexp
 
+    from lcpstep.arrays import indices
     from lcpstep.kernels.course import AHEAD, ARRIVED, Course
     from lcpstep.kernels.record import COLUMNS, TIME, Record
     from lcpstep.pointers import abs, inf, max, min
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
+ROWS = 8  # that a step may keep besides the times asked for
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 
@@ -35,6 +41,8 @@ FLAT = 3.0  # an error that half the step makes smaller by less than this comes 
 class Control(Course):
     """Where the run is, and what it allows.
 
+    record, n_times      what is kept, and how many states are asked for
+    matrices, made       by name, those of every level that a method has; levels of which there are any
     position, level      start of the step, in finest steps; level of the step
     end, finest          of the span, in finest steps; finest level
     tried                attempts so far
@@ -56,11 +64,18 @@ class Control(Course):
 
     Parameters
     ----------
+    record : Record;  make : the matrices of steps of a size, by name
     span : (start, end);  h : longest step;  tolerance : float;  order : of the method
     """
 
-    def __init__(self, span: tuple[float, float], h: float, tolerance: float, order: int) -> None:
+    def __init__(
+        self, record: Record, make: Callable[[float], dict[str, Any]], span: tuple[float, float], h: float,
+        tolerance: float, order: int,
+    ) -> None:  # fmt: skip
         start, end = span
+        self.record, self.n_times, self.make, self.matrices = record, record.n_times, make, {}
+        self.own_made = np.zeros(LEVELS + 2, dtype=np.intp)
+        self.made = indices(self.own_made)
         self.position, self.tried = 0, 0
         self.h_max, self.end, self.finest, self.level = sizes(span, h)
         self.start, self.stop, self.span = start, end, end - start
@@ -87,8 +102,10 @@ class Control(Course):
         return AHEAD if self.tried < goal and not self.over() else ARRIVED
 
     def refusal(self) -> int:
-        """Of a method: REACHED, or why no step can be attempted now, PAUSED or WANTED."""
-        return REACHED
+        """Whether there is room for the states of a step, and whether its matrices are made."""
+        if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
+            return PAUSED
+        return REACHED if self.made[self.level] and self.made[self.level + 1] else WANTED
 
     def move(self) -> int:
         """An attempt; REACHED where the run goes on, which it also does not where a callback has failed.
@@ -190,7 +207,13 @@ class Control(Course):
         return False
 
     def prepare(self) -> None:
-        """Of a method: make what `refusal` has found wanting."""
+        """Make the matrices of the level at hand and of its halves, which `refusal` has found wanting."""
+        for level in (self.level, self.level + 1):
+            if not self.made[level]:
+                made = self.make(self.step_size(level))
+                for name in self.matrices:
+                    self.matrices[name][level] = made[name]
+                self.made[level] = 1
 
     @property
     def time(self) -> float:

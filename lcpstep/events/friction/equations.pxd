@@ -1,8 +1,7 @@
 cimport cython
 from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, mass, total_force
-from lcpstep.kernels.linear cimport positive_definite
+from lcpstep.kernels.acceleration cimport divide_by_mass, response
+from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
 from lcpstep.kernels.vectors cimport copy, largest, product
 from lcpstep.pointers cimport abs, after, max
 
@@ -14,7 +13,6 @@ cdef void measure_rates(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_biases(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(sticks=bint)
 cdef bint measure_friction(Rubbing s, double t, double* y) noexcept nogil
-cdef bint renew_mass(Rubbing s, double t, double* y) noexcept nogil
 cdef void respond(Rubbing s) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil

@@ -11,9 +11,8 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
-    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, mass, total_force
-    from lcpstep.kernels.linear import positive_definite
+    from lcpstep.kernels.acceleration import divide_by_mass, response
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -62,21 +61,12 @@ def measure_biases(s: Rubbing, t: float, y: Doubles) -> None:
     bias(s.tangents, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
 
 
-def renew_mass(s: Rubbing, t: float, y: Doubles) -> bool:
-    """The factor of the mass matrix at a state; False where it is singular."""
-    if not s.contacts.mass.given:
-        return True
-    mass(s.contacts, s.clock.inside(t), y, after(y, s.n_q), s.M)
-    return positive_definite(s.M, s.n_q)
-
-
 def respond(s: Rubbing) -> None:
     """The Delassus matrix of the rows, and what an impulse on each of them does."""
     n, r = s.n_q, s.n_r
     for i in range(r):
         row = after(s.MR, i * n)
-        copy(row, after(s.R, i * n), n)
-        inverse_mass(s.contacts, s.M, s.work, row)
+        response(s.contacts, s.M, s.work, after(s.R, i * n), row)
         for j in range(i + 1):
             s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
 

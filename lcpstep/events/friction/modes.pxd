@@ -4,7 +4,7 @@ from lcpstep.events.friction.held cimport accelerate_on_joints, constrain, hold_
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.several cimport opened_or_closed
 from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.coulomb cimport solve_contacts
+from lcpstep.kernels.coulomb cimport motion_of, solve_contacts
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.tally cimport Tally

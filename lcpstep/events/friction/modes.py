@@ -33,7 +33,7 @@ if not cython.compiled:
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
-    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.coulomb import motion_of, solve_contacts
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.tally import Tally
@@ -175,11 +175,7 @@ def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
 
 def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     """The acceleration of unknown a's row under the forces found."""
-    m = n_a + n_f
-    alpha = s.problem.rate[a]
-    for b in range(m):
-        alpha += s.problem.mobility[a * m + b] * s.problem.impulse[b]
-    return alpha
+    return motion_of(s.problem, s.problem.impulse, a, n_a + n_f)[0]
 
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:

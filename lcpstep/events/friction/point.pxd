@@ -1,3 +1,4 @@
+cimport cython
 from lcpstep.arrays cimport doubles
 from lcpstep.events.friction.equations cimport free_motion, measure, measure_rows
 from lcpstep.events.friction.guards cimport look
@@ -6,16 +7,18 @@ from lcpstep.events.friction.impact cimport find_free
 from lcpstep.events.friction.modes cimport decide, adopt_modes
 from lcpstep.events.friction.state cimport GUARDS, Rubbing
 from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, max, whole
+from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t OPEN, SLIDES, DONE, NOT_FINITE
 cdef double RELATIVE_STEP
 
-cdef void read_modes(Rubbing s, double* mode, double* direction) noexcept nogil
-cdef Py_ssize_t find_modes(Rubbing s, double t, double* y, double* closed) noexcept nogil
-cdef bint begin_modes(Rubbing s, double t, double* y, double* mode, double* direction) noexcept nogil
-cdef void difference(Rubbing s, double t, double* y, double* dy, double* A) noexcept nogil
-cdef void write_guards(Rubbing s, double t, double* y, double* out) noexcept nogil
-cdef void write_forces(Rubbing s, double t, double* y, double* dy, double* out) noexcept nogil
-cdef void write_pulls(Rubbing s, double* out) noexcept nogil
-cdef void write_rows(Rubbing s, double t, double* y, double* out) noexcept nogil
+cpdef object modes(Rubbing s)
+cpdef Py_ssize_t settle(Rubbing s, double t, object x, object closed)
+cpdef bint hold(Rubbing s, double t, object x, object mode, object direction)
+cpdef object field(Rubbing s, double t, object x)
+@cython.locals(place=Py_ssize_t)
+cpdef object slopes(Rubbing s, double t, object x)
+cpdef object guards(Rubbing s, double t, object x)
+cpdef object forces(Rubbing s, double t, object x)
+cpdef object pulls(Rubbing s)
+cpdef object rows(Rubbing s, double t, object x)

@@ -6,23 +6,19 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events import running
 from lcpstep.events.friction.loop import Course
 from lcpstep.events.friction.smooth import Smooth
-from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES
-from lcpstep.events.general.run import FIRST_STEP, QUADRATURE, Moved, recorder_for
+from lcpstep.events.general.ends import NO_IMPULSES
+from lcpstep.events.running import FIRST_STEP, QUADRATURE, Integrated
 from lcpstep.events.scan import scan_interval
 from lcpstep.gauss import gauss
 from lcpstep.kernels.clock import Clock
 from lcpstep.model import coefficients, models
-from lcpstep.recording import Kept, States
+from lcpstep.recording import Kept
 from lcpstep.trajectory import Status
 from lcpstep.turns import turns
-
-Array = NDArray[np.float64]
 
 
 def start(
@@ -53,43 +49,23 @@ def start(
     return s
 
 
-class FrictionRun(running.EventRun):
+class FrictionRun(Integrated):
     """A run with contacts that stick and slide."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
-        self.system = self.start(scene, method)
-        recorder = recorder_for(scene, kept, 2 * scene.n_c + scene.n_j, False)
-        super().__init__(method, scene, kept, recorder)
-        self.course = Course(self.system, recorder.record, self.tally)
+        s = self.system = self.start(scene, method)
+        super().__init__(method, scene, kept, s.clock, s, s.scan_length, 2 * scene.n_c + scene.n_j, False)
+        self.course = Course(s, self.recorder.record, self.tally)
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
         return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
 
     @property
-    def now(self) -> float:
-        """Time reached [s]."""
-        return float(self.system.clock.t0)
-
-    @property
-    def interval_end(self) -> float:
-        """End of the interval at hand [s]."""
-        return min(self.system.t_end, self.now + self.system.scan_length)
-
-    @property
-    def state(self) -> tuple[Array, Array]:
-        """Last known q and v."""
-        q, v = np.split(self.system.state, 2)
-        return q, v
-
-    @property
-    def evaluations(self) -> int:
-        """How often forces were evaluated."""
-        return int(self.system.evaluations)
-
-    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, from the kept ones and the motion from each to the next."""
-        return Moved(running.without_impulses(s), self.kept.all, False, self.recorder.dense())
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        closed: list[int] = self.system.closed_ones()
+        return closed
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""
@@ -101,16 +77,13 @@ class FrictionRun(running.EventRun):
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
-        closed, where = self.system.closed_ones(), self.where
         if code == NO_IMPULSES:
-            return f"no impulses of the contacts {closed} end their approach {where}"
-        if code == NO_FORCES:
-            return f"no forces of the closed contacts {closed} keep them from passing {where}"
+            return f"no impulses of the contacts {self.closed_ones} end their approach {self.where}"
         if code in (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE):
-            return f"{self.paradox(code)} {where}"
+            return f"{self.paradox(code)} {self.where}"
         if code == Status.NOT_FINITE and self.system.coefficients.fault():
-            return f"{self.system.coefficients.fault()} {where}"
-        return f"{super().why(code)}; closed contacts {closed}"
+            return f"{self.system.coefficients.fault()} {self.where}"
+        return super().why(code)
 
     def paradox(self, code: int) -> str:
         """Painleve's paradox in words: the contact, and the coefficient of friction from which on it occurs."""

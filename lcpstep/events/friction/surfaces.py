@@ -13,11 +13,11 @@ if not cython.compiled:
         measure_friction,
         measure_gaps,
         measure_rates,
-        renew_mass,
         respond,
     )
     from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.acceleration import factor_mass
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import Doubles, abs, after
@@ -63,7 +63,7 @@ def take_rows(s: Rubbing, t: float) -> bool:
     if s.constant:
         measure_rates(s, t, s.y)
         return True
-    if not renew_mass(s, t, s.y):
+    if not factor_mass(s.contacts, s.clock.inside(t), s.q, s.v, s.M):
         return False
     measure_rates(s, t, s.y)
     respond(s)

@@ -24,7 +24,6 @@ cdef double root(
 ) noexcept nogil
 @cython.locals(known=bint)
 cdef bint observe(Mechanism s, double tau) noexcept nogil
-cdef void remember(Mechanism s) noexcept nogil
 cdef double multiplier_noise(Mechanism s) noexcept nogil
 cdef bint turns_unseen(Mechanism s, double d) noexcept nogil
 cdef double gap_noise(Mechanism s, Py_ssize_t c) noexcept nogil

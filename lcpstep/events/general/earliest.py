@@ -168,11 +168,6 @@ def observe(s: Mechanism, tau: float) -> bool:
     return known
 
 
-def remember(s: Mechanism) -> None:
-    """What was observed last is the left end of the next interval."""
-    copy(s.left.gap, s.contact.gap, 4 * s.n_c)
-
-
 def gap_noise(s: Mechanism, c: int) -> float:
     """Rounding of a gap, at the state last observed."""
     return gap_rounding(s.model, s.contact.G, s.q, c, 0.0)

@@ -1,5 +1,5 @@
 from lcpstep.events.general.state cimport Mechanism, Rows
-from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.acceleration cimport divide_by_mass, response
 from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
@@ -11,4 +11,3 @@ cdef bint measure_again(Mechanism s, double t) noexcept nogil
 cdef void constraint_rows(Mechanism s, double t, double* q, double* v) noexcept nogil
 cdef void biases(Mechanism s, Model model, Rows now, double t, double* q, double* v) noexcept nogil
 cdef double bias_of(Mechanism s, Py_ssize_t i) noexcept nogil
-cdef void delassus(Mechanism s, Py_ssize_t i) noexcept nogil

@@ -11,7 +11,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.state import Mechanism, Rows
-    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.acceleration import divide_by_mass, response
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
@@ -35,7 +35,7 @@ def measure(s: Mechanism, t: float) -> bool:
     biases(s, s.joints, s.joint, side, q, v)
     constraint_rows(s, t, q, v)
     for i in range(n_j + n_c):
-        delassus(s, i)
+        response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
         for j in range(i + 1):
             s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
     for i in range(n_j):
@@ -87,10 +87,3 @@ def bias_of(s: Mechanism, i: int) -> float:
     """Bias of a row."""
     n_j = s.n_j
     return s.joint.bias[i] if i < n_j else s.contact.bias[i - n_j]
-
-
-def delassus(s: Mechanism, i: int) -> None:
-    """Row i of M^-1 R^T."""
-    MR = after(s.MR, i * s.n_q)
-    copy(MR, after(s.R, i * s.n_q), s.n_q)
-    inverse_mass(s.model, s.M, s.work, MR)

@@ -1,7 +1,7 @@
 cimport cython
-from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows, delassus
+from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass
+from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass, response
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.dynamics cimport gaps, total_force
 from lcpstep.kernels.linear cimport grow_factor, solve_factored

@@ -12,9 +12,9 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import bias_of, biases, constraint_rows, delassus
+    from lcpstep.events.general.equations import bias_of, biases, constraint_rows
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass
+    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass, response
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gaps, total_force
     from lcpstep.kernels.linear import grow_factor, solve_factored
@@ -61,7 +61,7 @@ def hold_again(s: Mechanism, t: float, q: Doubles, v: Doubles) -> bool:
     s.n_held = 0
     for m in range(count):
         i = s.row[m]
-        delassus(s, i)
+        response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
         for k in range(m + 1):
             j = s.row[k]
             s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)

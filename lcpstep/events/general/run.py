@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events import running
-from lcpstep.events.general.ends import NO_FORCES, NO_IMPULSES, NO_SURFACE
+from lcpstep.events.general.ends import NO_IMPULSES, NO_SURFACE
 from lcpstep.events.general.loop import Course
 from lcpstep.events.general.smooth import Smooth, Watched
 from lcpstep.events.general.state import Mechanism
+from lcpstep.events.running import FIRST_STEP, QUADRATURE, Integrated
 from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
 from lcpstep.gauss import gauss
 from lcpstep.kernels.model import Model
 from lcpstep.model import joint_model, model
-from lcpstep.recording import Kept, Recorder, States
+from lcpstep.recording import Kept
 from lcpstep.trajectory import Status
 from lcpstep.turns import turns
-
-Array = NDArray[np.float64]
-MOST_ROWS = 2**22  # numbers in a buffer of kept states
-QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
-FIRST_STEP = 0.1  # of the scan interval
 
 
 def is_constant(m: Model, joints: Model) -> bool:
@@ -56,57 +48,26 @@ def mechanism(scene: Scene, m: Model, smooth: Smooth | Watched) -> Mechanism:
     return smooth.mechanism
 
 
-def recorder_for(scene: Scene, kept: Kept, columns: int, constant: bool) -> Recorder:
-    """What is kept, with so many impulses, and the motion after each state: its acceleration, or dense output."""
-    width = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
-    rows = max(16, min(running.PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
-    return Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
-
-
-class General(running.EventRun):
+class General(Integrated):
     """A run with any number of contacts and joints; `system`: its state at the start, if made elsewhere."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, system: Mechanism | None = None) -> None:
-        self.system = system or start(scene, method)
-        recorder = recorder_for(scene, kept, scene.n_c + scene.n_j, self.system.constant)
-        super().__init__(method, scene, kept, recorder)
-        self.course = Course(self.system, recorder.record, self.tally)
+        s = self.system = system or start(scene, method)
+        super().__init__(method, scene, kept, s, s.smooth, s.scan, scene.n_c + scene.n_j, s.constant)
+        self.course = Course(s, self.recorder.record, self.tally)
 
     @property
-    def now(self) -> float:
-        """Time reached [s]."""
-        return float(self.system.t0)
-
-    @property
-    def interval_end(self) -> float:
-        """End of the interval at hand [s]."""
-        return min(self.system.t_end, self.now + self.system.scan)
-
-    @property
-    def state(self) -> tuple[Array, Array]:
-        """Last known q and v."""
-        q, v = np.split(self.system.smooth.state, 2)
-        return q, v
-
-    @property
-    def evaluations(self) -> int:
-        """How often forces were evaluated."""
-        return int(self.system.smooth.evaluations)
-
-    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
-        """States at any time, from the kept ones and the motion from each to the next."""
-        F = self.recorder.dense()
-        return Moved(running.without_impulses(s), self.kept.all, self.system.constant, F)
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return self.system.contact.closed_ones()
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
         s, where = self.system, self.where
-        closed, members = s.contact.closed_ones(), s.contact.members(s.n_members)
         if code == NO_IMPULSES:
+            members = s.contact.members(s.n_members)
             words = f"no impulses of the contacts {members} end their approach"
             return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
-        if code == NO_FORCES:
-            return f"no forces of the closed contacts {members} keep them from passing {where}"
         if code == NO_SURFACE:
             return f"the obstacle of contact {s.event_contact} closes in, and leaves no room {where}"
         if code == Status.JOINTS_FAILED:
@@ -115,39 +76,7 @@ class General(running.EventRun):
             bound = f"more than max_events = {self.method.max_events} events"
             if self.tally.events <= self.method.max_events:
                 bound = "events without end at one time"
-            return f"{bound}; the last at contacts {s.contact.latest()}, closed are {closed}, {where}"
-        return f"{super().why(code)}; closed contacts {closed}"
-
-
-@dataclass(eq=False)
-class Moved(running.Between):
-    """States between kept ones, under constant accelerations or by the dense output of the steps."""
-
-    constant: bool
-    F: Array  # after each kept state
-
-    def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
-        """The states, each from that row of the kept ones."""
-        if np.all(times == self.s.t[row]):
-            return self.s.q[row], self.s.v[row]
-        moved = moved_constant if self.constant else moved_by_step
-        return moved(self.s, self.F, times, row)
-
-
-def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """States at times after the kept rows, under the acceleration kept with each."""
-    tau, a = (times - s.t[row])[:, None], F[row, 0]
-    a[times >= s.t[-1]] = 0.0  # no motion has been kept beyond the last state
-    return s.q[row] + tau * (s.v[row] + 0.5 * tau * a), s.v[row] + tau * a
-
-
-def moved_by_step(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """The same by the dense output of the step after each row; see `rungekutta.RungeKutta.at`."""
-    tau = (times - s.t[row])[:, None]
-    share = tau / np.where(s.length[row] > 0.0, s.length[row], 1.0)[:, None]
-    moved = np.zeros((len(times), F.shape[2]))
-    for k in range(F.shape[1]):
-        moved = (moved + F[row, F.shape[1] - 1 - k]) * (share if k % 2 == 0 else 1.0 - share)
-    moved[tau[:, 0] == 0.0] = 0.0
-    n = s.q.shape[1]
-    return s.q[row] + moved[:, :n], s.v[row] + moved[:, n:]
+            return (
+                f"{bound}; the last at contacts {s.contact.latest()}, closed are {self.closed_ones}, {where}"
+            )
+        return super().why(code)

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, remember, turns_unseen
+from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, turns_unseen
 from lcpstep.events.general.equations cimport measure, measure_on
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project

@@ -16,7 +16,6 @@ if not cython.compiled:
         OPENS,
         first_event,
         observe,
-        remember,
         turns_unseen,
     )
     from lcpstep.events.general.equations import measure, measure_on
@@ -42,7 +41,7 @@ LOOKS, FURTHER = 2, 10.0  # how often, and by how much further each time, unless
 
 def step(s: Mechanism) -> int:
     """One DOP853 step, and the first event within it; `complete` takes it over."""
-    remember(s)
+    copy(s.left.gap, s.contact.gap, 4 * s.n_c)
     copy(s.start.gap, s.contact.gap, 4 * s.n_c)
     longest = min(s.t_end, s.high) - s.t0
     code = s.smooth.take_step(s.t0, min(min(longest, s.scan), 4.0 * shortest_hop(s)), s.scan)

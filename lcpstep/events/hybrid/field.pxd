@@ -5,7 +5,7 @@ from lcpstep.kernels.function cimport Functions
 from lcpstep.kernels.vectors cimport copy
 from lcpstep.pointers cimport abs, after, max
 
-cdef Py_ssize_t ARRIVE, EXIT_BELOW, EXIT_ABOVE, NOT_SLIDING, VECTORS
+cdef Py_ssize_t ARRIVE, EXIT_BELOW, EXIT_ABOVE, NOT_SLIDING, VECTORS, SURFACE
 cdef double DIFFERENCE, INNER, OUTER, TINY
 
 
@@ -41,6 +41,10 @@ cdef (double, double) approaches(Machine m, Py_ssize_t mode, double t, double* x
 cdef double surface_gradient(Machine m, Py_ssize_t mode, double t, double* x) noexcept nogil
 cdef double guard(Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x) noexcept nogil
 cdef double guard_gradient(Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x) noexcept nogil
+cdef double watched(Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x) noexcept nogil
+cdef double gradient(
+    Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x, double* beside, double* slopes
+) noexcept nogil
 cdef (double, double, double) band_and_rate(
     Machine m, Py_ssize_t mode, Py_ssize_t k, double t, double* x, double rtol, double atol
 ) noexcept nogil

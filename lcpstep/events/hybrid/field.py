@@ -27,6 +27,7 @@ DIFFERENCE = 2.0**-10  # step of differences, relative
 INNER, OUTER = 2.0 / 3.0, -1.0 / 12.0
 TINY = 1e-300  # a band is never empty
 VECTORS = 8
+SURFACE = -1  # in place of a guard
 
 
 class Machine:
@@ -144,22 +145,7 @@ def approaches(m: Machine, mode: int, t: float, x: Doubles) -> tuple[float, floa
 
 def surface_gradient(m: Machine, mode: int, t: float, x: Doubles) -> float:
     """H_x into the work space; returns H_t."""
-    copy(m.x, x, m.n)
-    for i in range(m.n):
-        d, slope = DIFFERENCE * max(1.0, abs(x[i])), 0.0
-        for k in range(2):
-            step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-            m.x[i] = x[i] + step
-            up, value = m.x[i], scalar(m, m.surfaces, mode, t, m.x)
-            m.x[i] = x[i] - step
-            slope += 2.0 * (1 + k) * weight * (value - scalar(m, m.surfaces, mode, t, m.x)) / (up - m.x[i])
-        m.x[i], m.H_x[i] = x[i], slope
-    d, H_t = m.dt, 0.0
-    for k in range(2):
-        step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-        later = scalar(m, m.surfaces, mode, t + step, x)
-        H_t += weight * (later - scalar(m, m.surfaces, mode, t - step, x)) / d
-    return H_t
+    return gradient(m, mode, SURFACE, t, x, m.x, m.H_x)
 
 
 def guard(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
@@ -173,22 +159,32 @@ def guard(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
 
 def guard_gradient(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
     """Gradient of guard k by the state into the work space; returns its derivative by time."""
-    copy(m.x_guard, x, m.n)
+    return gradient(m, mode, k, t, x, m.x_guard, m.g_x)
+
+
+def watched(m: Machine, mode: int, k: int, t: float, x: Doubles) -> float:
+    """Value of guard k of a mode, or (SURFACE) H of a sliding one."""
+    return scalar(m, m.surfaces, mode, t, x) if k == SURFACE else guard(m, mode, k, t, x)
+
+
+def gradient(m: Machine, mode: int, k: int, t: float, x: Doubles, beside: Doubles, slopes: Doubles) -> float:
+    """Its derivatives by the state into `slopes`; returns that by time. beside : (n,)  work space."""
+    copy(beside, x, m.n)
     for i in range(m.n):
         d, slope = DIFFERENCE * max(1.0, abs(x[i])), 0.0
         for j in range(2):
             step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-            m.x_guard[i] = x[i] + step
-            up, value = m.x_guard[i], guard(m, mode, k, t, m.x_guard)
-            m.x_guard[i] = x[i] - step
-            slope += 2.0 * (1 + j) * weight * (value - guard(m, mode, k, t, m.x_guard)) / (up - m.x_guard[i])
-        m.x_guard[i], m.g_x[i] = x[i], slope
-    d, g_t = m.dt, 0.0
+            beside[i] = x[i] + step
+            up, value = beside[i], watched(m, mode, k, t, beside)
+            beside[i] = x[i] - step
+            slope += 2.0 * (1 + j) * weight * (value - watched(m, mode, k, t, beside)) / (up - beside[i])
+        beside[i], slopes[i] = x[i], slope
+    d, by_time = m.dt, 0.0
     for j in range(2):
         step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-        later = guard(m, mode, k, t + step, x)
-        g_t += weight * (later - guard(m, mode, k, t - step, x)) / d
-    return g_t
+        later = watched(m, mode, k, t + step, x)
+        by_time += weight * (later - watched(m, mode, k, t - step, x)) / d
+    return by_time
 
 
 def band_and_rate(

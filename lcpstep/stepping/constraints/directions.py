@@ -5,8 +5,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.linear import solve_definite
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, Indices, after
 
 
@@ -15,15 +14,3 @@ def mobilities(H: Doubles, X: Doubles, ids: Indices, n_k: int, W: Doubles, n: in
     for k in range(n_k):
         for m in range(n_k):
             W[ids[k] * n + ids[m]] = product(H, after(X, ids[m] * n_q), ids[k], n_q)
-
-
-def divide_by_mass(
-    constant: bool, inverse: Doubles, L: Doubles, row: Doubles, out: Doubles, n_q: int
-) -> None:
-    """Out <- M^-1 row, by the inverse of a constant mass or else by Cholesky's factor L."""
-    copy(out, row, n_q)
-    if constant:
-        for i in range(n_q):
-            out[i] = product(inverse, row, i, n_q)
-    else:
-        solve_definite(L, out, n_q)

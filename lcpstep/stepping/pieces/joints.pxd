@@ -1,10 +1,10 @@
 cimport cython
 from lcpstep.arrays cimport doubles
+from lcpstep.kernels.acceleration cimport response
 from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport clear, product
+from lcpstep.kernels.vectors cimport clear, largest, product
 from lcpstep.pointers cimport abs, after, inf, max
-from lcpstep.stepping.constraints.directions cimport divide_by_mass
 from lcpstep.stepping.constraints.joint_rows cimport (
     CONTRADICTION, Elimination, arrived, factorise_joints, solve_joints
 )

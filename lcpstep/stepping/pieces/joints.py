@@ -15,11 +15,11 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
+    from lcpstep.kernels.acceleration import response
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.kernels.vectors import clear, largest, product
     from lcpstep.pointers import Doubles, abs, after, inf, max
-    from lcpstep.stepping.constraints.directions import divide_by_mass
     from lcpstep.stepping.constraints.joint_rows import (
         CONTRADICTION,
         Elimination,
@@ -84,9 +84,7 @@ def take(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles) -> None:
     n, n_q = j.n_j, j.n_q
     gap_rates(j.rows, t, q, v, j.J, j.turning)
     for k in range(n):
-        divide_by_mass(
-            not j.system.mass.given, j.system.M_inverse, M, after(j.J, k * n_q), after(j.MJ, k * n_q), n_q
-        )
+        response(j.system, M, j.shifted, after(j.J, k * n_q), after(j.MJ, k * n_q))
         for i in range(n):
             j.S[i * n + k] = product(j.J, after(j.MJ, k * n_q), i, n_q)
     factorise_joints(j.elimination, j.S, n, 0)
@@ -160,15 +158,12 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
 
 def turn(j: Joints, v: Doubles) -> bool:
     """V onto the rates of the joints at the state last taken; the impulses for that into `answer`."""
-    n_q = j.n_q
-    largest = 0.0
-    for i in range(n_q):
-        largest = max(largest, abs(v[i]))
+    n_q, fastest = j.n_q, largest(v, 0.0, j.n_q)
     answer(j, v, j.turning, j.answer)
     for k in range(j.n_j):
         rate, size = product(j.J, v, k, n_q) + j.turning[k], abs(j.turning[k])
         for i in range(n_q):
-            speed = max(largest, abs(v[i]))
+            speed = max(fastest, abs(v[i]))
             for n in range(j.n_j):
                 speed = max(speed, abs(j.MJ[n * n_q + i] * j.answer[n]))
             size += abs(j.J[k * n_q + i]) * speed

@@ -3,7 +3,7 @@ from lcpstep.kernels.course cimport AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics cimport external_force
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, product
+from lcpstep.kernels.vectors cimport copy, finite, product
 from lcpstep.pointers cimport abs, max
 from lcpstep.stepping.pieces.carried cimport put_kept_back
 from lcpstep.stepping.pieces.codes cimport (
@@ -53,4 +53,5 @@ cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t
 @cython.locals(code=Py_ssize_t)
 cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept nogil
 cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil
-cdef bint finite(Work w) noexcept nogil
+@cython.locals(known=bint)
+cdef bint is_finite(Work w) noexcept nogil

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import copy, finite, product
     from lcpstep.pointers import abs, max
     from lcpstep.stepping.pieces.carried import put_kept_back
     from lcpstep.stepping.pieces.codes import (
@@ -230,7 +230,7 @@ def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
     keep_now(w, record, late)
     w.steps += 1
     w.under_way = False
-    if not finite(w):
+    if not is_finite(w):
         return NOT_FINITE
     code = joints_failed(w) if w.joined else FINISHED
     if code == FINISHED and record.is_due(w.steps):
@@ -255,12 +255,7 @@ def begin_step(m: Model, plan: Plan, w: Work) -> None:
         w.turned[c] -= end
 
 
-def finite(w: Work) -> bool:
+def is_finite(w: Work) -> bool:
     """Whether state and gaps are finite, and their accelerations in the last piece."""
-    total = 0.0
-    for i in range(w.n_q):
-        total += (w.q[i] - w.q[i]) + (w.v[i] - w.v[i])
-    for c in range(w.n_c):
-        total += (w.gap[c] - w.gap[c]) + (w.rate[c] - w.rate[c])
-        total += w.half[c] - w.half[c]
-    return total == 0.0
+    known = finite(w.q, w.n_q) and finite(w.v, w.n_q)
+    return known and finite(w.gap, w.n_c) and finite(w.rate, w.n_c) and finite(w.half, w.n_c)

@@ -11,7 +11,7 @@ from lcpstep.stepping.pieces.codes cimport (
 )
 from lcpstep.stepping.pieces.impulses cimport strike
 from lcpstep.stepping.pieces.keep cimport keep
-from lcpstep.stepping.pieces.loop cimport Steps, finite
+from lcpstep.stepping.pieces.loop cimport Steps, is_finite
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.piece cimport penetrates
 from lcpstep.stepping.pieces.polynomial cimport (

@@ -29,7 +29,7 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.loop import Steps, finite
+    from lcpstep.stepping.pieces.loop import Steps, is_finite
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.piece import penetrates
     from lcpstep.stepping.pieces.polynomial import (
@@ -84,7 +84,7 @@ class PolynomialSteps(Steps):
         length = min(self.w.end - self.w.sigma, self.plan.longest)
         if load(self.m, self.plan, self.w, self.z, self.record, now, length):
             return FINISHED
-        return LCP_FAILED if finite(self.w) else NOT_FINITE
+        return LCP_FAILED if is_finite(self.w) else NOT_FINITE
 
     def find(self, t: float) -> int:
         """The polynomial, and the first event on it."""

@@ -6,7 +6,7 @@ from lcpstep.pointers cimport min
 from lcpstep.stepping.pieces.codes cimport AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
 from lcpstep.stepping.pieces.event cimport event
 from lcpstep.stepping.pieces.jointed cimport turn_with_joints
-from lcpstep.stepping.pieces.loop cimport Steps, finite
+from lcpstep.stepping.pieces.loop cimport Steps, is_finite
 from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish
 from lcpstep.stepping.pieces.race cimport race
 from lcpstep.stepping.pieces.smooth cimport renew_forces

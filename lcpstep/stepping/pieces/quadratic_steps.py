@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
     from lcpstep.stepping.pieces.event import event
     from lcpstep.stepping.pieces.jointed import turn_with_joints
-    from lcpstep.stepping.pieces.loop import Steps, finite
+    from lcpstep.stepping.pieces.loop import Steps, is_finite
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
     from lcpstep.stepping.pieces.race import race
     from lcpstep.stepping.pieces.smooth import renew_forces
@@ -51,7 +51,7 @@ class QuadraticSteps(Steps):
         """Accelerations and gap quadratics."""
         if begin_piece(self.m, self.plan, self.w, self.record, t + self.w.sigma):
             return FINISHED
-        return LCP_FAILED if finite(self.w) else NOT_FINITE
+        return LCP_FAILED if is_finite(self.w) else NOT_FINITE
 
     def find(self, t: float) -> int:
         """The first gap that closes; AGAIN after impacts of many bodies."""

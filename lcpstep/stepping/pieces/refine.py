@@ -151,16 +151,11 @@ def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
     """Whether the guess, positive for all, is the answer: what rests keeps its forces from step to step."""
     if n == 1:
         return False
-    size = 0.0
     for k in range(n):
         if not w.z[k] > 0.0:
             return False
-        size = max(size, abs(w.b[k]))
     leftover(w, inverse, factored, n)
-    worst = 0.0
-    for k in range(n):
-        worst = max(worst, abs(w.residual[k]))
-    return worst <= EXACT * size
+    return largest(w.residual, 0.0, n) <= EXACT * largest(w.b, 0.0, n)
 
 
 def leftover(w: Work, inverse: Doubles, factored: bool, n: int) -> None:

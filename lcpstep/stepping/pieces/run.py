@@ -60,7 +60,9 @@ class LocatedRun(StepRun):
         if tolerance is not None and not (p.plain and p.steady and tolerance >= adaptive.NOISE):
             self.plan, order = Plan(p.fields | {"many": MANY_EXACTLY}), int(self.method.order)
             span, h = self.scene.t_span, self.method.h
-            self.controlled_by(Attempts(self.loop, self.plan_for, span, h, tolerance, order))
+            self.controlled_by(
+                Attempts(self.loop, lambda h: self.plan_for(h).fields, span, h, tolerance, order)
+            )
         return code
 
     @property

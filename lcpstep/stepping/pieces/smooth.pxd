@@ -1,8 +1,7 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport bias, external_force, gap_rates, gaps, mass, total_force
-from lcpstep.kernels.linear cimport (
-    factorise, grow_factor, positive_definite, solve, solve_definite, solve_factored,
-)
+from lcpstep.kernels.acceleration cimport factor_mass, response
+from lcpstep.kernels.dynamics cimport bias, external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.linear cimport factorise, grow_factor, solve, solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, product
 from lcpstep.pointers cimport abs, after, max, min

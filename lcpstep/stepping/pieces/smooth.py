@@ -15,15 +15,9 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, mass, total_force
-    from lcpstep.kernels.linear import (
-        factorise,
-        grow_factor,
-        positive_definite,
-        solve,
-        solve_definite,
-        solve_factored,
-    )
+    from lcpstep.kernels.acceleration import factor_mass, response
+    from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
+    from lcpstep.kernels.linear import factorise, grow_factor, solve, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
@@ -102,18 +96,10 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
 
     False where that is not positive definite.
     """
-    if not m.mass.given:
-        total_force(m, t, q, v, w.force)
-        for i in range(w.n_q):
-            out[i] = product(m.M_inverse, w.force, i, w.n_q)
-        if w.joined:
-            join_acceleration(w, t, q, v, out)
-        return True
-    total_force(m, t, q, v, out)
-    mass(m, t, q, v, w.M)
-    if not positive_definite(w.M, w.n_q):
+    total_force(m, t, q, v, w.force)
+    if not factor_mass(m, t, q, v, w.M):
         return False
-    solve_definite(w.M, out, w.n_q)
+    response(m, w.M, w.jolt, w.force, out)
     if w.joined:
         join_acceleration(w, t, q, v, out)
     return True
@@ -133,12 +119,7 @@ def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
 
 def mobility(m: Model, w: Work, c: int) -> None:
     """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
-    if not m.mass.given:
-        for i in range(w.n_q):
-            w.MG[c * w.n_q + i] = product(m.M_inverse, after(w.G, c * w.n_q), i, w.n_q)
-    else:
-        copy(after(w.MG, c * w.n_q), after(w.G, c * w.n_q), w.n_q)
-        solve_definite(w.M, after(w.MG, c * w.n_q), w.n_q)
+    response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
     if w.joined:
         reduce_mobility(w, c)
 
@@ -153,10 +134,8 @@ def respond(m: Model, w: Work) -> None:
 
 def refactor(m: Model, w: Work, t: float) -> bool:
     """Factors of the mass matrix and of the joints at the state w.q."""
-    if m.mass.given:
-        mass(m, t, w.q, w.v, w.M)
-        if not positive_definite(w.M, w.n_q):
-            return False
+    if not factor_mass(m, t, w.q, w.v, w.M):
+        return False
     if w.joined:
         take_joints(w, t)
     return True

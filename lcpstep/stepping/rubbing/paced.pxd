@@ -3,7 +3,7 @@ from libc.math cimport pow
 from lcpstep.events.friction.state cimport GUARDS
 from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.vectors cimport copy, distance, largest
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.pointers cimport abs, after, inf, max, min
 from lcpstep.stepping.rubbing.found cimport curve, is_motion, measure_base, note_arrival, note_middle, read_guards
 from lcpstep.stepping.rubbing.strides cimport Strides
 
@@ -14,7 +14,6 @@ cdef double ROUNDING, SAFETY, LEAST, MOST, LEAST_SHARE, STEEP, NEAR
 cdef Py_ssize_t pace(Strides s, double t, double longest) noexcept nogil
 cdef Py_ssize_t why(Strides s, double error) noexcept nogil
 cdef double change(Strides s, double allowed, double error) noexcept nogil
-cdef double speed(Strides s) noexcept nogil
 @cython.locals(good=bint)
 cdef bint halves(Strides s, double t, double h) noexcept nogil
 @cython.locals(least=double, off=double, error=double)

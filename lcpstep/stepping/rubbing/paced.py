@@ -20,7 +20,7 @@ if not cython.compiled:
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, distance, largest
-    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.rubbing.found import (
         curve,
         is_motion,
@@ -65,7 +65,7 @@ def pace(s: Strides, t: float, longest: float) -> int:
         before, truncated = error, False
     s.next_step = max(h * max(change(s, allowed, error), 1.0), s.next_step if truncated else 0.0)
     s.size_q = largest(s.y_new, s.size_q, s.n_q)
-    s.size_v = max(s.size_v, speed(s))
+    s.size_v = largest(after(s.y_new, s.n_q), s.size_v, s.n_q)
     s.length = h
     return DONE
 
@@ -82,14 +82,6 @@ def change(s: Strides, allowed: float, error: float) -> float:
     if error <= 0.0:
         return MOST
     return min(MOST, max(LEAST, SAFETY * pow(allowed / error, 1.0 / s.order)))
-
-
-def speed(s: Strides) -> float:
-    """The largest velocity at the end of the step."""
-    most = 0.0
-    for i in range(s.n_q, s.n):
-        most = max(most, abs(s.y_new[i]))
-    return most
 
 
 def halves(s: Strides, t: float, h: float) -> bool:
@@ -117,9 +109,8 @@ def halves(s: Strides, t: float, h: float) -> bool:
 
 def weigh(s: Strides, h: float) -> float:
     """The error of the step, relative to the motion; of what may have happened unseen in it, too."""
-    wrong_q, wrong_v = distance(s.y_new, s.refined, s.n_q), 0.0
-    for i in range(s.n_q, s.n):
-        wrong_v = max(wrong_v, abs(s.y_new[i] - s.refined[i]))
+    v, n = after(s.y_new, s.n_q), s.n_q
+    wrong_q, wrong_v = distance(s.y_new, s.refined, n), distance(v, after(s.refined, n), n)
     for g in range(GUARDS * s.n_c):
         least, off = curve(s, g, h), strayed(s, g)
         if least > NEAR * off or s.begin_value[g] <= s.band[g]:
@@ -131,7 +122,7 @@ def weigh(s: Strides, h: float) -> float:
             wrong_q = max(wrong_q, off)
         else:
             wrong_v = max(wrong_v, off)
-    size_q, size_v = largest(s.y_new, s.size_q, s.n_q), max(s.size_v, speed(s))
+    size_q, size_v = largest(s.y_new, s.size_q, n), largest(v, s.size_v, n)
     error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v))
     return error - min(ROUNDING, LEAST_SHARE * s.tolerance)
 

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport measure
+from lcpstep.events.friction.equations cimport add_impulse, measure
 from lcpstep.events.friction.held cimport count_impulses, hold_modes
 from lcpstep.events.friction.surfaces cimport project
 from lcpstep.events.friction.keep cimport keep, keep_event

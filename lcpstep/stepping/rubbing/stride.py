@@ -7,7 +7,7 @@ import cython
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import measure
+    from lcpstep.events.friction.equations import add_impulse, measure
     from lcpstep.events.friction.held import count_impulses, hold_modes
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, undecided
@@ -156,9 +156,8 @@ def press(s: Strides, a: float, b: float) -> None:
     if s.n_held == 0:
         return
     for i in range(s.n_r):
-        k = i - s.n_j if i >= s.n_j else 2 * s.n_c + i  # contacts are kept first, then tangents and joints
         change = s.push[i] if b >= 1.0 else s.pressed(i, b)
-        s.impulse[k] = s.impulse[k] + (change - s.pressed(i, a) if a > 0.0 else change)
+        add_impulse(s, i, change - s.pressed(i, a) if a > 0.0 else change)
 
 
 def arrive_with(s: Strides, t: float) -> None:

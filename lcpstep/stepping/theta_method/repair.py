@@ -19,12 +19,12 @@ import cython
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
 
 if not cython.compiled:
+    from lcpstep.kernels.acceleration import factor_mass, response
     from lcpstep.kernels.coulomb import solve_contacts
-    from lcpstep.kernels.dynamics import gap_rates, gaps, mass
-    from lcpstep.kernels.linear import positive_definite
+    from lcpstep.kernels.dynamics import gap_rates, gaps
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import abs, after, inf, max
-    from lcpstep.stepping.constraints.directions import divide_by_mass, mobilities
+    from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import arrived, distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -73,15 +73,13 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
         gap_rates(m, t, s.next_q, s.next_v, c.H, c.H_t)
     if c.n_j > 0:
         gap_rates(c.joints, t, s.next_q, s.next_v, c.J, c.J_t)
-    if not m.linear:
-        mass(m, t, s.next_q, s.next_v, c.M)
-        if not positive_definite(c.M, s.n_q):
-            return False
+    if not factor_mass(m, t, s.next_q, s.next_v, c.M):
+        return False
     n_k = n_a + c.n_j
     for k in range(n_k):
         i = c.problem.ids[k]
         c.problem.rate[k] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
-        divide_by_mass(m.linear, m.M_inverse, c.M, after(c.H, i * s.n_q), after(c.Y, i * s.n_q), s.n_q)
+        response(m, c.M, s.try_q, after(c.H, i * s.n_q), after(c.Y, i * s.n_q))
     mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
     eliminate(c.elimination, c.S, c.n, c.problem.ids, n_a, n_k, c.problem.mobility, c.problem.rate)
     if n_a > 0 and not solve_contacts(c.problem, n_a, 0):

@@ -5,9 +5,9 @@ from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.vectors cimport copy, finite, largest, product
 from lcpstep.kernels.repose cimport AT_REST
-from lcpstep.kernels.stiction cimport rest_where_possible, solve_steps, terms
+from lcpstep.kernels.stiction cimport rest_where_possible, solve_steps
 from lcpstep.pointers cimport abs, after, max
-from lcpstep.kernels.coulomb cimport solve_contacts
+from lcpstep.kernels.coulomb cimport motion_of, solve_contacts
 from lcpstep.stepping.constraints.directions cimport mobilities
 from lcpstep.stepping.constraints.joint_rows cimport CONTRADICTION, distribute, eliminate
 from lcpstep.stepping.theta_method.implicit cimport REFRESH
@@ -34,7 +34,7 @@ cdef bint strikes(State s, Rows c, Py_ssize_t n_a) noexcept nogil
 cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
 cdef void compliance(bint linear, Plan plan, State s, double* row, double* out) noexcept nogil
-cdef void constant_rows(Model m, Plan plan, State s, Rows c, double t) noexcept nogil
+cpdef constant_rows(Model m, Plan plan, State s, Rows c, double t)
 cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_f, Py_ssize_t n_k) noexcept nogil
 cdef void apply_once(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 @cython.locals(hold=bint)

@@ -12,13 +12,13 @@ import cython
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.coulomb import motion_of, solve_contacts
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.repose import AT_REST
-    from lcpstep.kernels.stiction import rest_where_possible, solve_steps, terms
+    from lcpstep.kernels.stiction import rest_where_possible, solve_steps
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
@@ -101,7 +101,8 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
     for f in range(n_f):
         i = c.problem.ids[c.problem.carrier[f]]
         u = c.T_t[i] + product(c.T, s.next_v, i, s.n_q)
-        size = abs(c.T_t[i]) + terms(c.problem, n_a, n_f, f)
+        _, size = motion_of(c.problem, c.problem.impulse, n_a + f, n_a + n_f)
+        size += abs(c.T_t[i])
         for j in range(s.n_q):
             size += abs(c.T[i * s.n_q + j] * s.next_v[j])
         s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
@@ -183,7 +184,7 @@ def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -
 
 
 def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
-    """X and W of a linear scene in which no row ever changes."""
+    """X and W of a linear scene in which no row ever changes, called from Python."""
     gap_rates(m, t, s.q, s.v, c.H, c.H_t)
     gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
     gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)

@@ -6,7 +6,6 @@ from lcpstep.kernels.vectors cimport copy, finite, product
 from lcpstep.pointers cimport min
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
-from lcpstep.stepping.theta_method.row_impulses cimport constant_rows
 from lcpstep.stepping.theta_method.theta_step cimport take_step
 
 cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
@@ -36,4 +35,3 @@ cdef void coast(
 cdef void advance(Model m, State s, Rows c, double t) noexcept nogil
 cdef void measure(Model m, State s, Rows c, double t) noexcept nogil
 cdef void keep_times(double h, State s, Record record, double t, double t_next) noexcept nogil
-cpdef prepare(Model m, Plan plan, State s, Rows c, double t)

@@ -16,7 +16,6 @@ if not cython.compiled:
     from lcpstep.pointers import min
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
-    from lcpstep.stepping.theta_method.row_impulses import constant_rows
     from lcpstep.stepping.theta_method.theta_step import take_step
 
 
@@ -85,8 +84,7 @@ def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) ->
     if record.n_times == 0:
         record.keep(t, 0.0, s.q, s.v, s.impulse)
     elif record.times[0] == t:
-        record.keep(t, 0.0, s.q, s.v, s.impulse)
-        record.next_time = 1
+        record.keep_awaited(s.q, s.v, s.impulse)
 
 
 def end_step(
@@ -168,8 +166,3 @@ def keep_times(h: float, s: State, record: Record, t: float, t_next: float) -> N
             s.q_between[i] = (1.0 - share) * s.q[i] + share * s.next_q[i]
             s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
         record.keep_awaited(s.q_between, s.v_between, s.impulse)
-
-
-def prepare(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
-    """The matrices X and W of a plan in which they are constant, called from Python."""
-    constant_rows(m, plan, s, c, t)
