@@ -10,11 +10,18 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.flight.motion import Flight, rebase, state_at
     from lcpstep.kernels.record import LEAD
+    from lcpstep.pointers import max, min
 
 
 def keep(s: Flight, t: float) -> None:
-    """Keep the state s.q, s.v at time t, and the impulse since the one before."""
+    """Keep the state s.q, s.v at time t, and the impulse since the one before.
+
+    What the end of a chattering sequence has left of a negative one is to be paid by the contact force that follows.
+    """
+    owed = min(s.impulse[0], 0.0)
+    s.impulse[0] = max(s.impulse[0], 0.0)
     s.record.keep(t, s.mode, s.q, s.v, s.impulse)
+    s.impulse[0] = owed
 
 
 def keep_times(s: Flight, stop: float, last: bool) -> None:
