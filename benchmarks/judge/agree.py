@@ -220,8 +220,29 @@ def _together(d: Description, r: Run) -> float:
 
 
 def _scatter(d: Description, r: Run) -> float:
-    """What rounding impacts to a grid does to places, whichever way it happens to fall."""
-    return 0.25 * d.h * float(np.max(np.abs(r.motion.v))) if r.method == "moreau" else 0.0
+    """What a method leaves of places open, in whichever steps.
+
+    Impacts rounded to a grid fall where they happen to. Hops that are shorter than a step have the one acceleration
+    of a piece of order two: what damping takes from them is known to no digit, and places but for their height.
+    """
+    if r.method == "moreau":
+        return 0.25 * d.h * float(np.max(np.abs(r.motion.v)))
+    return highest_hop(d, r.motion) if r.method == "located" else 0.0
+
+
+def highest_hop(d: Description, m: Any) -> float:
+    """How far a body gets from where it hops, in hops that are shorter than a step [units of q]."""
+    if not d.contacts:
+        return 0.0
+    log = m.impacts[m.impacts.kind == Kind.IMPACT]
+    rows = np.maximum(np.linalg.norm(physics.jacobians(d, m.q[0]), axis=-1), 1e-300)
+    highest = 0.0
+    for c in range(d.contacts):
+        own = log[log.contact == c]
+        length = np.diff(own.time)
+        hops = (length < d.h) & (own.after[:-1] > 0.0)
+        highest = max(highest, float(np.max(0.25 * (own.after[:-1] * length)[hops], initial=0.0)) / rows[c])
+    return highest
 
 
 def nearer(ref: Reference, r: Run, k: int, distance: float) -> bool:
