@@ -20,6 +20,7 @@ from benchmarks.judge.describe import Description, numbers
 from benchmarks.judge.graze import grazes
 from benchmarks.judge.runs import WAYS, Finding, Run, run
 from benchmarks.judge.scales import EPS
+from benchmarks.judge.start import along, joined
 from lcpstep.trajectory import Kind
 
 LOOKS = 160
@@ -35,7 +36,7 @@ EARLY, CLEAR = (
 
 
 def disturbed(d: Description, share: float, size: float, seed: int) -> Description:
-    """The scene with everything a little different, but what is closed, at rest, or 0 or 1.
+    """The scene with everything a little different, but what is closed, at rest, or 0 or 1; joints hold at its start.
 
     share : of every number; places are moved by that share of `size`
     """
@@ -45,13 +46,15 @@ def disturbed(d: Description, share: float, size: float, seed: int) -> Descripti
     def off(values: Any) -> Any:
         return numbers(np.asarray(values) * (1.0 + share * rng.uniform(-1.0, 1.0, np.shape(values))))
 
-    q0 = np.array(d.q0) if d.J else np.array(d.q0) + share * size * rng.uniform(-1.0, 1.0, d.n)
+    q0 = np.array(d.q0) + share * size * rng.uniform(-1.0, 1.0, d.n)
     t, faster = d.t_span[0], 1.0 + share * rng.uniform(-1.0, 1.0)
     new = replace(
         d, q0=numbers(q0), v0=numbers(faster * np.array(d.v0)), constant=off(d.constant), cosine=off(d.cosine),
         sine=off(d.sine),
         restitution=numbers([min(r * (1.0 + share * rng.uniform(-1.0, 1.0)), 0.5 + 0.5 * r) for r in d.rates()]),
     )  # fmt: skip
+    if d.J:
+        new = replace(joined(new, q0), v0=numbers(along(physics.joint_rows(d, q0), np.array(new.v0))))
     if not d.contacts:
         return new
     g = physics.gaps(d, t, np.array(d.q0))
