@@ -18,6 +18,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import finite
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 
@@ -108,6 +109,11 @@ def find_highest(
                     kinetic += 0.5 * M[j * n + i_q] * x_t[j] * x_t[i_q]
             most = max(most, abs(change) / (4.0 * near * kinetic)) if kinetic > 0.0 else most
     return most
+
+
+def all_finite(x: Any) -> bool:
+    """Whether no number of a contiguous array is infinite or not-a-number."""
+    return bool(finite(doubles(x), x.size))
 
 
 def turning(
