@@ -223,7 +223,7 @@ def _system(scene: Scene) -> dict[str, Any]:
 
 
 def _known(part: Any, read: Callable[[Any], dict[str, Any]], scene: Scene) -> dict[str, Any]:
-    """Numbers and functions of a system or of contacts, read once; all models of it share the arrays."""
+    """Numbers and functions of a system or of contacts, read once; models of it share the arrays."""
     known = KEPT.get(part)
     if known is None:
         known = read(part)
@@ -288,7 +288,8 @@ def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[
         fields = _known(contacts, _flat_rows, scene)
     else:
         fields = _known(contacts, _curved_rows, scene) | {"G": np.zeros((n_c, scene.n_q))}
-    return fields | {"motion_now": np.zeros((n_c, 3))}
+    # A run by a tolerance changes its own restitutions
+    return fields | {"motion_now": np.zeros((n_c, 3)), "restitution": fields["restitution"].copy()}
 
 
 def _rows(n_c: int) -> dict[str, Any]:
