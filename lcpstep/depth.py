@@ -78,9 +78,11 @@ def _shallow(run: Trajectory, share: float) -> bool:
     from lcpstep.kernels.looks import lies_inside
     from lcpstep.model import at_hand, looked_at
 
-    m = looked_at(run.scene) if isinstance(run.scene.contacts, Contacts) else at_hand(run.scene)
+    m = at_hand(run.scene)
     if m is None:
-        return False
+        if not isinstance(run.scene.contacts, Contacts):  # of many coordinates, perhaps sparse
+            return False
+        m = looked_at(run.scene)
     deep = lies_inside(m, run.t, run.q, LOOKS, share, True)
     cause()
     forget()

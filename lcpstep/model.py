@@ -55,15 +55,17 @@ def model(scene: Scene) -> kernels.Model:
 
 
 def at_hand(scene: Scene) -> kernels.Model | None:
-    """The model of the run just made, where it is of this scene and in its coordinates (`carried` has its own)."""
-    if getattr(LATEST, "scene", None) is not scene or LATEST.model.carried:
-        return None
-    return cast(kernels.Model, LATEST.model)
+    """The model of the run just made, where it is of this scene; `carried` it may be."""
+    return cast(kernels.Model, LATEST.model) if getattr(LATEST, "scene", None) is scene else None
 
 
 def looked_at(scene: Scene) -> kernels.Model:
-    """A model to evaluate states of a scene with, between runs: that of the run just made, or a new one."""
-    return at_hand(scene) or model(scene)
+    """A model to evaluate states of a scene with, between runs: that of the run just made, where it is of this scene.
+
+    The one in coordinates of its own (`carried`) sees other states.
+    """
+    made = at_hand(scene)
+    return model(scene) if made is None or made.carried else made
 
 
 def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:

@@ -220,6 +220,6 @@ class Recorder:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
         events = in_order(joined(self._parts["events"]), end)
         log = np.empty(len(events), dtype=LOGGED)
-        for k, name in enumerate(IMPACT_DTYPE.names or ()):
+        for k, name in enumerate(IMPACT_DTYPE.names or () if len(events) else ()):
             log[name] = events[:, k]
         return log.view(np.recarray)

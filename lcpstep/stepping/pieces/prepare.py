@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.kernels.model import Model
+from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import frame_at
 from lcpstep.stepping.pieces.codes import ROUNDING
-from lcpstep.stepping.pieces.extent import extent, is_stiff
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.start import MARGIN

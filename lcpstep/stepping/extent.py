@@ -1,4 +1,4 @@
-"""Lengths at hand at the start of a run of `Located`: what rounding of its gaps is of."""
+"""Lengths at hand at the start of a run by steps: what rounding of its gaps is of."""
 
 from __future__ import annotations
 
@@ -33,13 +33,23 @@ def longest_way(
     pushed: bool, work: Doubles,
 ) -> float:  # fmt: skip
     """Kernel of `extent`."""
-    found = max(largest(q, 0.0, m.n_q), step * largest(v, 0.0, m.n_q))
-    found = largest(m.offset, found, m.n_c)
+    found = of_places(m, q, v, step)
     if m.flat:
         found = max(found, displacement(m, t, q, v, piece, work))
         if pushed:
             found = max(found, driven(m, t, q, v, piece, inverse, work))
     return found
+
+
+def places(m: Model, q: Any, v: Any, step: float) -> float:
+    """The largest of places, offsets and ways within a step that v leads along [m]."""
+    at, at_rate = doubles(q), doubles(v)
+    return float(of_places(m, at, at_rate, step))
+
+
+def of_places(m: Model, q: Doubles, v: Doubles, step: float) -> float:
+    """Kernel of `places`."""
+    return largest(m.offset, max(largest(q, 0.0, m.n_q), step * largest(v, 0.0, m.n_q)), m.n_c)
 
 
 def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Doubles) -> float:
