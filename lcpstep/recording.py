@@ -5,6 +5,7 @@ Kernels write into arrays of fixed size and return when these are full; the reco
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.kernels.layout import COLUMNS, LEAD
+from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH
 from lcpstep.trajectory import IMPACT_DTYPE
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
-BUFFERS = threading.local()  # .rows, .lines: those of the last run of this thread
+BUFFERS = threading.local()  # .rows, .lines, .curves: those of the last run of this thread
 NOTHING: Array = np.zeros(0)
 NOTHING.flags.writeable = False
 EXPECTED = 1 << 22  # states that room is made for at once, at most
@@ -166,7 +167,10 @@ class Recorder:
 
         self.rows = buffer("rows", rows, LEAD + 2 * n_q + n_c)  # what is read has been written
         self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)
-        self.curves = np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q))))
+        shape = dense_shape or (7, 2 * n_q)
+        self.curves = np.zeros((0, *shape))
+        if dense:
+            self.curves = buffer("curves", rows, math.prod(shape)).reshape(-1, *shape)
         self.record = Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves
         )
@@ -181,11 +185,13 @@ class Recorder:
         if rows > self._free:
             self._close(max(rows, self._expected))
         if rows > 0:
+            if len(self.curves):
+                curves = self.curves[:rows].copy()
+                curves[self.rows[:rows, LENGTH] == 0.0] = 0.0  # no step has followed
+                self._parts["dense"].append(curves)
             self.record.row = rows
             self.record.move(self._states[-1], len(self._states[-1][0]) - self._free)
             self._free -= rows
-            if len(self.curves):
-                self._parts["dense"].append(self.curves[:rows].copy())
         if events > 0:
             self._parts["events"].append(self.lines[:events].copy())
         self.taken += events

@@ -13,7 +13,9 @@ from lcpstep import EventDriven, Located, Moreau, simulate
 SHORT = (0.0, 2e-3)
 
 
-@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2), EventDriven()], ids=lambda x: type(x).__name__)
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-2), Located(1e-2), EventDriven()], ids=lambda x: type(x).__name__
+)
 def test_a_run_leaves_the_scene_to_the_next_one_as_it_was(method):
     scene = scenes.bouncing_ball(t_end=2.0)
     before = simulate(scene, method)
@@ -29,7 +31,9 @@ def test_joints_have_numbers_of_their_own():
     G[:] = 7.0
     gap, _ = joints.as_contacts().state(0.0, np.array([1.0, 2.0]), np.zeros(2), np.zeros(0))
     assert gap == 3.5
-    assert joints.as_contacts() is joints.as_contacts()  # checked once, and not whenever somebody asks for n_j
+    assert (
+        joints.as_contacts() is joints.as_contacts()
+    )  # checked once, and not whenever somebody asks for n_j
     assert pickle.loads(pickle.dumps(joints)).n_j == 1
 
 

@@ -71,9 +71,7 @@ def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Dou
     return found
 
 
-def driven(
-    m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubles, work: Doubles
-) -> float:
+def driven(m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubles, work: Doubles) -> float:
     """How far forces push in a time h, as stiff springs let them [m]; harmonic ones at their largest."""
     n = m.n_q
     a, f, y, M = work, after(work, n), after(work, 2 * n), after(work, 3 * n)
@@ -95,7 +93,7 @@ def driven(
 
 def is_stiff(m: Model) -> bool:
     """Whether C or K is not zero."""
-    for i in range(m.n_q * m.n_q):
-        if m.C[i] != 0.0 or m.K[i] != 0.0:
-            return True
-    return False
+    found, n = False, m.n_q * m.n_q
+    for i in range(n):
+        found = found or m.C[i] != 0.0 or m.K[i] != 0.0
+    return found

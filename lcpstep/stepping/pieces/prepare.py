@@ -69,7 +69,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         t_scale = max(t_scale, scene.period)
     return Plan({
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": trapezoidal and stiff,
-        "steady": trapezoidal and not stiff and unforced, "plain": constant and not moving, "constant": constant, "small": n_q <= SMALL,
+        "steady": trapezoidal and not stiff and unforced,
+        "plain": constant and not moving, "constant": constant, "small": n_q <= SMALL,
         "slack": ROUNDING * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
