@@ -166,7 +166,7 @@ class LocatedRun(StepRun):
         Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
         """
         if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
-            return Bent(s.t, s.q, s.v, self.kept.all, s.mode > 0.0)
+            return Bent(s.t, s.q, s.v, self.kept.all, s.mode)
         return Again(self.method, self.scene, *self.state)
 
     def message(self, code: int) -> str:
