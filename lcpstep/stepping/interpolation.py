@@ -73,10 +73,10 @@ class Bent(Parabolic):
 
     Parameters
     ----------
-    jumps : (n,) whether the velocity may have jumped at a kept state
+    mode : (n,) above zero where the velocity may have jumped at a kept state
     """
 
-    jumps: NDArray[np.bool_]
+    mode: Array
 
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
         """The states in the steps from rows i of the kept ones."""
@@ -85,7 +85,7 @@ class Bent(Parabolic):
         length = (t[i + 1] - t[i])[:, None]
         end = 2.0 * (q[i + 1] - q[i]) / length - v[i]  # where the parabola's velocity arrives
         share = np.where(
-            (self.jumps[i + 1] | (times == t[-1]))[:, None], 0.0, (times - t[i])[:, None] / length
+            ((self.mode[i + 1] > 0.0) | (times == t[-1]))[:, None], 0.0, (times - t[i])[:, None] / length
         )
         return q_at, v_at + share * share * (v[i + 1] - end)
 
