@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.gauss import gauss
+from lcpstep.kernels.between import last_rows
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
@@ -122,13 +123,10 @@ def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
 
 def at(run: Trajectory, t: Array, kept: bool) -> tuple[Array, Array]:
     """States at times in their order, kept ones or any."""
-    if kept:
-        k = np.searchsorted(run.t, t, side="right") - 1
-        return run.q[k], run.v[k]
-    later = np.diff(t, prepend=-math.inf) > 0.0
-    q, v = run.at(t[later])
-    place = np.cumsum(later) - 1
-    return q[place], v[place]
+    if not kept:
+        return run.dense(t)
+    k = last_rows(run.t, t, 0, len(run.t) - 1)
+    return run.q[k], run.v[k]
 
 
 def with_nodes(t: Array) -> Array:

@@ -10,7 +10,6 @@ from lagrangian import Scene, scenes
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errorbar import companions, estimate
-from lcpstep.errorbar.distance import _before
 from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
 from lcpstep.recording import Kept
 from lcpstep.stepping.pieces.run import Again
@@ -114,10 +113,6 @@ def test_what_happens_at_the_start_alone_adds_nothing_to_the_integrals():
     d = draw(270623, 20)
     run = simulate(d.scene(), Located(d.length / 5000.0, 4), error=True)
     assert run.error.velocity.l1 < 1e-9
-
-
-def test_times_left_out_count_as_the_last_before():
-    assert _before(np.array([True, True, False, True, False, True])).tolist() == [2, 2, 2, 2, 4, 4]
 
 
 @pytest.mark.parametrize("method", [Located(5e-2), EventDriven(), Located(1e-1, 4)], ids=str)
