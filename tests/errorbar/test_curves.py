@@ -54,7 +54,7 @@ def test_even_times_add_what_they_alone_tell_more(c):
     t = np.arange(7.0)
     one, other = states(t, lambda t: np.array([4.0, 0.0, 4.0, 0.0, 1.0, 3.0, 1.0]))
     plain, more = (
-        c.curves(t, t, one, other, marks(t), marks(NOTHING), even)[1] for even in (NOTHING, t[::2])
+        c.curves(t, t, one, other, marks(t), marks(NOTHING), even)[1] for even in (NOTHING, t[::2].copy())
     )
     assert np.allclose(more[:, 0] - plain[:, 0], [0.0, 0.0, 4.0, 4.0, 6.5, 6.5, 6.5])
 
