@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
+from lcpstep.errorbar.breaks import with_nodes
 from lcpstep.errorbar.curves import curves, looked_into, merged, within
-from lcpstep.errorbar.looks import MANY, Looks, at, brief, event_times, with_nodes
+from lcpstep.errorbar.looks import MANY, Looks, at, brief, event_times
 from lcpstep.errorbar.partners import Alike, Apart, Pairs
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model

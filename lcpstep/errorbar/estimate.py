@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
+from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
-from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
+from lcpstep.errorbar.looks import Looks, looks, seen
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import looked_at
 from lcpstep.recording import Kept
@@ -94,7 +95,7 @@ def _kept(look: Looks | None, every: bool) -> Kept:
     """What a companion keeps: every step, or the states that it is asked for."""
     if look is None:
         return Kept(1, False, np.zeros(0))
-    return Kept(0, False, np.unique(with_nodes(look.t)) if every else look.t)
+    return Kept(0, False, increasing(with_nodes(look.t)) if every else look.t)
 
 
 def _reach(found: Found) -> float:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lcpstep.errorbar import curves
-from lcpstep.errorbar.looks import with_nodes
+from lcpstep.errorbar.breaks import with_nodes
 from tests.uncompiled import kernels
 
 KERNELS = {"compiled": curves, "uncompiled": kernels("lcpstep.errorbar").curves}
