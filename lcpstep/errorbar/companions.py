@@ -15,6 +15,7 @@ turns out to be far larger than its own tolerance (`Companion.tells`).
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
@@ -28,6 +29,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
 from lcpstep.faults import forget
+from lcpstep.model import shared
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
@@ -135,7 +137,8 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
     if getattr(method, "h", 0.0) > span:
         method = replace(method, h=span)
     try:
-        found: Trajectory = method.run(scene, kept, hurry)
+        with shared():
+            found: Trajectory = method.run(scene, kept, hurry)
     except SimulationInterrupted as stopped:
         if not late:
             raise
@@ -149,6 +152,7 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
     return found
 
 
+@functools.lru_cache(maxsize=64)
 def in_words(method: Any) -> str:
     """A method and what differs from its defaults."""
     own = [(f.name, getattr(method, f.name)) for f in fields(method) if getattr(method, f.name) != f.default]

@@ -80,9 +80,8 @@ def moving_apart(run: Trajectory, other: Trajectory, whole: bool) -> Apart:
     """Whether velocities differ at times by more than a share of jumps; `whole`: the other has all its steps."""
 
     def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
-        times, place = np.unique(t, return_inverse=True)
-        apart = np.abs(roughly(run, times)[1] - (roughly(other, times) if whole else other.at(times))[1])
-        return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
+        apart = np.abs(roughly(run, t)[1] - (roughly(other, t) if whole else other.dense(t))[1])
+        return np.asarray(np.max(apart, axis=1, initial=0.0) > SAME * jump)
 
     return differ
 
@@ -91,7 +90,7 @@ def roughly(run: Trajectory, t: Array) -> tuple[Array, Array]:
     """States of a run with all its steps, by parabolas within them where it would be run again for those."""
     if getattr(run.dense, "dear", False) and len(run.t) > 1:
         return Parabolic(run.t, run.q, run.v, True)(t)
-    return run.at(t)
+    return run.dense(t)
 
 
 def distance(

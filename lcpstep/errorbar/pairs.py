@@ -56,8 +56,10 @@ class Pairs(NamedTuple):
 
     def windows(self, resolution: float) -> Array:
         """Times in which one run has struck and the other has not, with as much before and after, (l, 2) [s]."""
+        if not len(self.time):
+            return np.zeros((0, 2))
         usual = MARGIN * np.max(self.time[~self.weak], initial=resolution)
-        near = self.time <= max(usual, SLIGHT * float(np.ptp(self.start)) if len(self.start) else 0.0)
+        near = self.time <= max(usual, SLIGHT * float(np.ptp(self.start)))
         return np.column_stack([self.start - self.time, self.stop + self.time])[~self.weak | near]
 
 

@@ -128,10 +128,14 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
     if method.order != "exact":
         return np.inf
     a = m.arrays
-    stiffness = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["K"])))
-    damping = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["C"])))
+    stiffness, damping = (radius(a["M_inverse"] @ a[name]) for name in ("K", "C"))
     rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
     return float(1.0 / rate) if rate > 0.0 else np.inf
+
+
+def radius(A: Array) -> float:
+    """The largest size of an eigenvalue."""
+    return float(np.max(np.abs(np.linalg.eigvals(A)))) if A.any() else 0.0
 
 
 def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
