@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from typing import Any, cast
 from weakref import WeakKeyDictionary
 
@@ -51,9 +50,7 @@ def dense(name: str, matrix: Any) -> Array:
 
 
 def model(scene: Scene) -> kernels.Model:
-    """The scene's model as kernels built ahead of time take it; within `shared` that of the run just made."""
-    if getattr(LATEST, "shared", False) and _is_at_hand(scene):
-        return cast(kernels.Model, LATEST.model)
+    """The scene's model as kernels built ahead of time take it."""
     return _latest(scene, _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0])
 
 
@@ -62,22 +59,9 @@ def looked_at(scene: Scene) -> kernels.Model:
 
     The one in coordinates of its own (`carried`) sees other states.
     """
-    return cast(kernels.Model, LATEST.model) if _is_at_hand(scene) else model(scene)
-
-
-@contextmanager
-def shared() -> Iterator[None]:
-    """Within, a run by events or in steps of order four takes the model of the run before, of the same scene."""
-    LATEST.shared = True
-    try:
-        yield
-    finally:
-        LATEST.shared = False
-
-
-def _is_at_hand(scene: Scene) -> bool:
-    """Whether the last model made in this thread is of this scene, in the scene's own coordinates."""
-    return getattr(LATEST, "scene", None) is scene and not LATEST.model.carried
+    if getattr(LATEST, "scene", None) is scene and not LATEST.model.carried:
+        return cast(kernels.Model, LATEST.model)
+    return model(scene)
 
 
 def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:

@@ -11,7 +11,7 @@ from lcpstep import Located, Moreau, simulate
 from lcpstep.depth import gaps, normal
 from lcpstep.kernels import looks
 from lcpstep.kernels.states import power
-from lcpstep.model import LATEST, looked_at, model, shared
+from lcpstep.model import looked_at, model
 from tests.uncompiled import both_ways
 
 CURVED = [
@@ -60,20 +60,6 @@ def test_a_run_is_looked_at_with_its_own_model():
     first = looked_at(scene)
     assert looked_at(scene) is first
     assert looked_at(short("bowl")) is not first
-
-
-@pytest.mark.parametrize(("name", "kept"), [("bowl", True), ("cam-follower", False)])
-def test_a_companion_takes_the_model_of_its_run_unless_that_moves_with_a_frame(name, kept):
-    scene = short(name)
-    simulate(scene, Located(1e-2 * (scene.t_span[1] - scene.t_span[0])))
-    first = LATEST.model
-    with shared():
-        assert model(replace(scene)) is not first  # of another scene
-    simulate(scene, Located(1e-2 * (scene.t_span[1] - scene.t_span[0])))
-    first = LATEST.model
-    with shared():
-        assert (model(scene) is first) == kept
-    assert model(scene) is not first
 
 
 LOOKED_AT = """

@@ -29,7 +29,6 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
 from lcpstep.faults import forget
-from lcpstep.model import shared
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
@@ -137,8 +136,7 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
     if getattr(method, "h", 0.0) > span:
         method = replace(method, h=span)
     try:
-        with shared():
-            found: Trajectory = method.run(scene, kept, hurry)
+        found: Trajectory = method.run(scene, kept, hurry)
     except SimulationInterrupted as stopped:
         if not late:
             raise

@@ -46,8 +46,6 @@ def fastest_turn(scene: Scene, m: Model) -> float:
     looked at in windows of time. Stretches that turn fast by themselves are left out: runs stop there
     (`lcpstep.turns`).
     """
-    if not (m.motion.given or m.frame.given or m.gap_t.given):
-        return math.inf
     windows = 1 if math.isfinite(scene.period) else WINDOWS
     fastest = 0.0
     times = sample_times(scene)

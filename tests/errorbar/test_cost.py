@@ -1,5 +1,7 @@
 """What a bar costs: companions that are good enough, states kept on the way, and no run for nothing."""
 
+import cProfile
+import pstats
 from dataclasses import replace
 
 import numpy as np
@@ -96,6 +98,29 @@ def test_the_bar_of_a_long_run_that_ends_early_takes_a_companion_over_a_part_alo
     assert soon.reason
     assert whole.until == pytest.approx(soon.until, rel=0.1)
     assert max(ends) == pytest.approx(estimate.PART * 100.0)
+
+
+def calls(work):
+    """Functions called in Python or C, whose number the load of a machine does not change."""
+    work()
+    profile = cProfile.Profile()
+    profile.runcall(work)
+    return pstats.Stats(profile).total_calls
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "most"),
+    [
+        (scenes.bouncing_ball(t_end=1.0), Moreau(1e-3), 900),
+        (scenes.bouncing_ball(t_end=1.0), EventDriven(), 1150),
+        (scenes.newtons_cradle(t_end=0.5), Located(1e-3), 800),
+        (scenes.cam_follower(rpm=358.0, t_end=1.0), Moreau(1e-3), 1500),
+    ],
+    ids=str,
+)
+def test_the_bar_of_a_short_run_is_a_companion_and_few_calls(scene, method, most):
+    alone, both = (calls(lambda error=error: simulate(scene, method, error=error)) for error in (False, True))
+    assert both - alone < most
 
 
 def test_looks_are_as_many_as_tell_the_error():

@@ -128,14 +128,10 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
     if method.order != "exact":
         return np.inf
     a = m.arrays
-    stiffness, damping = (radius(a["M_inverse"] @ a[name]) for name in ("K", "C"))
+    own = (a["M_inverse"] @ a[name] if a[name].any() else np.zeros((0, 0)) for name in ("K", "C"))
+    stiffness, damping = (np.max(np.abs(np.linalg.eigvals(A)), initial=0.0) for A in own)
     rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
     return float(1.0 / rate) if rate > 0.0 else np.inf
-
-
-def radius(A: Array) -> float:
-    """The largest size of an eigenvalue."""
-    return float(np.max(np.abs(np.linalg.eigvals(A)))) if A.any() else 0.0
 
 
 def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
