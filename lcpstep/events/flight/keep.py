@@ -49,8 +49,12 @@ def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None
     n = len(times)
     with cython.nogil:
         for k in range(n):
-            s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
-            fly_on(s, kept_t[at[k]], t[k])
+            # What is known of the flight from a row on holds for what comes next in it, up to the next corner
+            if k > 0 and at[k] == at[k - 1] and kept_t[at[k]] < t[k - 1] <= t[k] and t[k] < s.high:
+                state_at(s, t[k])
+            else:
+                s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
+                fly_on(s, kept_t[at[k]], t[k])
             found_q[k], found_v[k] = s.q[0], s.v[0]
 
 

@@ -106,8 +106,8 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
     if method.order != "exact":
         return np.inf
     a = m.arrays
-    stiffness = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["K"])))
-    damping = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["C"])))
+    own = (a["M_inverse"] @ a[name] if a[name].any() else np.zeros((0, 0)) for name in ("K", "C"))
+    stiffness, damping = (np.max(np.abs(np.linalg.eigvals(A)), initial=0.0) for A in own)
     rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
     return float(1.0 / rate) if rate > 0.0 else np.inf
 
