@@ -91,9 +91,11 @@ def forces(d: Description, t: Any, q: Any, v: Any) -> Any:
 
 def energy(d: Description, q: Any, v: Any) -> tuple[Any, Any]:
     """Kinetic energy, and potential energy of constant forces, springs and pendulum, each (...)."""
-    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", v, masses(d, q), v)
-    springs = 0.5 * np.einsum("...i,ij,...j->...", q, d.matrix("K"), q)
-    return kinetic, springs - q @ d.row("constant") - d.pendulum * np.cos(q @ d.row("b"))
+    b = d.row("b")
+    along = d.spread * (1.0 + 0.5 * np.sin(q @ b)) * (v @ b) ** 2
+    kinetic = 0.5 * (np.sum(v @ d.matrix("M") * v, axis=-1) + along)
+    springs = 0.5 * np.sum(q @ d.matrix("K") * q, axis=-1)
+    return kinetic, springs - q @ d.row("constant") - d.pendulum * np.cos(q @ b)
 
 
 def fed(d: Description) -> bool:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events.general.ends import NO_FORCES, STATUS
+from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
 from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
@@ -169,7 +170,8 @@ class Between(ABC):
         """Q and v at these times, each (m, n_q); ValueError where the state before one was not kept."""
         if not self.complete and not np.all(np.isin(times, self.s.t)):
             raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-        return self.evaluate(times, np.maximum(np.searchsorted(self.s.t, times, side="right") - 1, 0))
+        times = np.ascontiguousarray(times)
+        return self.evaluate(times, last_rows(self.s.t, times, 0, len(self.s.t) - 1))
 
     @abstractmethod
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
@@ -197,34 +199,9 @@ class Moved(Between):
 
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
-        if np.all(times == self.s.t[row]):
+        if not self.complete:  # there is nothing beside the states
             return self.s.q[row], self.s.v[row]
-        moved = moved_constant if self.constant else moved_by_step
-        return moved(self.s, self.F, times, row)
-
-
-def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """States at times after the kept rows, under the acceleration kept with each."""
-    tau, a = (times - s.t[row])[:, None], F[row, 0]
-    a[times >= s.t[-1]] = 0.0  # no motion has been kept beyond the last state
-    return s.q[row] + tau * (s.v[row] + 0.5 * tau * a), s.v[row] + tau * a
-
-
-def moved_by_step(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """The same by the dense output of the step after each row."""
-    tau = times - s.t[row]
-    moved = along(F[row], tau / np.where(s.length[row] > 0.0, s.length[row], 1.0))
-    moved[tau == 0.0] = 0.0
-    n = s.q.shape[1]
-    return s.q[row] + moved[:, :n], s.v[row] + moved[:, n:]
-
-
-def along(F: Array, share: Array) -> Array:
-    """What states have moved by (m, n) at these fractions (m,) of their steps; see `rungekutta.RungeKutta.at`.
-
-    F : (m, 7, n)   dense output of each
-    """
-    moved, share = np.zeros((len(F), F.shape[2])), share[:, None]
-    for k in range(F.shape[1]):
-        moved = (moved + F[:, F.shape[1] - 1 - k]) * (share if k % 2 == 0 else 1.0 - share)
-    return moved
+        kept = self.s.t, self.s.q, self.s.v
+        if self.constant:
+            return accelerated(*kept, self.F, times, row)
+        return by_dense_output(*kept, self.s.length, self.F, times, row)
