@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian.hybrid import HybridScene
 from lcpstep.answer import Answer
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
-from lcpstep.events.running import along
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
@@ -82,8 +81,13 @@ class HybridTrajectory(Answer):
                 raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
             return s.x[row[0]] if np.ndim(t) == 0 else s.x[row]
         with np.errstate(invalid="ignore"):
-            fraction = np.clip((times - s.t[row]) / np.where(s.h[row] > 0.0, s.h[row], np.inf), 0.0, 1.0)
-        x = s.x[row] + along(s.dense[row], fraction)
+            fraction = np.clip((times - s.t[row]) / np.where(s.h[row] > 0.0, s.h[row], np.inf), 0.0, 1.0)[
+                :, None
+            ]
+        total = np.zeros((len(times), s.x.shape[1]))
+        for k in range(7):
+            total = (total + s.dense[row, 6 - k]) * (fraction if k % 2 == 0 else 1.0 - fraction)
+        x = s.x[row] + total
         return x[0] if np.ndim(t) == 0 else x
 
     def mode_at(self, t: ArrayLike) -> Any:
