@@ -73,10 +73,10 @@ class Bent(Between):
     mode: Array
 
     @cached_property
-    def jumps(self) -> NDArray[np.uint8]:
+    def jumps(self) -> NDArray[np.bool_]:
         """Where the velocity may have jumped: asked for by whoever looks between states."""
-        return (self.mode > 0.0).view(np.uint8)
+        return np.asarray(self.mode > 0.0)
 
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
         """The states in the steps from rows i of the kept ones."""
-        return between.on_parabolas(self.t, self.q, self.v, self.jumps, times, i)
+        return between.on_parabolas(self.t, self.q, self.v, self.jumps.view(np.uint8), times, i)

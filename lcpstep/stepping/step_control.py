@@ -73,7 +73,8 @@ class Control(Course):
         tolerance: float, order: int,
     ) -> None:  # fmt: skip
         start, end = span
-        self.record, self.n_times, self.make, self.matrices = record, record.n_times, make, {}
+        self.record, self.n_times, self.make = record, record.n_times, make
+        self.matrices: dict[str, Any] = {}
         self.own_made = np.zeros(LEVELS + 2, dtype=np.intp)
         self.made = indices(self.own_made)
         self.position, self.tried = 0, 0

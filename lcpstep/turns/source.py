@@ -149,7 +149,9 @@ def sources(scene: Scene) -> list[Source]:
     if isinstance(contacts, Contacts) and contacts.gap_t is not None:
         found.append(("contacts.gap_t", contacts.gap_t, contacts.gap, scene.n_c))
     users = [x for x in found if not _ours(x[1])]
-    at = (np.array(scene.q0), np.array(scene.v0), np.array(scene.p)) if users else ()
+    if not users:
+        return []
+    at = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
     return [Source(name, f, also, at, rows) for name, f, also, rows in users]
 
 

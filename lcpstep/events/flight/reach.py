@@ -58,7 +58,8 @@ def reach(scene: Scene, m: Model, all_seen: Seen | None = None) -> Reach:
         return np.asarray((G * frame + motion)[:, 0])
 
     regular, motion, frame = all_seen or seen(scene, m)
-    at_regular = (G * (0.0 if frame is None else frame) + (0.0 if motion is None else motion))[:, 0]
+    still = np.zeros((1, 1, 3))
+    at_regular = (G * (still if frame is None else frame) + (still if motion is None else motion))[:, 0]
     found = np.concatenate([at_regular, samples(_between_corners(scene))])
     size = np.max(np.abs(found), axis=0)
     far = Reach(math.inf, 0.0, float(size[0]), float(size[1]))

@@ -85,7 +85,7 @@ def implicit(m: Model, stiff: bool, method: Located, h: float) -> Array:
     if not (stiff and method.order == 2):
         return m.arrays["M_inverse"]
     M, C, K = (m.arrays[name] for name in ("M", "C", "K"))
-    return np.linalg.inv(M + 0.5 * h * C + 0.25 * h**2 * K)
+    return np.asarray(np.linalg.inv(M + 0.5 * h * C + 0.25 * h**2 * K))
 
 
 def size(scene: Scene, m: Model, method: Located, piece: float, inverse: Array) -> float:
