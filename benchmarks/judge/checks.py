@@ -184,7 +184,7 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
     if r.method in EXACT or (r.method.startswith("located") and not d.bent):
         yield Finding(r.method, "penetration", f"{words}, status {r.status}")
         return
-    if r.method == "moreau" and r.status == "DONE" and within_a_step(d, r, rounding):
+    if r.method == "moreau" and r.status != "NOT_FINITE" and within_a_step(d, r, rounding):
         return
     finer = up_to(run(d, r.method, 0.25), until)
     if finer.usable and deep > 1e-3 * sizes.length and depth(d, finer) > 0.7 * deep:
@@ -207,7 +207,8 @@ def up_to(r: Run, until: float) -> Run:
 def within_a_step(d: Description, r: Run, rounding: float) -> bool:
     """Whether no gap is deeper than h max |u|, which theta = 1/2 explains and no step need keep away from.
 
-    An open contact enters a step above -(h/2) u, and one that is struck goes on by (h/2) (1 - r) u.
+    An open contact enters a step above -(h/2) u, and one that is struck goes on by (h/2) (1 - r) u. That is so of
+    a run that ends early as well, as where walls close upon a body; where it leaves the finite numbers u tells nothing.
     """
     low = -np.min(physics.gaps(d, r.motion.t, r.motion.q), axis=0)
     fast = np.max(np.abs(physics.rates(d, r.motion.t, r.motion.q, r.motion.v)), axis=0)
