@@ -208,7 +208,7 @@ def within_a_step(d: Description, r: Run, rounding: float) -> bool:
     """Whether no gap is deeper than h max |u|, which theta = 1/2 explains and no step need keep away from.
 
     An open contact enters a step above -(h/2) u, and one that is struck goes on by (h/2) (1 - r) u. That is so of
-    a run that ends early as well, as where walls close upon a body; where it leaves the finite numbers u tells nothing.
+    a run that ends early as well, as where walls close upon a body; one that leaves the finite numbers has no u.
     """
     low = -np.min(physics.gaps(d, r.motion.t, r.motion.q), axis=0)
     fast = np.max(np.abs(physics.rates(d, r.motion.t, r.motion.q, r.motion.v)), axis=0)
