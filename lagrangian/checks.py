@@ -201,20 +201,23 @@ def evaluate(
     out = np.full(shape, np.nan)
     t, q, v, p = at
     letter, words = speeds
-    where = f"at t = {t:.9g}, q = {shown(q)}, {words}{letter} = {shown(v)}"
-    sizes = f"q of shape {q.shape}, {words}{letter}" if words else f"q, {letter}"
     call = f"f(t, q, {letter}, p, out)"
+
+    def where() -> str:
+        return f"at t = {t:.9g}, q = {shown(q)}, {words}{letter} = {shown(v)}"
+
     try:
         returned = python(f)(t, read_only(q), read_only(v), read_only(p), out)
     except Exception as error:  # the user's code may raise anything; the message says whose it is
+        sizes = f"q of shape {q.shape}, {words}{letter}" if words else f"q, {letter}"
         raise ValueError(
             f"{name}: {call} with {sizes} of shape {v.shape}, p of shape {p.shape} and out of "
-            f"shape {shape} failed {where}: {said(error, letter)}"
+            f"shape {shape} failed {where()}: {said(error, letter)}"
         ) from error
     if returned is not None:
         raise ValueError(f"{name}: expected {call} to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
-        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where}: {shown(out)}")
+        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where()}: {shown(out)}")
     return out
 
 

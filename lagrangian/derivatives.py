@@ -193,7 +193,7 @@ class Known:
         known = self
         for f in functions:
             try:
-                known = known.more.setdefault(f, Known())
+                known = known.more.get(f) or known.more.setdefault(f, Known())
             except TypeError:
                 return Known()
         return known

@@ -9,6 +9,7 @@ Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical System
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -40,15 +41,20 @@ class LinearJoints(Pickled):
     motion: Callback | None = None
 
     def __post_init__(self) -> None:
-        self.as_contacts()
+        object.__setattr__(self, "G", self._contacts.G)
+        object.__setattr__(self, "offset", self._contacts.offset)
 
     @property
     def n_j(self) -> int:
         """Number of joints."""
-        return self.as_contacts().n_c
+        return self._contacts.n_c
 
     def as_contacts(self) -> LinearContacts:
         """The same gaps, with which everything that evaluates contacts evaluates joints."""
+        return self._contacts
+
+    @cached_property
+    def _contacts(self) -> LinearContacts:
         return LinearContacts(self.G, self.offset, motion=self.motion)
 
 
@@ -86,6 +92,10 @@ class Joints(Pickled):
 
     def as_contacts(self) -> Contacts:
         """The same gaps, with which everything that evaluates contacts evaluates joints; all of G is filled."""
+        return self._contacts
+
+    @cached_property
+    def _contacts(self) -> Contacts:
         jacobian = (
             self.jacobian if self.pattern is None else _everywhere(self.jacobian, *np.array(self.pattern))
         )

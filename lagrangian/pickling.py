@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from functools import partial
 from types import FunctionType, MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -25,7 +26,8 @@ class Pickled:
 
     def __getstate__(self) -> dict[str, Any]:
         """The fields, fit for pickle."""
-        return {name: _outgoing(f"{type(self).__name__}.{name}", x) for name, x in vars(self).items()}
+        kept = {x.name: getattr(self, x.name) for x in fields(cast(Any, self))}
+        return {name: _outgoing(f"{type(self).__name__}.{name}", x) for name, x in kept.items()}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         """Take the fields over as they were; they have been checked when the object was made."""

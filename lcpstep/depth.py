@@ -71,13 +71,19 @@ def too_deep(run: Trajectory) -> str:
 
 
 def _shallow(run: Trajectory, share: float) -> bool:
-    """Whether all the states lie inside by less than that share; only curved gaps have a model for it at hand."""
-    if not isinstance(run.scene.contacts, Contacts) or run.t[0] != run.scene.t_span[0]:
-        return False
-    from lcpstep.kernels.looks import lies_inside
-    from lcpstep.model import looked_at
+    """Whether all the states lie inside by less than that share, where a model that tells is at hand, or soon made.
 
-    deep = lies_inside(looked_at(run.scene), run.t, run.q, LOOKS, share, True)
+    The start was looked at when the scene was made.
+    """
+    from lcpstep.kernels.looks import lies_inside
+    from lcpstep.model import at_hand, looked_at
+
+    m = at_hand(run.scene)
+    if m is None:
+        if not isinstance(run.scene.contacts, Contacts):  # of many coordinates, perhaps sparse
+            return False
+        m = looked_at(run.scene)
+    deep = lies_inside(m, run.t, run.q, LOOKS, share, True)
     cause()
     forget()
     return not deep

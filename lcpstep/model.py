@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, cast
 from weakref import WeakKeyDictionary
 
@@ -32,8 +32,8 @@ from lcpstep.refusals import refused
 
 Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
-LARGEST_KEPT = 200  # coordinates of a system whose numbers stay with it
-KEPT: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()  # numbers of systems, which never change
+LARGEST_KEPT = 200  # coordinates of a system whose numbers stay with it, and with its contacts
+KEPT: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()  # numbers of both, which never change
 LATEST = threading.local()  # .scene, .model: the last one made in this thread, of few coordinates
 TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
@@ -54,14 +54,18 @@ def model(scene: Scene) -> kernels.Model:
     return _latest(scene, _models(scene, _system(scene), contacts=_contacts(scene, scene.contacts))[0])
 
 
+def at_hand(scene: Scene) -> kernels.Model | None:
+    """The model of the run just made, where it is of this scene; `carried` it may be."""
+    return cast(kernels.Model, LATEST.model) if getattr(LATEST, "scene", None) is scene else None
+
+
 def looked_at(scene: Scene) -> kernels.Model:
     """A model to evaluate states of a scene with, between runs: that of the run just made, where it is of this scene.
 
     The one in coordinates of its own (`carried`) sees other states.
     """
-    if getattr(LATEST, "scene", None) is scene and not LATEST.model.carried:
-        return cast(kernels.Model, LATEST.model)
-    return model(scene)
+    made = at_hand(scene)
+    return model(scene) if made is None or made.carried else made
 
 
 def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:
@@ -132,7 +136,7 @@ def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[s
     made: dict[str, dict[str, int]] = {}
     for part, fields in parts.items():
         given = {name: f for name, f in fields.items() if callable(f)}
-        made[part] = {} if callbacks.disabled() else _compile(scene, part, given)
+        made[part] = {} if not given or callbacks.disabled() else _compile(scene, part, given)
         for name, f in given.items():
             if name not in made[part]:
                 called_back.append(CalledBack(f))
@@ -216,14 +220,21 @@ def hybrid_culprit(scene: HybridScene, mode: str) -> str:
 
 
 def _system(scene: Scene) -> dict[str, Any]:
-    system = scene.system
-    known = KEPT.get(system)
+    known = _known(scene.system, _equations, scene)
+    return known | {"p": np.array(scene.p), "frame_now": np.zeros((scene.n_q, 3)), "carried": False}
+
+
+def _known(part: Any, read: Callable[[Any], dict[str, Any]], scene: Scene) -> dict[str, Any]:
+    """Numbers and functions of a system or of contacts, read once; models of it share the arrays."""
+    known = KEPT.get(part)
     if known is None:
-        known = _equations(system)
-        if system.n_q <= LARGEST_KEPT:
-            KEPT[system] = known
-    own = {name: x.copy() if isinstance(x, np.ndarray) else x for name, x in known.items()}
-    return own | {"p": np.array(scene.p), "frame_now": np.zeros((scene.n_q, 3)), "carried": False}
+        known = read(part)
+        for x in known.values():
+            if isinstance(x, np.ndarray):
+                x.flags.writeable = False
+        if scene.n_q <= LARGEST_KEPT and scene.n_c <= LARGEST_KEPT:
+            KEPT[part] = known
+    return known
 
 
 def _equations(system: LinearSystem | System) -> dict[str, Any]:
@@ -272,21 +283,35 @@ def _joints(scene: Scene) -> dict[str, Any]:
 
 
 def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[str, Any]:
-    n_q, n_c = scene.n_q, 0 if contacts is None else contacts.n_c
-    fields: dict[str, Any] = dict.fromkeys(("motion", "gap", "jacobian", "gap_t", "bias"), ABSENT)
-    fields |= {"flat": True, "G": np.zeros((n_c, n_q)), "offset": np.zeros(n_c)}
-    fields |= {"restitution": np.zeros(n_c), "motion_now": np.zeros((n_c, 3))}
+    n_c = 0 if contacts is None else contacts.n_c
     if contacts is None:
-        return fields
-    fields["restitution"] = np.array(contacts.restitution)
-    if isinstance(contacts, LinearContacts):
-        return fields | {
-            "G": dense("G", contacts.G),
-            "offset": np.array(contacts.offset),
-            "motion": contacts.motion or ABSENT,
-        }
-    return fields | {
+        fields = _rows(0) | {"G": np.zeros((0, scene.n_q))}
+    elif isinstance(contacts, LinearContacts):
+        fields = _known(contacts, _flat_rows, scene)
+    else:
+        fields = _known(contacts, _curved_rows, scene) | {"G": np.zeros((n_c, scene.n_q))}
+    # A run by a tolerance changes its own restitutions
+    return fields | {"motion_now": np.zeros((n_c, 3)), "restitution": fields["restitution"].copy()}
+
+
+def _rows(n_c: int) -> dict[str, Any]:
+    fields: dict[str, Any] = dict.fromkeys(("motion", "gap", "jacobian", "gap_t", "bias"), ABSENT)
+    return fields | {"flat": True, "offset": np.zeros(n_c), "restitution": np.zeros(n_c)}
+
+
+def _flat_rows(contacts: LinearContacts) -> dict[str, Any]:
+    return _rows(contacts.n_c) | {
+        "G": dense("G", contacts.G),
+        "offset": np.array(contacts.offset),
+        "restitution": np.array(contacts.restitution),
+        "motion": contacts.motion or ABSENT,
+    }
+
+
+def _curved_rows(contacts: Contacts) -> dict[str, Any]:
+    return _rows(contacts.n_c) | {
         "flat": False,
+        "restitution": np.array(contacts.restitution),
         "gap": contacts.gap,
         "jacobian": contacts.jacobian,
         "gap_t": contacts.gap_t or ABSENT,

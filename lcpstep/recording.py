@@ -5,7 +5,9 @@ Kernels write into arrays of fixed size and return when these are full; the reco
 
 from __future__ import annotations
 
+import math
 import threading
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.kernels.layout import COLUMNS, LEAD
+from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH
 from lcpstep.trajectory import IMPACT_DTYPE
 
 if TYPE_CHECKING:
@@ -24,7 +26,9 @@ Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
-BUFFERS = threading.local()  # .rows, .lines: those of the last run of this thread
+BUFFERS = threading.local()  # .rows, .lines, .curves: those of the last run of this thread
+NOTHING: Array = np.zeros(0)
+NOTHING.flags.writeable = False
 EXPECTED = 1 << 22  # states that room is made for at once, at most
 
 
@@ -39,15 +43,14 @@ class Kept:
     @classmethod
     def parse(cls, keep: Keep, t_span: tuple[float, float]) -> Kept:
         """From the argument `keep` of `simulate`; ValueError where it is none of the three forms."""
-        nothing = np.zeros(0)
         if isinstance(keep, str):
             if keep != "impacts":
                 raise ValueError(f'keep: expected a whole number, times, or "impacts", got {keep!r}')
-            return cls(0, True, nothing)
+            return cls(0, True, NOTHING)
         if isinstance(keep, (int, np.integer)):
             if isinstance(keep, bool) or keep < 1:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
-            return cls(int(keep), False, nothing)
+            return cls(int(keep), False, NOTHING)
         try:
             times = np.array(checks.vector("keep", keep))
         except ValueError:
@@ -81,10 +84,14 @@ def in_order(events: Array, end: float) -> Array:
     The end of a chattering sequence is noted, with the time at which it comes, where the rest of the sequence is
     summed up: before events of other contacts that come earlier. What the contact itself does next ends the sequence.
     """
+    if len(events) == 0:
+        return events
     ordered = events.copy()
-    ordered[:, 0] = time = np.minimum(events[:, 0], end)
+    time = ordered[:, 0]
+    np.minimum(time, end, out=time)
     if (time[1:] >= time[:-1]).all():
         return ordered
+    time = time.copy()
     contact = events[:, 1]
     for c in np.unique(contact):
         own = contact == c
@@ -115,6 +122,11 @@ def in_use(room: bytearray) -> bool:
         return True
     room.pop()
     return False
+
+
+def joined(parts: Sequence[Array]) -> Array:
+    """Arrays one after another; a single one as it is."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 class States(NamedTuple):
@@ -155,7 +167,10 @@ class Recorder:
 
         self.rows = buffer("rows", rows, LEAD + 2 * n_q + n_c)  # what is read has been written
         self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)
-        self.curves = np.zeros((rows if dense else 0, *(dense_shape or (7, 2 * n_q))))
+        shape = dense_shape or (7, 2 * n_q)
+        self.curves = np.zeros((0, *shape))
+        if dense:
+            self.curves = buffer("curves", rows, math.prod(shape)).reshape(-1, *shape)
         self.record = Record(
             n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves
         )
@@ -170,11 +185,15 @@ class Recorder:
         if rows > self._free:
             self._close(max(rows, self._expected))
         if rows > 0:
+            if len(self.curves):
+                curves = self.curves[:rows].copy()
+                curves[self.rows[:rows, LENGTH] == 0.0] = 0.0  # no step has followed
+                self._parts["dense"].append(curves)
             self.record.row = rows
             self.record.move(self._states[-1], len(self._states[-1][0]) - self._free)
             self._free -= rows
-        self._parts["dense"].append(self.curves[:rows].copy())
-        self._parts["events"].append(self.lines[:events].copy())
+        if events > 0:
+            self._parts["events"].append(self.lines[:events].copy())
         self.taken += events
         self.record.event = 0
 
@@ -196,19 +215,17 @@ class Recorder:
         """All states kept so far."""
         if self._free > 0 or not self._states:
             self._close(0)
-        t, mode, length, q, v, impulse = (
-            part[0] if len(part) == 1 else np.concatenate(part) for part in zip(*self._states, strict=True)
-        )
+        t, mode, length, q, v, impulse = map(joined, zip(*self._states, strict=True))
         return States(t, q, v, impulse, mode, length)
 
     def dense(self) -> Array:
         """Dense output of the steps after the kept states."""
-        return np.concatenate(self._parts["dense"])
+        return joined(self._parts["dense"])
 
     def events(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
-        events = in_order(np.concatenate(self._parts["events"]), end)
-        log = np.empty(len(events), dtype=LOGGED).view(np.recarray)
-        for name, column in zip(IMPACT_DTYPE.names or (), events.T, strict=True):
-            log[name] = column
-        return log
+        events = in_order(joined(self._parts["events"]), end)
+        log = np.empty(len(events), dtype=LOGGED)
+        for k, name in enumerate(IMPACT_DTYPE.names or () if len(events) else ()):
+            log[name] = events[:, k]
+        return log.view(np.recarray)

@@ -24,11 +24,13 @@ from lagrangian import Coulomb, LinearContacts
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.accuracy.errors import Difference, energies
 from lcpstep.errorbar.bars import ErrorBar
+from lcpstep.errorbar.breaks import with_nodes
 from lcpstep.errorbar.companions import Companion
-from lcpstep.errorbar.distance import fall, merged
-from lcpstep.errorbar.distance import within as inside
+from lcpstep.errorbar.curves import merged
+from lcpstep.errorbar.curves import within as inside
+from lcpstep.errorbar.distance import fall
 from lcpstep.errorbar.estimate import against, resolved
-from lcpstep.errorbar.looks import looks, with_nodes
+from lcpstep.errorbar.looks import looks
 from lcpstep.errors import LcpStepError, SimulationInterrupted
 from lcpstep.model import model
 from lcpstep.simulation import Method

@@ -35,7 +35,7 @@ def started(rng: Any, d: Description, shape: dict[str, Any]) -> Description:
     d = replace(
         d, offset=tuple(map(float, d.row("offset", m) - np.minimum(physics.gaps(d, t, q0) - gap, 0.0)))
     )
-    d = _joined(d, q0)
+    d = joined(d, q0)
     v0 = _velocity(rng, d, t, q0, closed)
     d = replace(d, q0=tuple(map(float, q0)), v0=tuple(map(float, v0)))
     return _balanced(rng, d)
@@ -49,11 +49,22 @@ def _turned(rng: Any, d: Description) -> Description:
     return replace(d, t_span=(t, t + 1.0))
 
 
-def _joined(d: Description, q0: Any) -> Description:
+def joined(d: Description, q0: Any) -> Description:
+    """The scene with joints that hold at a place."""
     if not d.J:
         return d
-    bent = np.array(d.joint_bend) if any(d.joint_bend) else np.zeros(len(d.J))
+    bent = d.row("joint_bend", len(d.J))
     return replace(d, joint_offset=tuple(map(float, -(np.array(d.J) @ q0) - 0.5 * bent * (q0 @ q0))))
+
+
+def along(rows: Any, v: Any) -> Any:
+    """The part of a velocity that changes no row (k, n)."""
+    if len(rows):
+        least = 1e-13 * np.max(np.abs(v))
+        v = v - np.linalg.pinv(rows) @ (rows @ v)
+        v = v - np.linalg.pinv(rows) @ (rows @ v)
+        v[np.abs(v) < least] = 0.0
+    return v
 
 
 def _velocity(rng: Any, d: Description, t: float, q0: Any, closed: Any) -> Any:
@@ -64,14 +75,8 @@ def _velocity(rng: Any, d: Description, t: float, q0: Any, closed: Any) -> Any:
     v = np.vectorize(digits)(rng.normal(size=d.n) * 10.0 ** rng.uniform(-1.0, 0.7))
     held = physics.jacobians(d, q0)[closed] if kind < 0.7 else np.zeros((0, d.n))
     if d.J:
-        bent = np.array(d.joint_bend) if any(d.joint_bend) else np.zeros(len(d.J))
-        held = np.vstack([held, np.array(d.J) + np.outer(bent, q0)])
-    if len(held):
-        least = 1e-13 * np.max(np.abs(v))
-        v = v - np.linalg.pinv(held) @ (held @ v)
-        v = v - np.linalg.pinv(held) @ (held @ v)
-        v[np.abs(v) < least] = 0.0
-    return v
+        held = np.vstack([held, physics.joint_rows(d, q0)])
+    return along(held, v)
 
 
 def _balanced(rng: Any, d: Description) -> Description:

@@ -168,7 +168,8 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
 
     Which of these carries the impulse is no part of the answer. A tolerance promises velocities v to within ten times
     tolerance (1 + |v|), and with them gap velocities G v: a slower approach is one of a contact that rests as well.
-    So is one as slow as a fall u^2 = 2 a e from a gap e of rounding, with which a run may begin anew.
+    So is one as slow as a fall u^2 = 2 a e from a gap e of rounding, with which a run may begin anew, or of the
+    tolerance of an event-driven run, which leaves out lower hops.
     """
     logs = [impacts(b.run), impacts(other)]
     rows = jacobians(b.d, np.array(b.d.q0))
@@ -183,7 +184,9 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
         min(b.told, b.grazes, b.alone, v.until, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
     )
     far = np.sum(np.abs(rows), axis=-1)
-    fallen = np.sqrt(2.0 * FALL * EPS * sizes.place * far * sizes.reach) / sizes.time
+    left_out = b.run.tolerance * (1.0 + sizes.travel) if b.run.method.startswith("event-driven") else 0.0
+    low = FALL * EPS * sizes.place + left_out
+    fallen = np.sqrt(2.0 * low * far * sizes.reach) / sizes.time
     slow = np.maximum(np.maximum(STRONG * fast, fallen), promised(b.run) * far)
     found = []
     for i, j in ((0, 1), (1, 0)):

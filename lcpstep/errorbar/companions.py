@@ -15,6 +15,7 @@ turns out to be far larger than its own tolerance (`Companion.tells`).
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
@@ -149,6 +150,7 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
     return found
 
 
+@functools.lru_cache(maxsize=64)
 def in_words(method: Any) -> str:
     """A method and what differs from its defaults."""
     own = [(f.name, getattr(method, f.name)) for f in fields(method) if getattr(method, f.name) != f.default]

@@ -18,7 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar
-from lcpstep.errorbar.looks import GAUSS, MANY, Looks, at, brief, event_times, with_nodes
+from lcpstep.errorbar.breaks import with_nodes
+from lcpstep.errorbar.curves import curves, looked_into, merged, within
+from lcpstep.errorbar.looks import MANY, Looks, at, brief, event_times
 from lcpstep.errorbar.partners import Alike, Apart, Pairs
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
@@ -32,8 +34,6 @@ SAME = 0.1  # of a jump, by which velocities of motions may differ that are alik
 AT_REST = 1e-6  # of the length that forces would move it by
 STILL = 1e4  # times rounding: a motion that is no larger stands still
 SLOW = 1e-6  # the velocity with which forces and masses are asked for [m/s]
-ROUNDING = 4.0  # last digits of what a number is made of
-EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +80,8 @@ def moving_apart(run: Trajectory, other: Trajectory, whole: bool) -> Apart:
     """Whether velocities differ at times by more than a share of jumps; `whole`: the other has all its steps."""
 
     def differ(t: Array, jump: Array) -> NDArray[np.bool_]:
-        times, place = np.unique(t, return_inverse=True)
-        apart = np.abs(roughly(run, times)[1] - (roughly(other, times) if whole else other.at(times))[1])
-        return np.asarray(np.max(apart, axis=1, initial=0.0)[place] > SAME * jump)
+        apart = np.abs(roughly(run, t)[1] - (roughly(other, t) if whole else other.dense(t))[1])
+        return np.asarray(np.max(apart, axis=1, initial=0.0) > SAME * jump)
 
     return differ
 
@@ -91,7 +90,7 @@ def roughly(run: Trajectory, t: Array) -> tuple[Array, Array]:
     """States of a run with all its steps, by parabolas within them where it would be run again for those."""
     if getattr(run.dense, "dear", False) and len(run.t) > 1:
         return Parabolic(run.t, run.q, run.v, True)(t)
-    return run.at(t)
+    return run.dense(t)
 
 
 def distance(
@@ -107,34 +106,28 @@ def distance(
 
     falls : see `fall` [m/s]
     """
-    t, n_q = look.t, runs[0].scene.n_q
+    t, n_q, nothing = look.t, runs[0].scene.n_q, np.zeros(0)
     length, times = float(t[-1] - t[0]), with_nodes(t) if look.nodes else t
     one, other = (at(x, times, kept) for x, kept in zip(runs, look.kept, strict=True))
-    energies = [energy(m, times, *x) for x in (one, other)]
-    apart = np.abs(np.column_stack([one[0] - other[0], one[1] - other[1], energies[0] - energies[1]]))
-    far, fast = (np.abs(x).max(axis=0) for x in one)
-    floor = ROUNDING * EPS * np.array([*(far + np.abs(t).max() * fast), *fast, np.abs(energies[0]).max()])
+    energies = [states.energy(m, times, *x) for x in (one, other)]
     left_out = merged(np.concatenate([windows, brief(*runs, length)]), around)
-    between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
-    between, hidden = (_hidden(x, times, look.kept[0]) for x in (between, left_out))
-    out = within(left_out, times)
-    struck = _near(times, runs[1], around) if look.kept[0] else False
-    jumping = apart[:, n_q:].copy()
-    apart[out, n_q:] = 0.0
-    largest = np.maximum.accumulate(apart)[:: 1 + len(GAUSS) * look.nodes] + floor
-    apart[:, n_q:] = jumping[_before(within(hidden, times) | struck)] if look.jumps else jumping
-    integral = _integral(t, apart, look.nodes)
-    if look.even is not None:
-        integral = _evened(t, apart, integral, look.even)
-    integral = integral + floor * (t - t[0])[:, None]
+    covered = nothing.view(np.uint8)
     if look.jumps:
-        integral[:, n_q:] += _of_jumps(m, runs, look, between, around)
+        covered = within(_hidden(left_out, times, look.kept[0]), times)
+        if look.kept[0]:
+            covered |= within(merged(np.repeat(runs[1].impacts["time"][:, None], 2, axis=1), around), times)
+    largest, integral, floor, size = curves(
+        t, times, (*one, energies[0]), (*other, energies[1]), within(left_out, times), covered,
+        nothing if look.even is None else look.even,
+    )  # fmt: skip
+    if look.jumps:
+        between = merged(np.column_stack([pairs.start, pairs.start + pairs.time]), 0.0)
+        integral[:, n_q:] += _of_jumps(m, runs, look, _hidden(between, times, look.kept[0]), around)
     elif not look.nodes and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
     columns = ((slice(0, n_q), "m"), (slice(n_q, 2 * n_q), "m/s"), (slice(2 * n_q, None), "J"))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
-    size = 0.5 * float(np.ptp(one[0], axis=0).max())
     return Distance(position, velocity, power, left_out, max(size, least))
 
 
@@ -142,20 +135,7 @@ def _hidden(intervals: Array, times: Array, alone: bool) -> Array:
     """Intervals that looks do not resolve; at kept states alone none tells how long it lasts."""
     if alone:
         return intervals[np.diff(intervals)[:, 0] < HIDDEN * (times[-1] - times[0]) / len(times)]
-    return intervals[np.diff(np.searchsorted(times, intervals))[:, 0] <= HIDDEN]
-
-
-def _near(times: Array, run: Trajectory, around: float) -> NDArray[np.bool_]:
-    """Times so near to an event of a run that whether it has passed is rounding."""
-    events = np.concatenate([[-math.inf], run.impacts["time"], [math.inf]])
-    k = np.searchsorted(events, times)
-    return np.asarray(np.minimum(times - events[k - 1], events[k] - times) <= around)
-
-
-def _before(out: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Places of the last times before each that are not left out; of the first one where there is none."""
-    last = np.maximum.accumulate(np.where(out, -1, np.arange(len(out))))
-    return np.asarray(np.where(last < 0, np.argmin(out), last))
+    return np.asarray(intervals[~looked_into(intervals, times, HIDDEN)])
 
 
 def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: Array, around: float) -> Array:
@@ -180,45 +160,7 @@ def _of_jumps(m: Model, runs: tuple[Trajectory, Trajectory], look: Looks, own: A
 def _speeds(m: Model, run: Trajectory, t: Array) -> Array:
     """Velocities and energy (n, n_q + 1)."""
     q, v = roughly(run, t)
-    return np.column_stack([v, energy(m, t, q, v)])
-
-
-def _integral(t: Array, x: Array, nodes: bool) -> Array:
-    """Integral up to each time, by the nodes between times, or by the times where there are none."""
-    means = 0.5 * (x[1::3] + x[2::3] if nodes else x[1:] + x[:-1])
-    return np.concatenate([np.zeros((1, x.shape[1])), np.cumsum(np.diff(t)[:, None] * means, axis=0)])
-
-
-def _evened(t: Array, x: Array, integral: Array, even: Array) -> Array:
-    """The integral over the intervals between even times: by all times there, or by these alone where that is more.
-
-    Errors at the ends of steps may be smaller than within.
-    """
-    k = np.searchsorted(t, even)
-    alone = 0.5 * np.diff(even)[:, None] * (x[k[1:]] + x[k[:-1]])
-    more = np.cumsum(np.maximum(alone - np.diff(integral[k], axis=0), 0.0), axis=0)
-    added = np.concatenate([np.zeros((1, x.shape[1])), more])
-    return integral + added[np.maximum(np.searchsorted(even, t, side="right") - 1, 0)]
-
-
-def merged(windows: Array, around: float) -> Array:
-    """Intervals with what is around them, those that overlap as one, in their order (k, 2)."""
-    if not len(windows):
-        return windows
-    windows = windows[np.argsort(windows[:, 0])]
-    ends = np.maximum.accumulate(windows[:, 1]) + around
-    first = np.append(True, windows[1:, 0] - around > ends[:-1])
-    return np.column_stack([windows[first, 0] - around, ends[np.append(first[1:], True)]])
-
-
-def within(intervals: Array, t: Array) -> NDArray[np.bool_]:
-    """Whether times lie in intervals that do not overlap."""
-    return np.asarray(np.searchsorted(intervals[:, 0], t, side="right") > np.searchsorted(intervals[:, 1], t))
-
-
-def energy(m: Model, t: Array, q: Array, v: Array) -> Array:
-    """Kinetic energy and that of constant stiffness and forces, (n, 1) [J]."""
-    return np.asarray(states.energy(m, *map(np.ascontiguousarray, (t, q, v))))[:, None]
+    return np.column_stack([v, states.energy(m, t, q, v)])
 
 
 def fall(m: Model, run: Trajectory) -> float:

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
+from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
-from lcpstep.errorbar.looks import Looks, looks, seen, with_nodes
+from lcpstep.errorbar.looks import Looks, looks, seen
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import looked_at
 from lcpstep.recording import Kept
@@ -94,7 +95,7 @@ def _kept(look: Looks | None, every: bool) -> Kept:
     """What a companion keeps: every step, or the states that it is asked for."""
     if look is None:
         return Kept(1, False, np.zeros(0))
-    return Kept(0, False, np.unique(with_nodes(look.t)) if every else look.t)
+    return Kept(0, False, increasing(with_nodes(look.t)) if every else look.t)
 
 
 def _reach(found: Found) -> float:
@@ -152,7 +153,7 @@ def against(
         if pairs.differs < until:
             until = pairs.differs
             reason = f"there the run and {in_words(c.method)} see different events, {pairs.reason}"
-    around = ROUNDING * float(np.max(np.abs(run.t))) + 0.5 * resolution
+    around = ROUNDING * _latest(run) + 0.5 * resolution
     last = min(limit, until - around if reason else until)
     known_there = every and look is not None and found[0][0].seen
     look = seen(look, last) if look is not None and known_there else looks(run, other, every, last, wide)
@@ -177,13 +178,19 @@ def against(
 
 def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Array]:
     """Errors of times and impulses, one for each row of the log."""
-    times, impulses = (np.full(len(run.impacts), math.nan) for _ in range(2))
-    of_row = pairs.of_row
-    known = ((pairs.stop <= until) & ~pairs.weak)[of_row]
-    rows, pair = pairs.rows[known], of_row[known]
-    times[rows] = pairs.time[pair] + ROUNDING * np.max(np.abs(run.t))
-    impulses[rows] = pairs.impulse[pair] + ROUNDING * run.impacts["impulse"][rows]
+    times, impulses = np.full((2, len(run.impacts)), math.nan)
+    if len(pairs.rows):
+        of_row = pairs.of_row
+        known = ((pairs.stop <= until) & ~pairs.weak)[of_row]
+        rows, pair = pairs.rows[known], of_row[known]
+        times[rows] = pairs.time[pair] + ROUNDING * _latest(run)
+        impulses[rows] = pairs.impulse[pair] + ROUNDING * np.asarray(run.impacts)["impulse"][rows]
     return times, impulses
+
+
+def _latest(run: Trajectory) -> float:
+    """The largest of the times of a run, by its size [s]."""
+    return max(abs(float(run.t[0])), abs(float(run.t[-1])))
 
 
 def _matched(
@@ -213,5 +220,7 @@ def resolved(run: Trajectory) -> float:
 
 def _lost(t: Array, apart: Distance, size: float) -> float:
     """Time from which on the error says only how large the motion is."""
-    lost = np.flatnonzero(np.max(apart.position.largest, axis=1) > LOST * size)
-    return float(t[lost[0]]) if len(lost) else math.inf
+    most, largest = LOST * size, apart.position.largest  # which only grows
+    if not np.any(largest[-1] > most):
+        return math.inf
+    return float(t[np.argmax(np.any(largest > most, axis=1))])

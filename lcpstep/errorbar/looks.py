@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.gauss import gauss
+from lcpstep.errorbar.breaks import close, increasing, spread
+from lcpstep.kernels.between import last_rows
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
@@ -25,8 +26,7 @@ JUMP = (
     10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
 )
 TINY = float(np.finfo(float).tiny)
-GRADES = 12  # times an interval after an event is halved towards it
-GAUSS, _ = gauss(2)
+GRADES = 12  # times an interval after an event is halved towards it: that is where errors change fast
 BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
 
 
@@ -56,13 +56,14 @@ def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Arr
     most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
-        return Looks(np.union1d(_telling(run, end, most), even), (True, False), False, True, even)
-    events, even = event_times(run, other), np.linspace(float(run.t[0]), end, most // EVEN)
+        return Looks(increasing(_telling(run, end, most), even), (True, False), False, True, even)
+    events, start = event_times(run, other), float(run.t[0])
     many = len(events) > MANY
-    some = uneven(float(run.t[0]), end, MANY) if many else events
-    between = _after(some, run, most), _left_out(run, most)
-    t = np.unique(np.concatenate([even, some, *between, _telling(run, end, most)]))
-    return Looks(t[(t >= run.t[0]) & (t <= end)], (False, False), True, many)
+    some = uneven(start, end, MANY) if many else events
+    ends = np.concatenate([run.t[:1], some[:: 1 + len(some) // most], run.t[-1:]])
+    after = spread(start, end, most // EVEN, ends, 1 + min(GRADES, most // len(ends)))
+    t = increasing(after, some, _left_out(run, most), _telling(run, end, most), low=start, high=end)
+    return Looks(t, (False, False), True, many)
 
 
 def uneven(start: float, end: float, n: int) -> Array:
@@ -89,20 +90,15 @@ def _telling(run: Trajectory, end: float, most: int) -> Array:
     return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
 
 
-def _after(events: Array, run: Trajectory, most: int) -> Array:
-    """Times between events, the nearer to each other the sooner after one: that is where errors change fast."""
-    some = np.concatenate([run.t[:1], events[:: 1 + len(events) // most], run.t[-1:]])
-    halves = 0.5 ** np.arange(1, 2 + min(GRADES, most // len(some)))
-    return np.asarray(some[:-1, None] + np.diff(some)[:, None] * halves).ravel()
-
-
 def _left_out(run: Trajectory, most: int) -> Array:
     """The middle of the hops that the run no longer follows where chattering ends: there they are highest."""
-    log, found = np.asarray(run.impacts), [np.zeros(0)]
-    for c in np.unique(log["contact"][log["kind"] == Kind.ACCUMULATION]):
-        own = log[log["contact"] == c]
-        ends = np.flatnonzero(own["kind"][1:] == Kind.ACCUMULATION)
-        found.append(0.5 * (own["time"][ends] + own["time"][ends + 1]))
+    log = np.asarray(run.impacts)
+    ends, found = log["kind"] == Kind.ACCUMULATION, [np.zeros(0)]
+    for c in np.unique(log["contact"][ends]) if ends.any() else ():
+        own = log["contact"] == c
+        time, here = log["time"][own], ends[own]
+        places = np.flatnonzero(here[1:])
+        found.append(0.5 * (time[places] + time[places + 1]))
     t = np.concatenate(found)
     return t[:: 1 + len(t) // most]
 
@@ -110,28 +106,17 @@ def _left_out(run: Trajectory, most: int) -> Array:
 def event_times(run: Trajectory, other: Trajectory) -> Array:
     """When anything happened in either run."""
     logs = (np.asarray(x.impacts) for x in (run, other))  # record arrays look their fields up slowly
-    return np.unique(np.concatenate([log["time"] for log in logs]))
+    return np.asarray(increasing(*(log["time"] for log in logs)))
 
 
 def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
     """Intervals between events so short that rounding of positions is much of a velocity between, (k, 2)."""
-    events = event_times(run, other)
-    short = np.flatnonzero(np.diff(events) < BRIEF * span)
-    return np.column_stack([events[short], events[short + 1]])
+    return np.asarray(close(event_times(run, other), BRIEF * span))
 
 
 def at(run: Trajectory, t: Array, kept: bool) -> tuple[Array, Array]:
     """States at times in their order, kept ones or any."""
-    if kept:
-        k = np.searchsorted(run.t, t, side="right") - 1
-        return run.q[k], run.v[k]
-    later = np.diff(t, prepend=-math.inf) > 0.0
-    q, v = run.at(t[later])
-    place = np.cumsum(later) - 1
-    return q[place], v[place]
-
-
-def with_nodes(t: Array) -> Array:
-    """Times (n,), and after each but the last the nodes between it and the next."""
-    between = t[:-1, None] + np.diff(t)[:, None] * np.concatenate([[0.0], GAUSS])
-    return np.append(between.ravel(), t[-1])
+    if not kept:
+        return run.dense(t)
+    k = last_rows(run.t, t, 0, len(run.t) - 1)
+    return run.q[k], run.v[k]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from lagrangian import HybridScene, Scene, checks
+from lagrangian import HybridScene, LinearSystem, Scene, checks
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -100,7 +100,7 @@ class EventDriven:
 
                 return ArcRun(self, scene, kept, line).finish(progress)
             return FrictionRun(self, scene, kept).finish(progress)
-        if scene.n_c <= 1 and scene.n_j == 0:
+        if scene.n_q == 1 and scene.n_c <= 1 and scene.n_j == 0 and isinstance(scene.system, LinearSystem):
             from lcpstep.events.flight.oscillator import oscillator_of
             from lcpstep.events.flight.run import ClosedForm
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events.general.ends import STATUS
+from lcpstep.kernels.between import last_rows
 from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
@@ -113,7 +114,8 @@ class Between(ABC):
         """Q and v at these times, each (m, n_q); ValueError where the state before one was not kept."""
         if not self.complete and not np.all(np.isin(times, self.s.t)):
             raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
-        return self.evaluate(times, np.maximum(np.searchsorted(self.s.t, times, side="right") - 1, 0))
+        times = np.ascontiguousarray(times)
+        return self.evaluate(times, last_rows(self.s.t, times, 0, len(self.s.t) - 1))
 
     @abstractmethod
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:

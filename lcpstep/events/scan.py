@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,35 +25,58 @@ SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obsta
 SLOPE = 1e-7  # of the time looked at: step of a difference
 
 
-def scan_interval(scene: Scene, m: Model, rate: float) -> float:
+class Seen(NamedTuple):
+    """Samples of what moves by itself: places, speeds and accelerations of obstacles and frame, (times, n, 3)."""
+
+    times: Array
+    motion: Array | None
+    frame: Array | None
+
+
+def seen(scene: Scene, m: Model) -> Seen:
+    """Samples of what moves by itself in a scene; None of what does not."""
+    times, found = sample_times(scene), []
+    for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
+        places = np.zeros((len(times), n, 3)) if f.given else None
+        if places is not None:
+            sampled(f, times, np.array(scene.q0), np.array(scene.v0), places)
+        found.append(places)
+    return Seen(times, *found)
+
+
+def scan_interval(scene: Scene, m: Model, rate: float, samples: Seen | None = None) -> float:
     """Longest interval on which the gap acceleration may be taken to change its sign only once.
 
     rate : fastest rate of the free motion [rad/s], 0 where it is not known
+    samples : of what moves by itself, where they have been taken
     """
     scan = min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_FORCING)
     if rate > 0.0:
         scan = min(scan, 2.0 * math.pi / PER_PERIOD / rate)
-    turn = fastest_turn(scene, m)
+    turn = fastest_turn(scene, m, samples)
     # A period that is given says how finely to look, unless what moves is much faster.
     if turn < (2.0 * scan if math.isfinite(scene.period) else math.inf):
         scan = min(scan, turn / PER_FORCING)
     return scan
 
 
-def fastest_turn(scene: Scene, m: Model) -> float:
+def fastest_turn(scene: Scene, m: Model, samples: Seen | None) -> float:
     """Time of the fastest turn of what moves by itself, obstacle or frame [s]; infinite where nothing does.
 
     2 pi max |s'| / max |s''| of samples, which need not be dense for that; what has no period may speed up, and is
     looked at in windows of time. Stretches that turn fast by themselves are left out: runs stop there
     (`lcpstep.turns`).
     """
+    if not (m.motion.given or m.frame.given or m.gap_t.given):
+        return math.inf
     windows = 1 if math.isfinite(scene.period) else WINDOWS
     fastest = 0.0
-    times = sample_times(scene)
-    even = turns(scene).elsewhere(times, scene.period)
-    for rates in _rates(scene, m, times, SLOPE * sampled_length(scene)):
-        rates[~even] = 0.0
-        largest = np.abs(rates).reshape(windows, -1, rates.shape[1], 2).max(axis=1)
+    samples = samples or seen(scene, m)
+    even = turns(scene).elsewhere(samples.times, scene.period)
+    for rates in _rates(scene, m, samples, SLOPE * sampled_length(scene)):
+        size = np.abs(rates)
+        size[~even] = 0.0
+        largest = size.reshape(windows, -1, rates.shape[1], 2).max(axis=1)
         speed, acceleration = largest[..., 0], largest[..., 1]
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
@@ -70,15 +94,13 @@ def sample_times(scene: Scene) -> Array:
     return np.asarray(scene.t_span[0] + sampled_length(scene) * (k + k * GOLDEN % 1.0) / SAMPLES)
 
 
-def _rates(scene: Scene, m: Model, times: Array, step: float) -> Iterator[Array]:
+def _rates(scene: Scene, m: Model, samples: Seen, step: float) -> Iterator[Array]:
     """Speeds and accelerations of each frame and obstacle that moves by itself, at these times, (times, n, 2)."""
-    state = np.array(scene.q0), np.array(scene.v0)
-    for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
-        if f.given:
-            rates = np.zeros((len(times), n, 3))
-            sampled(f, times, *state, rates)
-            yield rates[:, :, 1:]
+    for found in (samples.motion, samples.frame):
+        if found is not None:
+            yield found[:, :, 1:]
     if m.gap_t.given:
+        times, state = samples.times, (np.array(scene.q0), np.array(scene.v0))
         now, then = np.zeros((2, len(times), scene.n_c))
         for out, t in ((now, times), (then, times + step)):
             sampled(m.gap_t, t, *state, out)

@@ -73,11 +73,11 @@ def enclose(
         found = out.ravel()
         if rates:
             found = [y for x in found for y in (x, rate_of(x))]
+        given = np.empty((2, len(at), count))
         for k, x in enumerate(found):
-            for bound, given, better in ((lo, "lo", np.minimum), (hi, "hi", np.maximum)):
-                value = getattr(x, given) if isinstance(x, Interval) else float(x)
-                value = np.broadcast_to(value, at.shape)[active]
-                bound[rows, k] = better(bound[rows, k], value)
+            given[0, :, k], given[1, :, k] = (x.lo, x.hi) if isinstance(x, Interval) else (float(x), float(x))
+        lo[rows] = np.minimum(lo[rows], given[0, active])
+        hi[rows] = np.maximum(hi[rows], given[1, active])
 
     paths = Paths(n)
     try:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.intervals.numbers import Interval, bounds, inverse, known
+from lcpstep.intervals.numbers import Interval, bounds, inverse
 
 
 class Moving(Interval):
@@ -165,7 +165,7 @@ def times(rate: Any, factor: Any) -> Any:
     """Their product, zero of what does not change."""
     if not isinstance(rate, Interval) and rate == 0.0:
         return 0.0
-    return known(_interval(rate) * _interval(factor))
+    return _interval(rate) * _interval(factor)
 
 
 def either(x: Any, y: Any, first: Any, second: Any) -> Any:

@@ -2,7 +2,7 @@
 
     [a, b] + [c, d] = [a + c, b + d],   [a, b] [c, d] = [min(ac, ad, bc, bd), max(...)],   and so on
 
-Bounds are rounded to nearest and then moved outwards by more than the rounding. Source: R. Moore, R. Kearfott,
+Rounding moves bounds outwards (`rounding`). Source: R. Moore, R. Kearfott,
 M. Cloud, Introduction to Interval Analysis (SIAM 2009).
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from lcpstep.intervals.conditions import Condition
 from lcpstep.intervals.paths import NotEnclosed, current
-from lcpstep.intervals.rounding import moved_out, wave
+from lcpstep.intervals.rounding import added, inverted, moved_out, multiplied, subtracted, wave
 
 
 class Interval:
@@ -48,19 +48,19 @@ class Interval:
         c, d = bounds(other)
         if c is None:
             return NotImplemented
-        return outwards(self.lo + c, self.hi + d)
+        return Interval(*added(self.lo, self.hi, c, d))
 
     def __sub__(self, other: Any) -> Interval:
         c, d = bounds(other)
         if c is None:
             return NotImplemented
-        return outwards(self.lo - d, self.hi - c)
+        return Interval(*subtracted(self.lo, self.hi, c, d))
 
     def __rsub__(self, other: Any) -> Interval:
         c, d = bounds(other)
         if c is None:
             return NotImplemented
-        return outwards(c - self.hi, d - self.lo)
+        return Interval(*subtracted(c, d, self.lo, self.hi))
 
     def __mul__(self, other: Any) -> Interval:
         c, d = bounds(other)
@@ -70,13 +70,7 @@ class Interval:
             return self.power(2)
         if isinstance(other, Interval) and (other.minus is self or self.minus is other):
             return -self.power(2)
-        if c is d:
-            x, y = self.lo * c, self.hi * c
-            return outwards(np.minimum(x, y), np.maximum(x, y))
-        w, x, y, z = self.lo * c, self.lo * d, self.hi * c, self.hi * d
-        least = np.minimum(np.minimum(w, x), np.minimum(y, z))
-        most = np.maximum(np.maximum(w, x), np.maximum(y, z))
-        return known(outwards(least, most))
+        return Interval(*multiplied(self.lo, self.hi, c, d))
 
     def __truediv__(self, other: Any) -> Interval:
         return self * inverse(other)
@@ -266,7 +260,7 @@ class Interval:
 
 
 def bounds(x: Any) -> tuple[Any, Any]:
-    """Lower and upper bound, the same object of a number; None of what is no number."""
+    """Lower and upper bound, of a number the same; None of what is no number."""
     if isinstance(x, Interval):
         return x.lo, x.hi
     if isinstance(x, (int, float, np.floating, np.integer)):
@@ -280,14 +274,6 @@ def outwards(lo: Any, hi: Any, units: float = 1.0) -> Interval:
     return Interval(*moved_out(lo, hi, units))
 
 
-def known(x: Interval) -> Interval:
-    """The same, without bounds where a product of zero and infinity has left none."""
-    bad = np.isnan(x.lo) | np.isnan(x.hi)
-    if np.any(bad):
-        return Interval(np.where(bad, -np.inf, x.lo), np.where(bad, np.inf, x.hi))
-    return x
-
-
 def inverse(x: Any) -> Any:
     """1 / x, without bounds where x may be zero."""
     if not isinstance(x, Interval):
@@ -295,6 +281,4 @@ def inverse(x: Any) -> Any:
         if c is None:
             raise NotEnclosed(f"it divides by {x!r}")
         return outwards(1.0 / c, 1.0 / c)
-    zero = (x.lo <= 0.0) & (x.hi >= 0.0)
-    y = outwards(1.0 / x.hi, 1.0 / x.lo)
-    return Interval(np.where(zero, -np.inf, y.lo), np.where(zero, np.inf, y.hi))
+    return Interval(*inverted(x.lo, x.hi))

@@ -110,11 +110,12 @@ class Paths:
 
     def mark(self, where: Any) -> None:
         """The function need not be smooth in these of the windows at hand."""
-        self.branched[self.at[np.broadcast_to(where, self.at.shape) & self.active]] = True
+        self.branched[self.at[self.spread(where) & self.active]] = True
 
     def spread(self, mask: Any) -> Mask:
         """A truth value for every window at hand."""
-        return np.broadcast_to(np.asarray(mask, dtype=bool), self.at.shape)
+        mask = np.asarray(mask, dtype=bool)
+        return mask if mask.shape == self.at.shape else np.broadcast_to(mask, self.at.shape)
 
 
 def current() -> Paths:

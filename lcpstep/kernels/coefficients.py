@@ -50,10 +50,11 @@ class Coefficients:
         if self.fixed:
             self.numbers[1] = mu_s
         self.marks = np.zeros(2 * n_c, dtype=np.intp)
-        self.marks[:n_c] = self.varies or self.numbers[1] > 0.0
-        self.rough = indices(self.marks)
+        self.rough, self.two = indices(self.marks), self.varies
         self.tried = indices_after(self.rough, n_c)
-        self.two = self.varies or bool(np.any(self.numbers[1] > self.numbers[0]))
+        for c in range(self.n_c):
+            self.rough[c] = self.varies or self.sticking[c] > 0.0
+            self.two = self.two or self.sticking[c] > self.sliding[c]
 
     def measure(self, t: float, q: Doubles, u: Doubles) -> bool:
         """Those at the sliding velocities u, 0 of what sticks; False where one is negative or no number."""

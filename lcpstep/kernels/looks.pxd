@@ -3,12 +3,14 @@ from libc.math cimport sqrt
 from lcpstep.arrays cimport doubles
 from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.vectors cimport copy, finite
 from lcpstep.pointers cimport abs, after, inf, max, min, whole
 
 @cython.locals(found=bint, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, before=Py_ssize_t)
 cdef bint find_inside(
     Model m, Py_ssize_t count, double* t, double* q, Py_ssize_t looks, double share, bint towards, double* work
 ) noexcept
+cdef void gaps_at(Model m, double t, double* q, double* v, double* x, double* g) noexcept nogil
 cdef Py_ssize_t place(Py_ssize_t i, Py_ssize_t looks, Py_ssize_t count) noexcept nogil
 @cython.locals(i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, side=Py_ssize_t)
 cdef double find_highest(

@@ -18,6 +18,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, finite
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 
@@ -26,7 +27,7 @@ def lies_inside(m: Model, t: Any, q: Any, looks: int, share: float, towards: boo
 
     towards : how far they went towards the obstacle, instead of on the whole
     """
-    count, work = len(t), np.zeros(2 * m.n_c + m.n_c * m.n_q + 3 * m.n_q)
+    count, work = len(t), np.zeros(2 * m.n_c + m.n_c * m.n_q + 4 * m.n_q)
     at, x, own = doubles(t), doubles(q), doubles(work)
     return bool(find_inside(m, count, at, x, looks, share, towards, own))
 
@@ -36,15 +37,15 @@ def find_inside(
 ) -> bool:
     """Kernel of `lies_inside`."""
     n, before, lowest, square, found = m.n_q, -1, 0.0, 0.0, False
-    still, low, high = work, after(work, n), after(work, 2 * n)
-    g, g_t, G = after(work, 3 * n), after(work, 3 * n + m.n_c), after(work, 3 * n + 2 * m.n_c)
+    still, low, high, x = work, after(work, n), after(work, 2 * n), after(work, 3 * n)
+    g, g_t, G = after(work, 4 * n), after(work, 4 * n + m.n_c), after(work, 4 * n + 2 * m.n_c)
     with cython.nogil:
         for j in range(n):
             low[j], high[j] = inf, -inf
         for i in range(looks):
             k = place(i, looks, count)
             if k != before:
-                gaps(m, t[k], after(q, k * n), still, g)
+                gaps_at(m, t[k], after(q, k * n), still, x, g)
                 for c in range(m.n_c):
                     if not g[c] >= lowest:
                         lowest = g[c]
@@ -58,7 +59,7 @@ def find_inside(
         elif not lowest >= 0.0:
             for i in range(looks):
                 k = place(i, looks, count)
-                gaps(m, t[k], after(q, k * n), still, g)
+                gaps_at(m, t[k], after(q, k * n), still, x, g)
                 gap_rates(m, t[k], after(q, k * n), still, G, g_t)
                 for c in range(m.n_c):
                     if not g[c] >= 0.0:
@@ -68,6 +69,16 @@ def find_inside(
                         if not -g[c] <= share * size:
                             found = True
     return found
+
+
+def gaps_at(m: Model, t: float, q: Doubles, v: Doubles, x: Doubles, g: Doubles) -> None:
+    """Every gap at a state of the scene, in whatever coordinates its model is; x (n_q,) is work space."""
+    copy(x, q, m.n_q)
+    if m.carried:
+        m.frame.fill(t, q, v, m.frame_now)
+        for j in range(m.n_q):
+            x[j] += m.frame_now[3 * j]
+    gaps(m, t, x, v, g)
 
 
 def place(i: int, looks: int, count: int) -> int:
@@ -108,6 +119,11 @@ def find_highest(
                     kinetic += 0.5 * M[j * n + i_q] * x_t[j] * x_t[i_q]
             most = max(most, abs(change) / (4.0 * near * kinetic)) if kinetic > 0.0 else most
     return most
+
+
+def all_finite(x: Any) -> bool:
+    """Whether no number of a contiguous array is infinite or not-a-number."""
+    return bool(finite(doubles(x), x.size))
 
 
 def turning(

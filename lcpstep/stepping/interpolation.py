@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.kernels import between
+
 Array = NDArray[np.float64]
+NOWHERE = np.zeros(0, dtype=np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +34,11 @@ class Between(ABC):
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Q and v at these times, each (m, n_q); ValueError for one between states that are not known."""
-        i = before(self.t, times)
-        return (self.q[i], self.v[i]) if len(self.t) == 1 else self.within(times, i)
+        last, times = len(self.t) - 1, np.ascontiguousarray(times)
+        i = between.last_rows(self.t, times, 0, max(last - 1, 0))
+        if not (self.every_step or np.all((times == self.t[i]) | (times == self.t[last]))):
+            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        return (self.q[i], self.v[i]) if last == 0 else self.within(times, i)
 
     @abstractmethod
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
@@ -43,11 +50,7 @@ class Linear(Between):
 
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
         """The states in the steps from rows i of the kept ones."""
-        t, q, v = self.t, self.q, self.v
-        share = (times - t[i]) / (t[i + 1] - t[i])
-        known(self.every_step, (share == 0.0) | (share == 1.0))
-        share = share[:, None]
-        return (1.0 - share) * q[i] + share * q[i + 1], (1.0 - share) * v[i] + share * v[i + 1]
+        return between.on_lines(self.t, self.q, self.v, times, i)
 
 
 class Parabolic(Between):
@@ -55,47 +58,25 @@ class Parabolic(Between):
 
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
         """The states in the steps from rows i of the kept ones."""
-        t, q, v = self.t, self.q, self.v
-        last, length = times == t[-1], (t[i + 1] - t[i])[:, None]
-        tau = (times - t[i])[:, None]
-        known(self.every_step, (tau[:, 0] == 0.0) | last)
-        half = (q[i + 1] - q[i] - length * v[i]) / length**2
-        q_at, v_at = q[i] + tau * (v[i] + tau * half), v[i] + 2.0 * tau * half
-        q_at[last], v_at[last] = q[-1], v[-1]
-        return q_at, v_at
+        return between.on_parabolas(self.t, self.q, self.v, NOWHERE, times, i)
 
 
 @dataclass(frozen=True, eq=False)
-class Bent(Parabolic):
+class Bent(Between):
     """The same, whose velocity meets that of the next state, but where it has jumped there.
-
-    As within a step: v + s a + (s / h)^2 (v_next - v - h a), where the parabola alone would leave a gap of order two.
 
     Parameters
     ----------
-    jumps : (n,) whether the velocity may have jumped at a kept state
+    mode : (n,) above zero where the velocity may have jumped at a kept state
     """
 
-    jumps: NDArray[np.bool_]
+    mode: Array
+
+    @cached_property
+    def jumps(self) -> NDArray[np.uint8]:
+        """Where the velocity may have jumped: asked for by whoever looks between states."""
+        return (self.mode > 0.0).view(np.uint8)
 
     def within(self, times: Array, i: Any) -> tuple[Array, Array]:
         """The states in the steps from rows i of the kept ones."""
-        q_at, v_at = super().within(times, i)
-        t, q, v = self.t, self.q, self.v
-        length = (t[i + 1] - t[i])[:, None]
-        end = 2.0 * (q[i + 1] - q[i]) / length - v[i]  # where the parabola's velocity arrives
-        share = np.where(
-            (self.jumps[i + 1] | (times == t[-1]))[:, None], 0.0, (times - t[i])[:, None] / length
-        )
-        return q_at, v_at + share * share * (v[i + 1] - end)
-
-
-def before(t: Array, times: Array) -> NDArray[np.intp]:
-    """Places of the states from which the given times are reached."""
-    return np.clip(np.searchsorted(t, times, side="right") - 1, 0, max(len(t) - 2, 0))
-
-
-def known(every_step: bool, kept: Any) -> None:
-    """ValueError unless all states asked for are known."""
-    if not (every_step or np.all(kept)):
-        raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        return between.on_parabolas(self.t, self.q, self.v, self.jumps, times, i)

@@ -18,10 +18,11 @@ from lcpstep.kernels.model import Model
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
+from lcpstep.stepping.extent import is_stiff, places
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import RESTING, largest, number
+from lcpstep.stepping.steps import RESTING, number
 from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
@@ -51,8 +52,7 @@ class MoreauRun(StepRun):
         expected = 1 + kept.of_steps(number(scene.t_span, method.h)) + len(kept.times)
         recorder = Recorder(scene.n_q, self.rows.n, kept, room, expected=expected)
         super().__init__(method, scene, kept, recorder, portion)
-        size = largest(scene.q0, self.model.arrays["offset"], method.h * np.asarray(scene.v0))
-        self.slack = RESTING * (size or 1.0)
+        self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
         made, external = self.plan_for(self.stretches[0][0]), method.lcp != "lemke"
         self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record, external)
 
@@ -183,15 +183,14 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     X and W are those of the contacts; with tangents or joints, or where they change, there is but room for them.
     """
     M, C, K, G = (m.arrays[name] for name in ("M", "C", "K", "G"))
-    A = M + h * theta * C + (h * theta) ** 2 * K
-    inverse: Any = (
-        (np.linalg.inv(A) if C.any() or K.any() else m.arrays["M_inverse"]) if m.linear else np.zeros(A.shape)
-    )
+    inverse: Any = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
+    A_q = A_v = np.zeros(M.shape)
+    if is_stiff(m):
+        inverse = np.linalg.inv(M + h * theta * C + (h * theta) ** 2 * K)
+        A_q, A_v = h * inverse @ K, inverse @ (h * C + h * h * theta * K)
     X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
     if c.n == m.n_c:
         A_g = inverse @ G.T
         X, W = A_g.T, G @ A_g
-    matrices = {
-        "A_q": h * inverse @ K, "A_v": inverse @ (h * C + h * h * theta * K), "A_f": h * inverse, "X": X, "W": W,
-    }  # fmt: skip
+    matrices = {"A_q": A_q, "A_v": A_v, "A_f": h * inverse, "X": X, "W": W}
     return Plan(h, theta, slack, constant, matrices)

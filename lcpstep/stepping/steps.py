@@ -5,7 +5,6 @@ Steps that are lost in the rounding of the times they are added to are refused: 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -46,18 +45,17 @@ def unresolved(span: tuple[float, float], h: float) -> float:
 
 def number(span: tuple[float, float], h: float) -> int:
     """How many steps a span is divided into."""
-    *_, last = divided(span, h)
-    return last[3]
+    return divided(span, h)[-1][3]
 
 
-def divided(span: tuple[float, float], h: float) -> Iterator[tuple[float, float, int, int]]:
+def divided(span: tuple[float, float], h: float) -> list[tuple[float, float, int, int]]:
     """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
     start, end = span
     steps = (end - start) / h
     fits = h * abs(steps - round(steps)) <= unresolved(span, h)
     whole = round(steps) if fits else int(steps)
-    if whole > 0:
-        yield (end - start) / whole if fits else h, start, 0, whole
+    found = [((end - start) / whole if fits else h, start, 0, whole)] if whole > 0 else []
     if whole == 0 or not fits:
         last = start + whole * h
-        yield end - last, last, whole, whole + 1
+        found.append((end - last, last, whole, whole + 1))
+    return found

@@ -139,17 +139,18 @@ class Belt(Source):
 
 def sources(scene: Scene) -> list[Source]:
     """What moves by itself in a scene, but for the functions of the ready ones."""
-    found = []
-    state = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
+    found: list[tuple[Any, ...]] = []
     system: Any = scene.system
     contacts: Any = scene.contacts
     if isinstance(system, LinearSystem) and system.frame is not None and scene.n_c > 0:
-        found.append(Source("system.frame", system.frame, None, state, scene.n_q))
+        found.append(("system.frame", system.frame, None, scene.n_q))
     if isinstance(contacts, LinearContacts) and contacts.motion is not None:
-        found.append(Source("contacts.motion", contacts.motion, None, state, scene.n_c))
+        found.append(("contacts.motion", contacts.motion, None, scene.n_c))
     if isinstance(contacts, Contacts) and contacts.gap_t is not None:
-        found.append(Source("contacts.gap_t", contacts.gap_t, contacts.gap, state, scene.n_c))
-    return _own(found)
+        found.append(("contacts.gap_t", contacts.gap_t, contacts.gap, scene.n_c))
+    users = [x for x in found if not _ours(x[1])]
+    at = (np.array(scene.q0), np.array(scene.v0), np.array(scene.p)) if users else ()
+    return [Source(name, f, also, at, rows) for name, f, also, rows in users]
 
 
 def belts(scene: Scene) -> list[Source]:
@@ -157,9 +158,12 @@ def belts(scene: Scene) -> list[Source]:
     friction = None if scene.contacts is None else scene.contacts.friction
     if friction is None or not callable(friction.slip):
         return []
+    if _ours(friction.slip):
+        return []
     state = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
-    return _own([Belt("friction.slip", friction.slip, friction.slip, state, scene.n_c)])
+    return [Belt("friction.slip", friction.slip, friction.slip, state, scene.n_c)]
 
 
-def _own(found: list[Source]) -> list[Source]:
-    return [x for x in found if not f"{getattr(plain(x.f), '__module__', '')}.".startswith(OURS)]
+def _ours(f: Any) -> bool:
+    """Whether a function is one of the ready scenes'."""
+    return f"{getattr(plain(f), '__module__', '')}.".startswith(OURS)

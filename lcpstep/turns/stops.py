@@ -28,6 +28,10 @@ NEAR = 1e-12  # of the period: stops that are one
 KEPT = 256  # scenes whose stops are remembered
 
 
+NOWHERE: Array = np.zeros((0, 2))
+NOWHERE.flags.writeable = False
+
+
 class FastTurn(UserWarning):
     """Something turns faster than the scan for events, and how fast is known from samples alone."""
 
@@ -61,7 +65,7 @@ def turns(scene: Scene, with_belts: bool = False) -> Turns:
     corners = np.asarray(scene.corners, dtype=float)
     found = sources(scene) + (belts(scene) if with_belts else []) if scene.n_c else []
     if not found:
-        return Turns(corners, np.zeros((0, 2)), "")
+        return Turns(corners, NOWHERE, "")
     span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
     result = _remembered(tuple(Key(x) for x in found), span, scene.period, tuple(corners.tolist()))
     if result.sampled:

@@ -1,5 +1,7 @@
 """What a bar costs: companions that are good enough, states kept on the way, and no run for nothing."""
 
+import cProfile
+import pstats
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +12,6 @@ from lagrangian import Scene, scenes
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errorbar import companions, estimate
-from lcpstep.errorbar.distance import _before
 from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
 from lcpstep.recording import Kept
 from lcpstep.stepping.pieces.run import Again
@@ -99,6 +100,29 @@ def test_the_bar_of_a_long_run_that_ends_early_takes_a_companion_over_a_part_alo
     assert max(ends) == pytest.approx(estimate.PART * 100.0)
 
 
+def calls(work):
+    """Functions called in Python or C, whose number the load of a machine does not change."""
+    work()
+    profile = cProfile.Profile()
+    profile.runcall(work)
+    return pstats.Stats(profile).total_calls
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "most"),
+    [
+        (scenes.bouncing_ball(t_end=1.0), Moreau(1e-3), 900),
+        (scenes.bouncing_ball(t_end=1.0), EventDriven(), 1150),
+        (scenes.newtons_cradle(t_end=0.5), Located(1e-3), 800),
+        (scenes.cam_follower(rpm=358.0, t_end=1.0), Moreau(1e-3), 1500),
+    ],
+    ids=str,
+)
+def test_the_bar_of_a_short_run_is_a_companion_and_few_calls(scene, method, most):
+    alone, both = (calls(lambda error=error: simulate(scene, method, error=error)) for error in (False, True))
+    assert both - alone < most
+
+
 def test_looks_are_as_many_as_tell_the_error():
     scene = scenes.impact_oscillator(t_end=20.0)
     t = np.linspace(0.0, 20.0, 20_001)
@@ -114,10 +138,6 @@ def test_what_happens_at_the_start_alone_adds_nothing_to_the_integrals():
     d = draw(270623, 20)
     run = simulate(d.scene(), Located(d.length / 5000.0, 4), error=True)
     assert run.error.velocity.l1 < 1e-9
-
-
-def test_times_left_out_count_as_the_last_before():
-    assert _before(np.array([True, True, False, True, False, True])).tolist() == [2, 2, 2, 2, 4, 4]
 
 
 @pytest.mark.parametrize("method", [Located(5e-2), EventDriven(), Located(1e-1, 4)], ids=str)

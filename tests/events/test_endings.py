@@ -46,6 +46,14 @@ def test_a_ball_at_rest_on_the_floor_stays_there(flow, r):
 
 
 @every_flow
+def test_hops_below_the_tolerance_from_the_floor_at_the_start_take_no_negative_impulse(flow):
+    m = simulate(ball(flow, 0.5, 0.0, 1e-3), EventDriven(1e-6, 1e-6))
+    assert "ACCUMULATION" in kinds(m)
+    assert np.all(m.impulse >= 0.0)
+    assert m.impulse.sum() == pytest.approx(16.0 - 1e-3, rel=1e-13)
+
+
+@every_flow
 def test_a_weightless_ball_at_rest_on_the_floor_stays_there(flow):
     m = simulate(ball(flow, 0.5, 0.0, 0.0, g=0.0), EventDriven())
     assert m.status is Status.DONE

@@ -44,5 +44,25 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
             force_omega=5.05, amplitude=(-0.000815, 0.00163), phase=(0.0, 2.27), omega=12.3, form=1, family='slit',
         ),
         ("moreau",),
+    # What the end of chattering owed was paid back by a negative impulse of the force that followed
+    "a ball whose first hops are below the tolerance, on a wall that moves": (
+        Description(
+            M=((1.0,),), q0=(0.414,), v0=(0.0,), t_span=(0.0, 0.1456), h=0.0112, G=((1.0,),),
+            offset=(-0.41630656659489856,), restitution=0.71, K=((49.1,),), constant=(0.0279,), sine=(-0.225,),
+            force_omega=2.88, amplitude=(0.00337,), phase=(3.83,), omega=2.21, form=1, family='wall',
+        ),
+        ("event-driven-loose",),
+    ),
+    # The judge moved no place of a scene with joints when it asked what nearness of starts does
+    "contacts beside a bent joint, masses over six decades": (
+        Description(
+            M=((0.0106, 0.0, 0.0), (0.0, 0.00134, 0.0), (0.0, 0.0, 4970.0)), q0=(-1.7, 1.16, 0.115),
+            v0=(0.0, 0.0, 0.0), t_span=(-1.56, -0.72462), h=0.00351, G=((-1.64, -0.77, -0.815), (1.25, -0.888,
+            -0.624)), offset=(-1.8010749999999998, 3.2268399999999997), K=((0.713, 0.0488, 696.0), (0.0488, 0.00874,
+            20.1), (696.0, 20.1, 822000.0)), cosine=(-0.0136, 0.00681, -5820.0), sine=(-0.0406, 0.0068, 12900.0),
+            force_omega=17.0, J=((0.0, 0.0, 0.0),), joint_offset=(-2.1244125,), joint_bend=(1.0,), general=True,
+            family='jointed',
+        ),
+        ("located-tolerance", "located-4-tolerance"),
     ),
 }  # fmt: skip

@@ -235,3 +235,23 @@ def test_a_later_end_is_held_against_a_run_up_to_the_step_that_its_own_end_cuts_
     log = np.delete(other.motion.impacts, 0).view(np.recarray)
     other = replace(other, motion=replace(other.motion, impacts=log))
     assert bool(kinds(same(base(d, r), other, v))) is (until == np.inf)
+
+
+HOPS = Description(
+    M=((1.0, 0.0), (0.0, 1.0)), q0=(2.04, -1.28), v0=(0.0, 0.0), t_span=(0.0, 0.0148), h=0.00148,
+    G=((0.0, -1.0), (1.0, 0.0)), offset=(-1.28, -2.04), restitution=(1.0, 0.0), K=((47.9, -47.9), (-47.9, 47.9)),
+    C=((1.28, -0.295), (-0.295, 1.28)), constant=(0.275, -0.0437), cosine=(1.17, -9.01), sine=(-15.9, 1.51),
+    force_omega=15.1, amplitude=(-0.0007, 0.0014), phase=(0.0, 0.0), omega=1.37, general=True, spread=0.0442,
+    pendulum=0.638, b=(0.295, -1.36), family="chain",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("more", "found"), [(0.0, set()), (2e-5, {"disagrees"})])
+def test_damping_of_hops_within_a_step_is_not_asked_of_order_two_and_places_beyond_their_height_are(
+    more, found, monkeypatch
+):
+    """Elastic hops of 14 us and 3 nm in steps of 1.5 ms, on a wall that goes further by `more`."""
+    reference = Reference(HOPS, run(HOPS, "event-driven"))
+    other = replace(HOPS, amplitude=(-0.0007, 0.0014 + more))
+    monkeypatch.setattr(agree, "run", lambda d, *given: run(other if d is HOPS else d, *given))
+    assert kinds(agrees(reference, run(other, "located"))) == found

@@ -33,6 +33,8 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(moreau_run, "Rows", plain.moving.Rows)
         monkeypatch.setattr(moreau_run, "State", plain.moving.State)
         monkeypatch.setattr(moreau_run, "Plan", plain.plan.Plan)
+        monkeypatch.setattr(moreau_run, "places", plain.extent.places)
+        monkeypatch.setattr(moreau_run, "is_stiff", plain.extent.is_stiff)
 
     return start
 

@@ -1,6 +1,7 @@
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.flight.motion cimport Flight, rebase, state_at
 from lcpstep.kernels.record cimport LEAD
+from lcpstep.pointers cimport max, min
 
 
 cdef void keep(Flight s, double t) noexcept nogil

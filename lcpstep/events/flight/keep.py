@@ -10,11 +10,18 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.flight.motion import Flight, rebase, state_at
     from lcpstep.kernels.record import LEAD
+    from lcpstep.pointers import max, min
 
 
 def keep(s: Flight, t: float) -> None:
-    """Keep the state s.q, s.v at time t, and the impulse since the one before."""
+    """Keep the state s.q, s.v at time t, and the impulse since the one before.
+
+    What the end of a chattering sequence has left of a negative one is to be paid by the contact force that follows.
+    """
+    owed = min(s.impulse[0], 0.0)
+    s.impulse[0] = max(s.impulse[0], 0.0)
     s.record.keep(t, s.mode, s.q, s.v, s.impulse)
+    s.impulse[0] = owed
 
 
 def keep_times(s: Flight, stop: float, last: bool) -> None:
@@ -42,8 +49,12 @@ def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None
     n = len(times)
     with cython.nogil:
         for k in range(n):
-            s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
-            fly_on(s, kept_t[at[k]], t[k])
+            # What is known of the flight from a row on holds for what comes next in it, up to the next corner
+            if k > 0 and at[k] == at[k - 1] and kept_t[at[k]] < t[k - 1] <= t[k] and t[k] < s.high:
+                state_at(s, t[k])
+            else:
+                s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
+                fly_on(s, kept_t[at[k]], t[k])
             found_q[k], found_v[k] = s.q[0], s.v[0]
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.scan import SAMPLES, sample_times, sampled, sampled_length
+from lcpstep.events.scan import SAMPLES, Seen, sampled, sampled_length, seen
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
 from lcpstep.turns import turns
@@ -47,8 +47,8 @@ class Reach(NamedTuple):
     speed: float  # largest velocity
 
 
-def reach(scene: Scene, m: Model) -> Reach:
-    """The bounds above, and the size of the motion that is seen."""
+def reach(scene: Scene, m: Model, all_seen: Seen | None = None) -> Reach:
+    """The bounds above, and the size of the motion that is seen; `all_seen` where samples have been taken."""
     G, offset = float(m.arrays["G"][0, 0]), float(m.arrays["offset"][0])
     if not m.frame.given and not m.motion.given:
         return Reach(math.inf, 0.0, 0.0, 0.0)
@@ -57,8 +57,9 @@ def reach(scene: Scene, m: Model) -> Reach:
         frame, motion = (looked_at(scene, f, times) for f in (m.frame, m.motion))
         return np.asarray((G * frame + motion)[:, 0])
 
-    regular = sample_times(scene)
-    found = samples(np.concatenate([regular, _between_corners(scene)]))
+    regular, motion, frame = all_seen or seen(scene, m)
+    at_regular = (G * (0.0 if frame is None else frame) + (0.0 if motion is None else motion))[:, 0]
+    found = np.concatenate([at_regular, samples(_between_corners(scene))])
     size = np.max(np.abs(found), axis=0)
     far = Reach(math.inf, 0.0, float(size[0]), float(size[1]))
     if not math.isfinite(scene.period):

@@ -18,7 +18,7 @@ from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import Oscillator, oscillator_of
 from lcpstep.events.flight.reach import reach
 from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
-from lcpstep.events.scan import scan_interval
+from lcpstep.events.scan import scan_interval, seen
 from lcpstep.kernels.model import Model
 from lcpstep.model import model
 from lcpstep.recording import Kept, Recorder, States
@@ -30,15 +30,16 @@ Array = NDArray[np.float64]
 def bounds(scene: Scene, m: Model, o: Any, method: Any) -> dict[str, float]:
     """What a flight is given by name, see `motion.Flight`."""
     rate = max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))
-    given = {"scan": scan_interval(scene, m, rate), "rtol": method.rtol, "atol": method.atol}
+    samples = seen(scene, m) if m.frame.given or m.motion.given else None
+    given = {"scan": scan_interval(scene, m, rate, samples), "rtol": method.rtol, "atol": method.atol}
     if scene.n_c == 0:
         return given | {"clear": math.inf, "bend": 0.0, "size": 0.0, "rate": 0.0}
-    seen = reach(scene, m)
+    far = reach(scene, m, samples)
     G, offset = float(m.arrays["G"][0, 0]), float(m.arrays["offset"][0])
     forced = abs(G) * math.hypot(o.X, o.Y)
     return given | {
-        "clear": seen.clear, "bend": seen.bend,
-        "size": seen.size + abs(offset) + forced, "rate": seen.speed + forced * abs(o.Omega),
+        "clear": far.clear, "bend": far.bend,
+        "size": far.size + abs(offset) + forced, "rate": far.speed + forced * abs(o.Omega),
     }  # fmt: skip
 
 

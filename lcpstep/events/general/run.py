@@ -18,6 +18,7 @@ from lcpstep.events.general.state import Mechanism
 from lcpstep.events.scan import scan_interval
 from lcpstep.gaps import no_way_out
 from lcpstep.gauss import gauss
+from lcpstep.kernels.between import accelerated, by_dense_output
 from lcpstep.kernels.model import Model
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
@@ -128,26 +129,9 @@ class Moved(running.Between):
 
     def evaluate(self, times: Array, row: Any) -> tuple[Array, Array]:
         """The states, each from that row of the kept ones."""
-        if np.all(times == self.s.t[row]):
+        if not self.complete:  # there is nothing beside the states
             return self.s.q[row], self.s.v[row]
-        moved = moved_constant if self.constant else moved_by_step
-        return moved(self.s, self.F, times, row)
-
-
-def moved_constant(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """States at times after the kept rows, under the acceleration kept with each."""
-    tau, a = (times - s.t[row])[:, None], F[row, 0]
-    a[times >= s.t[-1]] = 0.0  # no motion has been kept beyond the last state
-    return s.q[row] + tau * (s.v[row] + 0.5 * tau * a), s.v[row] + tau * a
-
-
-def moved_by_step(s: States, F: Array, times: Array, row: Any) -> tuple[Array, Array]:
-    """The same by the dense output of the step after each row; see `rungekutta.RungeKutta.at`."""
-    tau = (times - s.t[row])[:, None]
-    share = tau / np.where(s.length[row] > 0.0, s.length[row], 1.0)[:, None]
-    moved = np.zeros((len(times), F.shape[2]))
-    for k in range(F.shape[1]):
-        moved = (moved + F[row, F.shape[1] - 1 - k]) * (share if k % 2 == 0 else 1.0 - share)
-    moved[tau[:, 0] == 0.0] = 0.0
-    n = s.q.shape[1]
-    return s.q[row] + moved[:, :n], s.v[row] + moved[:, n:]
+        kept = self.s.t, self.s.q, self.s.v
+        if self.constant:
+            return accelerated(*kept, self.F, times, row)
+        return by_dense_output(*kept, self.s.length, self.F, times, row)

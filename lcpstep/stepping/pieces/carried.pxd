@@ -1,3 +1,4 @@
+from lcpstep.arrays cimport doubles
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport LEAD, LENGTH, Record, TIME
 from lcpstep.pointers cimport after
@@ -5,3 +6,4 @@ from lcpstep.pointers cimport after
 cdef double PUT_BACK
 
 cdef void put_kept_back(Model m, Record record) noexcept nogil
+cdef void look(Model m, double t, double* still, double* c) noexcept

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import cython
+import numpy as np
 
 if not cython.compiled:
+    from lcpstep.arrays import doubles
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import LEAD, LENGTH, TIME, Record
-    from lcpstep.pointers import after
+    from lcpstep.pointers import Doubles, after
 
 # In place of the duration, which rows of `Located` do not have: the row is in the scene's coordinates
 PUT_BACK = 1.0
@@ -26,3 +30,16 @@ def put_kept_back(m: Model, record: Record) -> None:
         for i in range(n):
             q[i] -= c[3 * i]
             v[i] -= c[3 * i + 1]
+
+
+def frame_at(m: Model, t: float) -> Any:
+    """How far those coordinates are from the scene's, c, c', c'' (n_q, 3); zero of what is not carried."""
+    found, still = np.zeros((m.n_q, 3)), np.zeros(m.n_q)
+    if m.carried:
+        look(m, t, doubles(still), doubles(found))
+    return found
+
+
+def look(m: Model, t: float, still: Doubles, c: Doubles) -> None:
+    """Where the frame is at time t."""
+    m.frame.fill(t, still, still, c)

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Scene
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.point import Point
+from lcpstep.stepping.extent import extent, is_stiff
+from lcpstep.stepping.pieces.carried import frame_at
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.start import MARGIN
-from lcpstep.stepping.steps import largest
 from lcpstep.turns import turns
 
 if TYPE_CHECKING:
@@ -41,40 +41,37 @@ def at_rest(m: Model, trapezoidal: bool) -> Model:
     return m
 
 
-def displaced(scene: Scene, m: Model, t: float) -> tuple[Array, Array]:
+def displaced(m: Model, t: float) -> tuple[Array, Array]:
     """How far the kernels' coordinates are from the scene's at time t, and how fast they part."""
-    out = np.zeros((scene.n_q, 3))
-    if m.carried:
-        zero, frame = np.zeros(scene.n_q), cast(LinearSystem, scene.system).frame
-        assert frame is not None
-        frame(t, zero, zero, np.array(scene.p), out)
+    out = frame_at(m, t)
     return out[:, 0], out[:, 1]
 
 
 def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     """Constants of steps of size h."""
-    a, n_q, n_c = m.arrays, scene.n_q, scene.n_c
+    n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
     trapezoidal = m.linear and scene.n_j == 0
-    stiff = bool(trapezoidal and (np.any(a["C"]) or np.any(a["K"])))
+    stiff = is_stiff(m)
     unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
     moving, stops, most = m.motion.given or m.carried, turns(scene).stops, longest(scene, m, method)
-    constant = bool(trapezoidal and m.flat)
+    constant = trapezoidal and m.flat
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
+    own = implicit(m, stiff, method, h)
     if trapezoidal:
-        implicit = h if method.order == 2 else 0.0
-        A = a["M"] + 0.5 * implicit * a["C"] + 0.25 * implicit**2 * a["K"]
-        A_inverse[:] = np.linalg.inv(A) if stiff else a["M_inverse"]
+        A_inverse[:] = own
     if constant:
-        AG[:] = (A_inverse[0] @ a["G"].T).T
-        WA[:] = a["G"] @ AG[0].T
+        AG[:] = (own @ G.T).T
+        WA[:] = G @ AG[0].T
+    piece = min(method.h, most)
+    long = size(scene, m, method, piece, own if piece == h else implicit(m, stiff, method, piece))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return Plan({
-        "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": stiff,
-        "steady": bool(trapezoidal and not stiff and unforced),
-        "plain": bool(trapezoidal and m.flat and not moving), "constant": constant, "small": n_q <= SMALL,
-        "slack": ROUNDING * size(scene, m, method, min(method.h, most)), "per_step": method.max_per_step,
+        "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": trapezoidal and stiff,
+        "steady": trapezoidal and not stiff and unforced,
+        "plain": constant and not moving, "constant": constant, "small": n_q <= SMALL,
+        "slack": ROUNDING * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
         "corners": np.array(stops, dtype=np.float64), "period": scene.period,
@@ -83,44 +80,25 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     })  # fmt: skip
 
 
-def size(scene: Scene, m: Model, method: Located, h: float) -> float:
-    """Lengths at hand at the start [m]: places, offsets, what moves in a piece of length h: what rounding is of.
+def implicit(m: Model, stiff: bool, method: Located, h: float) -> Array:
+    """What steps of size h multiply forces with, (M + h/2 C + h^2/4 K)^-1; M^-1 where they are explicit."""
+    if not (stiff and method.order == 2):
+        return m.arrays["M_inverse"]
+    M, C, K = (m.arrays[name] for name in ("M", "C", "K"))
+    return np.linalg.inv(M + 0.5 * h * C + 0.25 * h**2 * K)
+
+
+def size(scene: Scene, m: Model, method: Located, piece: float, inverse: Array) -> float:
+    """Lengths at hand at the start [m]: places, offsets, what moves in a piece of motion: what rounding is of.
 
     1 where nothing is there yet, and where gaps are functions, of which nothing is known but the places. By a
     tolerance steps are shorter than h; what they may be wrong by is no gap.
     """
-    own = largest(scene.q0, m.arrays["offset"], method.h * np.asarray(scene.v0))
-    if m.flat:
-        own = max(own, displacement(scene, m, h))
-    if m.flat and method.tolerance is None:
-        own = max(own, driven(scene, m, method, h))
+    at, pushed = (scene.t_span[0], scene.q0, scene.v0), method.tolerance is None
+    own = extent(m, *at, method.h, piece, inverse, pushed)
     if method.tolerance is not None:
         own = max(own, min(1.0, NO_GAP * method.tolerance / ROUNDING))
     return own or 1.0
-
-
-def displacement(scene: Scene, m: Model, h: float) -> float:
-    """How far obstacles and the frame are from their places at the start, and how far they go in a time h [m]."""
-    contacts, motion, t = scene.contacts, np.zeros((scene.n_c, 3)), scene.t_span[0]
-    if isinstance(contacts, LinearContacts) and contacts.motion is not None:
-        contacts.motion(t, np.array(scene.q0), np.array(scene.v0), np.array(scene.p), motion)
-    found = largest(displaced(scene, m, t)[0], motion * [1.0, h, h * h])
-    return found if math.isfinite(found) else 0.0
-
-
-def driven(scene: Scene, m: Model, method: Located, h: float) -> float:
-    """How far forces push in a time h, as stiff springs let them [m]; harmonic ones at their largest."""
-    q0, v0 = (np.array(x, dtype=float) for x in (scene.q0, scene.v0))
-    a = Point(m).acceleration(scene.t_span[0], q0, v0)
-    if m.linear:
-        M, f = m.arrays["M"], m.arrays["M"] @ a
-        if isinstance(scene.system, LinearSystem) and isinstance(scene.system.force, Harmonic):
-            f = sum(np.abs(m.arrays[term]) for term in ("constant", "cosine", "sine"))
-        implicit = h if method.order == 2 else 0.0
-        A = M + 0.5 * implicit * m.arrays["C"] + 0.25 * implicit**2 * m.arrays["K"]
-        a = np.abs(np.linalg.inv(A)) @ np.abs(f)
-    found = h * h * largest(a)
-    return found if math.isfinite(found) else 0.0
 
 
 def longest(scene: Scene, m: Model, method: Located) -> float:
@@ -128,20 +106,21 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
     if method.order != "exact":
         return np.inf
     a = m.arrays
-    stiffness = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["K"])))
-    damping = np.max(np.abs(np.linalg.eigvals(a["M_inverse"] @ a["C"])))
+    own = (a["M_inverse"] @ a[name] if a[name].any() else np.zeros((0, 0)) for name in ("K", "C"))
+    stiffness, damping = (np.max(np.abs(np.linalg.eigvals(A)), initial=0.0) for A in own)
     rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
     return float(1.0 / rate) if rate > 0.0 else np.inf
 
 
 def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
     """State at the start of the scene's span, with the work space of a step."""
-    w = Work(scene.n_q, scene.n_c, joints)
-    c, c_t = displaced(scene, m, scene.t_span[0])
-    w.view("q")[:], w.view("v")[:] = np.asarray(scene.q0) + c, np.asarray(scene.v0) + c_t
-    if (
-        p.plain and scene.n_q * scene.n_c > 1
-    ):  # of one coordinate and contact they are the whole, as they stand
+    w = Work(m.n_q, m.n_c, joints)
+    w.start(scene.q0, scene.v0)
+    if m.carried:
+        c, c_t = displaced(m, scene.t_span[0])
+        w.view("q")[:] += c
+        w.view("v")[:] += c_t
+    if p.plain and m.n_q * m.n_c > 1:  # of one coordinate and contact they are the whole, as they stand
         for name, marks in ranges(m.arrays).items():
             w.view(name)[:] = marks
     return w

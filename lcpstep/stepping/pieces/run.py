@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.looks import all_finite
 from lcpstep.model import joint_model, model
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import adaptive
@@ -108,8 +109,11 @@ class LocatedRun(StepRun):
         """Last known q and v."""
         if self.finite is not None:
             return self.finite[1:]
-        c, c_t = displaced(self.scene, self.model, self.reached)
-        return self.work.view("q") - c, self.work.view("v") - c_t
+        q, v = self.work.view("q"), self.work.view("v")
+        if not self.model.carried:
+            return q.copy(), v.copy()
+        c, c_t = displaced(self.model, self.reached)
+        return q - c, v - c_t
 
     @property
     def ahead(self) -> Array:
@@ -135,9 +139,9 @@ class LocatedRun(StepRun):
     def states(self) -> States:
         """All states kept; a step that failed may have left its numbers behind."""
         s = super().states()
-        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
-        if fine.all() and np.isfinite(self.state).all():
+        if all(map(all_finite, (s.q, s.v, *self.state))):
             return s
+        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
         s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
         if len(s.t):
             self.finite = float(s.t[-1]), s.q[-1], s.v[-1]
@@ -162,7 +166,7 @@ class LocatedRun(StepRun):
         Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
         """
         if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
-            return Bent(s.t, s.q, s.v, self.kept.all, s.mode > 0.0)
+            return Bent(s.t, s.q, s.v, self.kept.all, s.mode)
         return Again(self.method, self.scene, *self.state)
 
     def message(self, code: int) -> str:

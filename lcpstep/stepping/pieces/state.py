@@ -188,6 +188,12 @@ class Work:
         for c in range(n_c):
             self.last_coordinate[c], self.last_contact[c] = n_q - 1, n_c - 1
 
+    def start(self, q: Any, v: Any) -> None:
+        """Begin at a state, arrays (n_q,)."""
+        place, speed = doubles(q), doubles(v)
+        for i in range(self.n_q):
+            self.q[i], self.v[i] = place[i], speed[i]
+
     def view(self, name: str) -> Any:
         """The vector, the numbers or the marks of this name, as an array that Python reads and writes."""
         if name in MARKS:

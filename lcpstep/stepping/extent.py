@@ -1,0 +1,99 @@
+"""Lengths at hand at the start of a run by steps: what rounding of its gaps is of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.acceleration import free_acceleration
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import finite, largest
+    from lcpstep.pointers import Doubles, abs, after, max
+
+
+def extent(
+    m: Model, t: float, q: Any, v: Any, step: float, piece: float, implicit: Any, pushed: bool
+) -> float:
+    """The largest of places, offsets, and ways within a step or a piece of it, from the state q, v (n_q,) [m].
+
+    implicit : (n_q, n_q)   (M + h/2 C + h^2/4 K)^-1 of a linear system
+    pushed : whether forces are looked at too
+    """
+    work = np.zeros(6 * m.n_q + m.n_q * m.n_q)
+    at, at_rate, inverse, own = doubles(q), doubles(v), doubles(implicit), doubles(work)
+    return float(longest_way(m, t, at, at_rate, step, piece, inverse, pushed, own))
+
+
+def longest_way(
+    m: Model, t: float, q: Doubles, v: Doubles, step: float, piece: float, inverse: Doubles,
+    pushed: bool, work: Doubles,
+) -> float:  # fmt: skip
+    """Kernel of `extent`."""
+    found = of_places(m, q, v, step)
+    if m.flat:
+        found = max(found, displacement(m, t, q, v, piece, work))
+        if pushed:
+            found = max(found, driven(m, t, q, v, piece, inverse, work))
+    return found
+
+
+def places(m: Model, q: Any, v: Any, step: float) -> float:
+    """The largest of places, offsets and ways within a step that v leads along [m]."""
+    at, at_rate = doubles(q), doubles(v)
+    return float(of_places(m, at, at_rate, step))
+
+
+def of_places(m: Model, q: Doubles, v: Doubles, step: float) -> float:
+    """Kernel of `places`."""
+    return largest(m.offset, max(largest(q, 0.0, m.n_q), step * largest(v, 0.0, m.n_q)), m.n_c)
+
+
+def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Doubles) -> float:
+    """How far obstacles and the frame are from their places at the start, and how far they go in a time h [m]."""
+    c, found = work, 0.0
+    if m.carried:
+        m.frame.fill(t, q, v, c)
+        if not finite(c, 3 * m.n_q):
+            return 0.0
+        for i in range(m.n_q):
+            found = max(found, abs(c[3 * i]))
+    if m.motion.given:
+        m.motion.fill(t, q, v, m.motion_now)
+        if not finite(m.motion_now, 3 * m.n_c):
+            return 0.0
+        for i in range(m.n_c):
+            s = after(m.motion_now, 3 * i)
+            found = max(found, max(abs(s[0]), max(abs(s[1]) * h, abs(s[2]) * h * h)))
+    return found
+
+
+def driven(m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubles, work: Doubles) -> float:
+    """How far forces push in a time h, as stiff springs let them [m]; harmonic ones at their largest."""
+    n = m.n_q
+    a, f, y, M = work, after(work, n), after(work, 2 * n), after(work, 3 * n)
+    free_acceleration(m, t, q, v, M, y, a)
+    if m.linear:
+        for i in range(n):
+            f[i] = 0.0
+            for j in range(n):
+                f[i] += m.M[i * n + j] * a[j]
+            f[i] = abs(f[i])
+            if not m.force.given:
+                f[i] = abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
+        for i in range(n):
+            a[i] = 0.0
+            for j in range(n):
+                a[i] += abs(implicit[i * n + j]) * f[j]
+    return h * h * largest(a, 0.0, n) if finite(a, n) else 0.0
+
+
+def is_stiff(m: Model) -> bool:
+    """Whether C or K is not zero."""
+    found, n = False, m.n_q * m.n_q
+    for i in range(n):
+        found = found or m.C[i] != 0.0 or m.K[i] != 0.0
+    return found
