@@ -13,6 +13,7 @@ from benchmarks.judge import physics
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import CPU_EACH, REFERENCE, Finding, Run, run
 from benchmarks.judge.scales import EPS
+from benchmarks.judge.told import whole
 from lcpstep.trajectory import Kind
 
 CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
@@ -108,9 +109,8 @@ def slowness() -> float:
 
 def between(d: Description, r: Run) -> Iterator[Finding]:
     """States between the kept ones are told, right up to the end of what was computed."""
-    t = r.motion.t
     try:
-        q, _ = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
+        q, _ = r.at(whole(r))
     except (IndexError, ValueError) as error:
         yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
         return
