@@ -21,9 +21,8 @@ from benchmarks.judge.graze import grazes
 from benchmarks.judge.runs import WAYS, Finding, Run, run
 from benchmarks.judge.scales import EPS
 from benchmarks.judge.start import along, joined
-from lcpstep.trajectory import Kind
+from benchmarks.judge.told import look_up, looks, told_until
 
-LOOKS = 160
 SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
 FACTOR, NOISE = 30.0, 100.0
 CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
@@ -65,38 +64,6 @@ def disturbed(d: Description, share: float, size: float, seed: int) -> Descripti
     return replace(new, offset=numbers(offset))
 
 
-def told_until(d: Description, motion: Any, spread: float) -> float:
-    """Until when the law of impact leaves no choice: the first time at which coupled contacts strike at once.
-
-    Of those that arrive together one may bear the whole impulse, and be the only one in the log.
-    """
-    log = motion.impacts
-    log = log[(log.kind == Kind.IMPACT) & (log.before < 0.0)]
-    if d.contacts < 2 or not len(log):
-        return np.inf
-    fast, W = np.max(np.abs(log.before)), _coupling(d)
-    log = log[log.before < -1e-10 * fast]
-    together = np.flatnonzero((np.diff(log.time) <= spread) & (np.diff(log.contact) != 0))
-    logged = [log.time[k] for k in together if W[log.contact[k], log.contact[k + 1]]]
-    before = np.maximum(log.time - spread, motion.t[0])
-    try:
-        q, v = motion.at(before)
-    except (IndexError, ValueError):  # a finding of its own
-        return float(min(logged, default=np.inf)) - spread
-    g, u = physics.gaps(d, before, q), physics.rates(d, before, q, v)
-    arrive = (u < -1e-6 * fast) & (g + 2.0 * spread * u <= 0.0)
-    pairs = np.einsum("ki,ij,kj->k", arrive, W & ~np.eye(d.contacts, dtype=bool), arrive, dtype=int)
-    return float(min([*logged, *log.time[pairs > 0]], default=np.inf)) - spread
-
-
-def _coupling(d: Description) -> Any:
-    if d.curved or d.J or d.nonlinear:
-        return np.ones((d.contacts, d.contacts), dtype=bool)
-    G = np.array(d.G)
-    W = G @ np.linalg.solve(d.matrix("M"), G.T)
-    return np.abs(W) > 1e-14 * np.max(np.abs(W))
-
-
 class Reference:
     """The motion that the others are held against, and how far it can be told."""
 
@@ -111,7 +78,7 @@ class Reference:
             self.noise = np.maximum(self.noise, self.companion(SMALL, k))
         # What grazes after a plastic impact does so however it is disturbed, and rounding decides whether it strikes
         self.noise = np.maximum(self.noise, self.apart(run(d, r.method, finer_by(r))))
-        self.until = told_until(d, m, 1e-9 * d.length + 1e-6 * d.h)
+        self.until = told_until(d, r)
         self.orders: dict[str, float] = {}  # seen of the methods that were held against it
 
     def companion(self, share: float, k: int) -> Any:
@@ -145,7 +112,7 @@ class Reference:
 def positions(r: Run, times: Any) -> Any:
     """Coordinates at times of a run; not a number where the run does not tell (a finding of its own)."""
     try:
-        return r.motion.at(times)[0]
+        return r.at(times)[0]
     except (IndexError, ValueError):
         return np.full((len(times), r.motion.q.shape[1]), np.nan)
 
@@ -157,15 +124,6 @@ def apart(a: Run, b: Run, looks: Any) -> Any:
     if np.any(there):
         found[there] = np.max(np.abs(positions(a, looks[there]) - positions(b, looks[there])), axis=1)
     return np.maximum.accumulate(found)
-
-
-def looks(d: Description, end: float) -> Any:
-    """Times that all step methods reach by whole steps: between them states are interpolated, at order one or two."""
-    start = d.t_span[0]
-    steps = (end - start) / d.h
-    whole = np.unique(np.linspace(1, max(1, int(steps + 1e-9)), LOOKS).astype(int))
-    times = start + whole[whole <= steps + 1e-9] * d.h
-    return np.minimum(times, end) if len(times) else np.array([end])
 
 
 def finer_by(r: Run) -> float:
@@ -185,7 +143,8 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     finer = run(d, r.method, finer_by(r))
     if not finer.usable:
         return []
-    until = min([ref.until, *(told_until(d, x.motion, _together(d, x)) for x in (r, finer))])
+    look_up(d, finer, ref.looks)
+    until = min([ref.until, *(told_until(d, x) for x in (r, finer))])
     own, distances = apart(r, finer, ref.looks) + _scatter(d, r), [ref.apart(x) for x in (r, finer)]
     rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
     promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
@@ -215,11 +174,6 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
         ):
             return _confirmed(ref, r, kind, int(where[0]), float(own[where[0]]), distances)
     return []
-
-
-def _together(d: Description, r: Run) -> float:
-    """How near impacts are that a method may take as one."""
-    return 2.0 * d.h if r.method.startswith("moreau") else 1e-9 * d.length + 1e-6 * d.h
 
 
 def _scatter(d: Description, r: Run) -> float:

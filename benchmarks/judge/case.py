@@ -12,6 +12,7 @@ from benchmarks.judge.agree import Reference, agrees
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import REFERENCE, SAID, WAYS, Clock, Finding, Hung, Run, run
+from benchmarks.judge.told import look_up, looks
 from benchmarks.judge.vary import varied
 
 SHARE, SEVERAL = 0.25, 2
@@ -48,6 +49,8 @@ def judged(
             tell(name)
             try:
                 r = run(d, name)
+                if compared and r.usable:
+                    look_up(d, r, looks(d, float(r.motion.t[-1])))
                 if name in methods:
                     endings[name] = r.ending
                     findings += said(r, check(d, r))

@@ -13,6 +13,7 @@ from benchmarks.judge import physics
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import CPU_EACH, REFERENCE, Finding, Run, run
 from benchmarks.judge.scales import EPS
+from benchmarks.judge.told import whole
 from lcpstep.trajectory import Kind
 
 CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
@@ -108,9 +109,8 @@ def slowness() -> float:
 
 def between(d: Description, r: Run) -> Iterator[Finding]:
     """States between the kept ones are told, right up to the end of what was computed."""
-    t = r.motion.t
     try:
-        q, _ = r.motion.at(np.array([t[0], 0.5 * (t[0] + t[-1]), t[-1]]))
+        q, _ = r.at(whole(r))
     except (IndexError, ValueError) as error:
         yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
         return
@@ -184,7 +184,7 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
     if r.method in EXACT or (r.method.startswith("located") and not d.bent):
         yield Finding(r.method, "penetration", f"{words}, status {r.status}")
         return
-    if r.method == "moreau" and r.status == "DONE" and within_a_step(d, r, rounding):
+    if r.method == "moreau" and r.status != "NOT_FINITE" and within_a_step(d, r, rounding):
         return
     finer = up_to(run(d, r.method, 0.25), until)
     if finer.usable and deep > 1e-3 * sizes.length and depth(d, finer) > 0.7 * deep:
@@ -207,7 +207,8 @@ def up_to(r: Run, until: float) -> Run:
 def within_a_step(d: Description, r: Run, rounding: float) -> bool:
     """Whether no gap is deeper than h max |u|, which theta = 1/2 explains and no step need keep away from.
 
-    An open contact enters a step above -(h/2) u, and one that is struck goes on by (h/2) (1 - r) u.
+    An open contact enters a step above -(h/2) u, and one that is struck goes on by (h/2) (1 - r) u. That is so of
+    a run that ends early as well, as where walls close upon a body; one that leaves the finite numbers has no u.
     """
     low = -np.min(physics.gaps(d, r.motion.t, r.motion.q), axis=0)
     fast = np.max(np.abs(physics.rates(d, r.motion.t, r.motion.q, r.motion.v)), axis=0)

@@ -36,6 +36,8 @@ def grazes(d: Description, motion: Any, looks: Any, allowed: Any) -> float:
         low, high = times[before], times[before + 1]
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
+            if np.all((middle == low) | (middle == high)):
+                break
             falls = _of(c, _seen(d, motion, middle, looks, allowed)[1]) < -still
             low, high = np.where(falls, middle, low), np.where(falls, high, middle)
         least, speed, error = (_of(c, x) for x in _seen(d, motion, low, looks, allowed))
@@ -63,7 +65,8 @@ def _of(c: Any, x: Any) -> Any:
 def _returns(g: Any, u: Any, far: Any, still: float) -> Any:
     """Whether a contact ends a fall from farther than `far` before the next sample, at all samples but the last."""
     ends = (u[:-1] < -still) & (u[1:] >= -still)
-    afar = g > far
-    for k in range(1, len(g)):
-        afar[k] |= afar[k - 1] & ~ends[k - 1]
-    return ends & afar[:-1]
+    k = np.arange(len(g))[:, None]
+    last = np.maximum.accumulate(np.where(g > far, k, -1), axis=0)  # sample that was afar
+    ended = np.full(g.shape, -1)  # before which a fall ended last
+    ended[1:] = np.maximum.accumulate(np.where(ends, k[:-1], -1), axis=0)
+    return ends & (last > ended)[:-1]

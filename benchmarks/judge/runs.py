@@ -159,6 +159,32 @@ class Run:
             object.__setattr__(self, "_scales", scales(d, self.motion.q, self.motion.v))
         return self._scales  # type: ignore[attr-defined, no-any-return]
 
+    @property
+    def _known(self) -> dict[bytes, Any]:
+        """States by the times that they were asked for at."""
+        if not hasattr(self, "_asked"):
+            object.__setattr__(self, "_asked", {})
+        return self._asked  # type: ignore[attr-defined, no-any-return]
+
+    def at(self, times: Any) -> Any:
+        """States at an array of times, as `motion.at` tells them; what was asked for before is remembered."""
+        key = times.tobytes()
+        if key not in self._known:
+            self._known[key] = self.motion.at(times)
+        return self._known[key]
+
+    def ask(self, *several: Any) -> None:
+        """Have states at several arrays of times at once, for `at`, where one look is dear: it is another run."""
+        if not getattr(self.motion.dense, "dear", False):
+            return
+        try:
+            q, v = self.motion.at(np.concatenate(several))
+        except (IndexError, ValueError):  # `at` says of which times
+            return
+        ends = np.cumsum([len(times) for times in several])[:-1]
+        for times, *states in zip(several, np.split(q, ends), np.split(v, ends), strict=True):
+            self._known[times.tobytes()] = tuple(states)
+
 
 def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     """One run; an exception that the library does not announce is an ending of its own, "raised"."""

@@ -7,16 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from benchmarks.judge.agree import disturbed, looks, positions
+from benchmarks.judge.agree import disturbed, positions
 from benchmarks.judge.describe import Description
 from benchmarks.judge.graze import grazes
 from benchmarks.judge.physics import jacobians, room
 from benchmarks.judge.runs import Finding, Run, run
 from benchmarks.judge.scales import EPS
+from benchmarks.judge.told import looks
 from benchmarks.judge.variants import VARIANTS, Variant, fits, rest
 from lcpstep.trajectory import Kind
 
@@ -37,13 +39,17 @@ class Base:
     q: Any
     allowed: Any
     told: float  # until then it is where its companions are
-    grazes: float  # until then no error decides whether a contact strikes
     alone: float = np.inf  # until then its strong impacts are those of its companions
 
     @property
     def size(self) -> float:
         """Length that positions are compared with."""
         return self.run.scales(self.d).length
+
+    @cached_property
+    def grazes(self) -> float:
+        """Until then no error decides whether a contact strikes; looked for where something is suspected."""
+        return grazes(self.d, self.run.motion, self.looks, self.allowed)
 
 
 def base(d: Description, r: Run) -> Base:
@@ -61,7 +67,7 @@ def base(d: Description, r: Run) -> Base:
     unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
     told = float(times[unclear[0]]) if len(unclear) else np.inf
     allowed = floor + NOISE * noise
-    b = Base(d, r, times, q, allowed, told, grazes(d, r.motion, times, allowed))
+    b = Base(d, r, times, q, allowed, told)
     unlike = [x[0] for other in companions if other.done and (x := without_partner(b, other, Variant("", d)))]
     return replace(b, alone=min(unlike, default=np.inf))
 
@@ -144,8 +150,8 @@ def jams(d: Description, r: Run) -> bool:
 
 
 def _first(b: Base, apart: Any, name: str, scene: Any = None, until: float = np.inf) -> Iterator[Finding]:
-    bad = np.flatnonzero((apart > b.allowed) & (b.looks < min(b.told, b.grazes, until)))
-    if len(bad):
+    bad = np.flatnonzero((apart > b.allowed) & (b.looks < min(b.told, until)))
+    if len(bad) and b.looks[bad[0]] < b.grazes:
         k = int(bad[0])
         text = f"{apart[k]:.3g} off at t = {b.looks[k]:.9g} in a motion of size {b.size:.3g}"
         yield Finding(b.run.method, f"other: {name}", text + (f"; {vars(scene)}" if scene else ""))
@@ -171,6 +177,13 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
     So is one as slow as a fall u^2 = 2 a e from a gap e of rounding, with which a run may begin anew, or of the
     tolerance of an event-driven run, which leaves out lower hops.
     """
+    until = min(b.told, b.alone, v.until, float(b.run.motion.t[-1]))
+    found = _alone(b, other, v, until)
+    return found and _alone(b, other, v, min(until, b.grazes))
+
+
+def _alone(b: Base, other: Run, v: Variant, until: float) -> tuple[float, int, float] | None:
+    """The same, of those before a time."""
     logs = [impacts(b.run), impacts(other)]
     rows = jacobians(b.d, np.array(b.d.q0))
     dependent = np.linalg.matrix_rank(rows) < len(rows)
@@ -180,9 +193,7 @@ def without_partner(b: Base, other: Run, v: Variant) -> tuple[float, int, float]
     fast = max((float(np.max(np.abs(x.before), initial=0.0)) for x in logs), default=0.0)
     sizes = b.run.scales(b.d)
     fast = max(fast, 1e-6 * sizes.reach / sizes.time)
-    end = (
-        min(b.told, b.grazes, b.alone, v.until, float(b.run.motion.t[-1])) * (1.0 - 1e-12) - 1e-9 * b.d.length
-    )
+    end = until * (1.0 - 1e-12) - 1e-9 * b.d.length
     far = np.sum(np.abs(rows), axis=-1)
     left_out = b.run.tolerance * (1.0 + sizes.travel) if b.run.method.startswith("event-driven") else 0.0
     low = FALL * EPS * sizes.place + left_out

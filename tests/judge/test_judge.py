@@ -73,6 +73,9 @@ def test_a_depth_that_scatters_with_the_grid_is_no_finding_and_one_beyond_a_step
     assert "penetration" not in kinds(check(slit, r))
     assert within_a_step(slit, r, 0.0)
     assert not within_a_step(slit, replace(r, motion=replace(r.motion, q=r.motion.q - 0.012)), 0.0)
+    assert "penetration" not in kinds(
+        check(slit, replace(r, status="LCP_FAILED"))
+    )  # ends early, and no deeper
 
 
 def test_a_wrong_restitution_is_found(monkeypatch):

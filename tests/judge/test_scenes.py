@@ -6,9 +6,12 @@ docs/accuracy.md says how often each happens.
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
+from benchmarks.judge import physics
 from benchmarks.judge.case import judged
+from benchmarks.judge.checks import within_a_step
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
 from benchmarks.judge.runs import WAYS, run, silent
@@ -50,6 +53,21 @@ def test_a_contact_that_opens_at_the_start_does_not_open_before_it():
     log = run(later, "located").motion.impacts
     assert list(log.kind) == [Kind.RELEASE]
     assert log.time[0] == 64.0
+
+
+def test_walls_that_close_upon_a_body_end_every_run():
+    """By their own equations alone: when nothing is left between them, and how deep half a step then is."""
+    d = RECENTLY["a mass in a slit that its walls close, struck by each of them before"][0]
+    times = np.linspace(0.05, 1.7, 33_001)
+    closed = times[physics.gaps(d, times, np.zeros((len(times), 1))).sum(axis=1) < 0.0][0]
+    for h in (d.h, d.h / 4.0, d.h / 16.0):
+        r = run(replace(d, h=h), "moreau")
+        assert r.status == "LCP_FAILED"
+        assert "nothing left between" in r.text
+        assert abs(r.motion.t[-1] - closed) < 2.0 * h
+        assert within_a_step(replace(d, h=h), r, 0.0)
+    exact = run(d, "located-exact")
+    assert exact.motion.t[-1] == pytest.approx(closed, abs=5e-5)
 
 
 def judge(numbers, seed, methods, share):
