@@ -7,7 +7,7 @@ from lcpstep.events.flight.motion cimport Flight, absolute, leave_from, steady
 from lcpstep.pointers cimport abs, after, inf, max, min, nan
 
 cdef double SLACK, ROUNDING, PRESSING, BEFORE, HALF_TURN, ERRORS
-cdef Py_ssize_t UNKNOWN, PRESSED
+cdef Py_ssize_t UNKNOWN, PRESSED, DEEP
 
 
 @cython.final
@@ -15,6 +15,7 @@ cdef class Swing(Gap):
     cdef Flight s
     cdef readonly bint swings, known
     cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bound, fast
+    cdef double left, right, begin_above, end_above
     cdef double size(self, double z, double w) noexcept nogil
     cdef void begin(self, double t, double y, double w) noexcept nogil
 
@@ -24,9 +25,16 @@ cpdef object clear_flights(
 )
 @cython.locals(good=bint)
 cdef bint at_once(Swing g, Flight o, double t, double* q, double* x, double* w, bint whole) noexcept nogil
+cdef double swung(Swing g, Flight o, double least) noexcept nogil
 cdef bint parts_at_ends(
     Swing g, double begin, double end, double rate, double low, double high
 ) noexcept nogil
+@cython.locals(n=Py_ssize_t, x=double, y=double, lowest=double, least=double, slope=double, bent=double)
+cdef bint above(Swing g, double t, double high, Py_ssize_t most) noexcept nogil
+cdef bint above_at_ends(
+    Swing g, Flight o, double t, double y, double y_b, double w, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts
+) noexcept nogil
+cdef bint smooth(Swing g, double a, double b, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts) noexcept nogil
 cdef double equation(Swing g, Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)

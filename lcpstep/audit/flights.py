@@ -26,6 +26,7 @@ if not cython.compiled:
 SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
+DEEP = 4  # halvings in a row of windows that are above the obstacle
 HALF_TURN = 3.0  # rad, and less than that
 ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
 
@@ -36,6 +37,7 @@ class Swing(Gap):
     amplitude   of the oscillation that is left of a flight, a bound from its start on; with `most`, how large the
         numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go
     fast        the largest velocity of what moves by itself
+    left, right    how long the gap is known to part from zero at both ends;  begin_above, end_above : `place` then
     force_at, force    a time, and the force over the mass then, times G, as it was last asked for
 
     Parameters
@@ -52,6 +54,7 @@ class Swing(Gap):
         self.height = s.f0 / s.w2 if self.swings else 0.0
         self.per_root = 1.0 / sqrt(s.w2 - s.delta * s.delta) if self.swings else 0.0
         self.amplitude, self.force, self.force_at = 0.0, 0.0, nan
+        self.left = self.right = self.begin_above = self.end_above = 0.0
         self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
         self.most, self.bound = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
         self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
@@ -113,6 +116,10 @@ def clear_flights(
                 begins = False
             good = at_once(g, g.s, times[k], after(places, k), after(position, k), after(speed, k), whole)
             if not good:
+                good = above_at_ends(
+                    g, g.s, times[k], position[k], position[k + 1], speed[k], corner, i, n_cuts
+                )
+            if not good:
                 leave(g, g.s, times[k], position[k], speed[k])
                 good = between_corners(g, 0, times[k], corner, i, n_cuts)
             out[k] = 1 if good else 0
@@ -132,11 +139,13 @@ def at_once(
     g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset))
     g.error += late(max(abs(t), abs(t + h)), g.fast)
     begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bound, g.middle + g.bound
+    high = min(high, swung(g, o, min(begin, end)))
     lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
     if lowest - ROUNDING * g.cells.whole_size[0] > g.cells.whole_top[0]:
         return True
     if whole and not g.cells.whole_rough and parts_at_ends(g, begin, end, o.G * w[0], low, high):
-        return True
+        if g.left + g.right >= h or above(g, t, high, 0):
+            return True
     g.cells.find(0, t, t + h)
     met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
     if lowest - met > g.cells.top:
@@ -170,32 +179,105 @@ def at_once(
     return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
 
 
+def swung(g: Swing, o: Flight, least: float) -> float:
+    """Bound of the acceleration of `place` under a spring alone, which is least at one of the ends, or between them.
+
+    x'' <= w2 (x_0 - m) + D above its smallest value m, and m >= least - h^2/8 x''; x_0 : where it rests
+    """
+    share = 0.125 * o.w2 * g.length * g.length
+    if not (g.swings and g.forced == 0.0 and share < 0.9):
+        return inf
+    rest, damped = o.offset + o.G * g.height, 2.0 * o.delta * sqrt(o.w2) * abs(o.G) * g.amplitude
+    m = least
+    if least < rest or damped > 0.0:
+        m = (least - share * max(rest, least) - share / o.w2 * damped) / (1.0 - share)
+    return o.w2 * (rest - m) + damped + SLACK * (g.bound + o.w2 * (abs(rest) + abs(least)))
+
+
 def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, high: float) -> bool:
-    """Whether the gap parts from zero at its events so fast that, when it might turn back, it is above all that the
-    obstacle reaches: it is at least u tau - D tau^2 / 2, up to tau = 2 u / D.
+    """Whether the gap parts from zero at its events; for how long, into g.left and g.right, and `place` then.
+
+    It is at least u tau - D tau^2 / 2 up to tau = 2 u / D, where what moves has no corner.
 
     begin, end, rate : of `place` at both ends, its velocity at the start;  low, high : bounds of its acceleration
     """
-    h, error = g.length, g.error + ROUNDING * g.cells.whole_size[0]
+    h = g.length
     fast = (1.0 + SLACK) * g.cells.whole_fast[0] + SLACK * abs(rate)
-    back, left, right = g.cells.whole_high[0] - low, 0.0, 0.0
+    back, g.left, g.right = g.cells.whole_high[0] - low, 0.0, 0.0
     fall = (begin - end - g.error) / h - 0.5 * high * h  # the velocity at the end, at least
     if g.first:
         if not rate > fast:
             return False
-        left = 2.0 * (rate - fast) / back if back > 0.0 else inf
-        if left >= h:
-            return True
-        begin += left * (rate + 0.5 * low * left)
+        g.left = min(2.0 * (rate - fast) / back if back > 0.0 else h, h)
+        begin += g.left * (rate + 0.5 * low * g.left)
     if g.last:
         if not fall > fast:
             return False
-        right = 2.0 * (fall - fast) / back if back > 0.0 else inf
-        if right >= h - left:
-            return True
-        end += right * (fall + 0.5 * low * right)
-    inner = h - left - right
-    return min(begin, end) - 0.125 * max(high, 0.0) * inner * inner - error > g.cells.whole_top[0]
+        g.right = min(2.0 * (fall - fast) / back if back > 0.0 else h, h)
+        end += g.right * (fall + 0.5 * low * g.right)
+    g.begin_above, g.end_above = begin, end
+    return True
+
+
+def above(g: Swing, t: float, high: float, most: int) -> bool:
+    """Whether `place` is above all that the obstacle reaches meanwhile, from g.left to g.right before the end.
+
+    It is above its chord less A x (l - x) / 2. Where that does not suffice, windows are halved.
+
+    t : of the start;  high : bound of the place's acceleration;  most : halvings in a row
+    """
+    length = g.length - g.left - g.right
+    slope, bent = (g.end_above - g.begin_above) / length, 0.5 * max(high, 0.0)
+    least = min(g.begin_above, g.end_above) - g.error - ROUNDING * g.cells.whole_size[0]
+    if least - 0.25 * bent * length * length > g.cells.whole_top[0]:
+        return True
+    if most == 0:
+        return False
+    x, n = 0.0, 1
+    g.times[0] = length
+    while n > 0:
+        y = g.times[n - 1]
+        lowest = g.begin_above - g.error - ROUNDING * g.cells.whole_size[0] + min(slope * x, slope * y)
+        if x < 0.5 * length < y:
+            lowest -= 0.25 * bent * length * length
+        else:
+            lowest -= bent * max(x * (length - x), y * (length - y))
+        g.cells.find(0, t + g.left + x, t + g.left + y)
+        if lowest > g.cells.top:
+            x = y
+            n -= 1
+        elif n > most:
+            return False
+        else:
+            g.times[n] = 0.5 * (x + y)
+            n += 1
+    return True
+
+
+def above_at_ends(
+    g: Swing, o: Flight, t: float, y: float, y_b: float, w: float, cuts: Doubles, i: int, n_cuts: int
+) -> bool:
+    """The same of a piece from t on, without corners where the gap parts from zero; i : the first of the cuts after t."""
+    low, high = g.middle - g.bound, g.middle + g.bound
+    begin, end = o.offset + o.G * y, o.offset + o.G * y_b
+    high = min(high, swung(g, o, min(begin, end)))
+    if not parts_at_ends(g, begin, end, o.G * w, low, high):
+        return False
+    if g.left > 0.0 and not smooth(g, t, t + g.left, cuts, i, n_cuts):
+        return False
+    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length, cuts, i, n_cuts):
+        return False
+    return g.left + g.right >= g.length or above(g, t, high, DEEP)
+
+
+def smooth(g: Swing, a: float, b: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
+    """Whether what moves is smooth between two times; i : the first of the cuts that may lie there."""
+    while i < n_cuts and cuts[i] <= same_time(a):
+        i += 1
+    if i < n_cuts and same_time(cuts[i]) < b:
+        return False
+    g.cells.find(0, a, b)
+    return not g.cells.rough
 
 
 def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:
