@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.curves import Curve, clear_curves, hulls
 from lcpstep.audit.flat import Flat
-from lcpstep.audit.flights import Swing, clear_flights
+from lcpstep.audit.flights import clear_flights
 from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE, PRESSED, UNKNOWN
 from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.obstacle import Obstacle
+from lcpstep.audit.swing import Swing
 from lcpstep.events.flight.run import flight_of
 from lcpstep.intervals import NotEnclosed
 from lcpstep.kernels.function import Function

@@ -1,10 +1,4 @@
-"""Certificates of flights in closed form, as kernels: one linear degree of freedom above a flat obstacle.
-
-    y = rest + C exp(-delta tau) cos(w tau - phi) + S cos(Omega t - psi),   |y^(n)| <= C w0^n + S Omega^n,  w0^2 = w2
-
-for delta >= 0, so that the state at the start of a flight bounds its acceleration. Of a body without a spring and a
-damper the first term is a parabola. Other motions are left to `motion.Oscillation`.
-"""
+"""Certificates of flights in closed form, as kernels: one linear degree of freedom, flat obstacles; see `swing`."""
 
 from __future__ import annotations
 
@@ -13,69 +7,22 @@ from typing import Any
 import cython
 
 from lcpstep.audit.limits import ERRORS, PRESSED, UNKNOWN
+from lcpstep.audit.limits import ROUNDED as ROUNDING
 
 if not cython.compiled:
-    from math import cos, hypot, sin, sqrt
+    from math import sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.cells import Cells
-    from lcpstep.audit.clear import DEEPEST, MOST, Gap, beside, between_corners, late, open_between, same_time
-    from lcpstep.events.flight.motion import Flight, absolute, leave_from, steady
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
+    from lcpstep.audit.clear import DEEPEST, MOST, beside, between_corners, late, open_between, same_time
+    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, swung
+    from lcpstep.audit.swing import Swing, driven
+    from lcpstep.events.flight.motion import Flight, leave_from
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
-DEEP = 4  # halvings in a row of windows that are above the obstacle
 HALF_TURN = 3.0  # rad, and less than that
-ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
-
-
-class Swing(Gap):
-    """The gap of a flight in closed form.
-
-    amplitude   of the oscillation that is left of a flight, a bound from its start on; with `most`, how large the
-        numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go
-    fast        the largest velocity of what moves by itself
-    left, right    how long the gap is known to part from zero at both ends;  begin_above, end_above : `place` then
-    force_at, force    a time, and the force over the mass then, times G, as it was last asked for
-
-    Parameters
-    ----------
-    cells, motion, frame, state, limits : see `Gap`;  s : Flight
-    """
-
-    def __init__(self, cells: Cells, motion: Any, frame: Any, state: Any, limits: Any, s: Flight) -> None:
-        Gap.__init__(self, cells, motion, frame, [s.G], state, limits)
-        self.s = s
-        self.swings = s.w2 > s.delta * s.delta and s.delta >= 0.0
-        self.known = self.swings or (s.w2 == 0.0 and s.delta == 0.0)
-        self.forced = hypot(s.X, s.Y)
-        self.height = s.f0 / s.w2 if self.swings else 0.0
-        self.per_root = 1.0 / sqrt(s.w2 - s.delta * s.delta) if self.swings else 0.0
-        self.amplitude, self.force, self.force_at = 0.0, 0.0, nan
-        self.left = self.right = self.begin_above = self.end_above = 0.0
-        self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
-        self.most, self.bound = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
-        self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
-
-    def at(self, tau: float) -> None:
-        """Ask for the motion."""
-        absolute(self.s, tau)
-        self.place, self.bend = self.s.offset + self.s.G * self.s.y_tau, self.s.G * self.s.a_tau
-
-    def size(self, z: float, w: float) -> float:
-        """How large an oscillation is that has this place and velocity."""
-        rate = (w + self.s.delta * z) * self.per_root
-        return sqrt(z * z + rate * rate)
-
-    def begin(self, t: float, y: float, w: float) -> None:
-        """A flight begins at time t with this absolute state."""
-        if self.swings:
-            rest, rate = steady(self.s, t)
-            self.amplitude = (1.0 + SLACK) * self.size(y - rest - self.height, w - rate)
-            self.most = self.amplitude + self.forced + abs(self.height)
-            self.bound = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
 
 
 def clear_flights(
@@ -125,9 +72,7 @@ def clear_flights(
             out[k] = 1 if good else 0
 
 
-def at_once(
-    g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, whole: bool
-) -> bool:
+def at_once(g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, whole: bool) -> bool:
     """Whether a piece from t on is certified by the states at its ends and the equation of motion.
 
     q, x : relative and absolute places;  w : velocities, after an event
@@ -143,9 +88,9 @@ def at_once(
     lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
     if lowest - ROUNDING * g.cells.whole_size[0] > g.cells.whole_top[0]:
         return True
-    if whole and not g.cells.whole_rough and parts_at_ends(g, begin, end, o.G * w[0], low, high):
-        if g.left + g.right >= h or above(g, t, high, 0):
-            return True
+    even = whole and not g.cells.whole_rough
+    if even and parts_at_ends(g, begin, end, o.G * w[0], low, high) and above(g, t, high, 0):
+        return True
     g.cells.find(0, t, t + h)
     met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
     if lowest - met > g.cells.top:
@@ -177,107 +122,6 @@ def at_once(
     margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bound
     low, high = min(a, b) - margin, max(a, b) + margin
     return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
-
-
-def swung(g: Swing, o: Flight, least: float) -> float:
-    """Bound of the acceleration of `place` under a spring alone, which is least at one of the ends, or between them.
-
-    x'' <= w2 (x_0 - m) + D above its smallest value m, and m >= least - h^2/8 x''; x_0 : where it rests
-    """
-    share = 0.125 * o.w2 * g.length * g.length
-    if not (g.swings and g.forced == 0.0 and share < 0.9):
-        return inf
-    rest, damped = o.offset + o.G * g.height, 2.0 * o.delta * sqrt(o.w2) * abs(o.G) * g.amplitude
-    m = least
-    if least < rest or damped > 0.0:
-        m = (least - share * max(rest, least) - share / o.w2 * damped) / (1.0 - share)
-    return o.w2 * (rest - m) + damped + SLACK * (g.bound + o.w2 * (abs(rest) + abs(least)))
-
-
-def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, high: float) -> bool:
-    """Whether the gap parts from zero at its events; for how long, into g.left and g.right, and `place` then.
-
-    It is at least u tau - D tau^2 / 2 up to tau = 2 u / D, where what moves has no corner.
-
-    begin, end, rate : of `place` at both ends, its velocity at the start;  low, high : bounds of its acceleration
-    """
-    h = g.length
-    fast = (1.0 + SLACK) * g.cells.whole_fast[0] + SLACK * abs(rate)
-    back, g.left, g.right = g.cells.whole_high[0] - low, 0.0, 0.0
-    fall = (begin - end - g.error) / h - 0.5 * high * h  # the velocity at the end, at least
-    if g.first:
-        if not rate > fast:
-            return False
-        g.left = min(2.0 * (rate - fast) / back if back > 0.0 else h, h)
-        begin += g.left * (rate + 0.5 * low * g.left)
-    if g.last:
-        if not fall > fast:
-            return False
-        g.right = min(2.0 * (fall - fast) / back if back > 0.0 else h, h)
-        end += g.right * (fall + 0.5 * low * g.right)
-    g.begin_above, g.end_above = begin, end
-    return True
-
-
-def above(g: Swing, t: float, high: float, most: int) -> bool:
-    """Whether `place` is above all that the obstacle reaches meanwhile, from g.left to g.right before the end.
-
-    It is above its chord less A x (l - x) / 2. Where that does not suffice, windows are halved.
-
-    t : of the start;  high : bound of the place's acceleration;  most : halvings in a row
-    """
-    length = g.length - g.left - g.right
-    slope, bent = (g.end_above - g.begin_above) / length, 0.5 * max(high, 0.0)
-    least = min(g.begin_above, g.end_above) - g.error - ROUNDING * g.cells.whole_size[0]
-    if least - 0.25 * bent * length * length > g.cells.whole_top[0]:
-        return True
-    if most == 0:
-        return False
-    x, n = 0.0, 1
-    g.times[0] = length
-    while n > 0:
-        y = g.times[n - 1]
-        lowest = g.begin_above - g.error - ROUNDING * g.cells.whole_size[0] + min(slope * x, slope * y)
-        if x < 0.5 * length < y:
-            lowest -= 0.25 * bent * length * length
-        else:
-            lowest -= bent * max(x * (length - x), y * (length - y))
-        g.cells.find(0, t + g.left + x, t + g.left + y)
-        if lowest > g.cells.top:
-            x = y
-            n -= 1
-        elif n > most:
-            return False
-        else:
-            g.times[n] = 0.5 * (x + y)
-            n += 1
-    return True
-
-
-def above_at_ends(
-    g: Swing, o: Flight, t: float, y: float, y_b: float, w: float, cuts: Doubles, i: int, n_cuts: int
-) -> bool:
-    """The same of a piece from t on, without corners where the gap parts from zero; i : the first of the cuts after t."""
-    low, high = g.middle - g.bound, g.middle + g.bound
-    begin, end = o.offset + o.G * y, o.offset + o.G * y_b
-    high = min(high, swung(g, o, min(begin, end)))
-    if not parts_at_ends(g, begin, end, o.G * w, low, high):
-        return False
-    if g.left > 0.0 and not smooth(g, t, t + g.left, cuts, i, n_cuts):
-        return False
-    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length, cuts, i, n_cuts):
-        return False
-    return g.left + g.right >= g.length or above(g, t, high, DEEP)
-
-
-def smooth(g: Swing, a: float, b: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
-    """Whether what moves is smooth between two times; i : the first of the cuts that may lie there."""
-    while i < n_cuts and cuts[i] <= same_time(a):
-        i += 1
-    if i < n_cuts and same_time(cuts[i]) < b:
-        return False
-    g.cells.find(0, a, b)
-    return not g.cells.rough
 
 
 def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:
@@ -351,11 +195,3 @@ def pressed(g: Swing, s: Flight, t0: float, a: float, b: float) -> bool:
             g.bends[n], g.gaps[n] = driven(s, t0 + g.times[n])
             n += 1
     return True
-
-
-def driven(s: Flight, t: float) -> tuple[float, float]:
-    """G F(t), and its rate over Omega."""
-    if s.Omega == 0.0:
-        return 0.0, 0.0
-    c, q = cos(s.Omega * t), sin(s.Omega * t)
-    return s.G * (s.fc * c + s.fs * q), s.G * (s.fs * c - s.fc * q)

@@ -23,8 +23,9 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 INNER = 3  # positions within a step that is known by running it again
 FREE = 1.0 / 46080.0  # of the sixth derivative: 1 / 6! of the largest x^3 (1 - x)^3
-STRUCK = 0.09  # of the fifth, where the velocity at the end is not known,
-THIRD, OFF = 1.0 / 3.0, 0.2  # and a third of what OFF of the fourth, in the velocity, makes of the acceleration
+STRUCK = 0.09  # of the fifth, where the velocity at the end is not known
+OFF = 0.2  # of the fourth: by how much the velocity may be off that the acceleration is taken with
+THIRD = 1.0 / 3.0  # of what that makes of the acceleration
 GROWTH = 3.0  # more than e: by how much a state grows in a step
 SHORT = 1.0  # (rate h)^2 of steps that have a bound, at most
 ENOUGH = 10.0  # roundings within which a free step must be
@@ -136,8 +137,8 @@ def from_powers(c: list[Array]) -> Array:
 def bounds(run: Trajectory, m: Model, struck: Mask, enough: float) -> Array | None:
     """How far polynomials may be from the linear motion under harmonic forces, (m, n_q); None: too far.
 
-    With s = t / h, q_ss = h^2 f - h M^-1 C q_s - h^2 M^-1 K q, whose rows are summed: (q, q_s) grows at most by e in a
-    step, and derivatives bound one another.
+    With s = t / h, q_ss = h^2 f - h M^-1 C q_s - h^2 M^-1 K q, whose rows are summed: (q, q_s) grows at most by e in
+    a step, and derivatives bound one another.
     """
     if m.frame.given or not m.linear:
         return None
@@ -145,7 +146,9 @@ def bounds(run: Trajectory, m: Model, struck: Mask, enough: float) -> Array | No
     M, K, C = (np.asarray(m.arrays[x], dtype=float).reshape(n, n) for x in ("M", "K", "C"))
     with np.errstate(all="ignore"):
         spring, damper = (np.abs(np.linalg.solve(M, x)).sum(axis=1).max() for x in (K, C))
-        parts = [np.linalg.solve(M, np.asarray(m.arrays[x], dtype=float)) for x in ("constant", "cosine", "sine")]
+        parts = [
+            np.linalg.solve(M, np.asarray(m.arrays[x], dtype=float)) for x in ("constant", "cosine", "sine")
+        ]
     steady, swinging = np.max(np.abs(parts[0])), np.max(np.abs(parts[1]) + np.abs(parts[2]))
     kappa, gamma, turn = spring * h * h, damper * h, abs(m.omega) * h
     if not np.all(kappa + gamma <= SHORT):
