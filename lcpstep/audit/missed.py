@@ -51,7 +51,9 @@ def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: A
     place, speed, within, first, second, gone = (np.zeros((len(h), run.scene.n_q)) for _ in range(6))
     errors(m, t, B, v, marks, places(motion.degree), RULE, ROUNDING, place, speed, within)
     held = np.flatnonzero(np.any(closed, axis=1) | (run.scene.n_j > 0))
-    if len(held):
+    if run.scene.n_c == 1 and run.scene.n_j == 0:  # nothing flies there, and what follows begins anew
+        place[held] = speed[held] = within[held] = 0.0
+    elif len(held):
         place[held], speed[held], within[held] = by_rest(run, m, motion, closed[held], held)
     for x in (place, speed, within):
         x[~np.isfinite(x)] = 0.0
