@@ -17,7 +17,7 @@ REPEATS = 3
 SPANS = {
     "elastic-ball": 3e4, "impact-oscillator": 2e4, "chaotic-oscillator": 2e4, "sticking-oscillator": 2e4,
     "ball-on-table": 3e3, "cam-follower": 4e3, "chattering-table": 1e3, "elastic-gas": 100.0,
-    "double-pendulum": 200.0, "pendulum-stop": 200.0, "rocking-block": None, "elastic-chain": 50.0, "bowl": 50.0,
+    "double-pendulum": 200.0, "pendulum-stop": 200.0, "rocking-block": None, "elastic-chain": 50.0, "bowl": 500.0,
 }  # fmt: skip
 METHODS = [EventDriven(), Located(1e-3), Located(1e-3, order=4), Located(1e-3, order="exact")]
 FEWER = 0.02  # of the span: steps take longer
