@@ -44,7 +44,7 @@ def reported(case: Case, run: Trajectory, answer: Audit) -> bool:
     """Whether an audit says that the event is missed, which the computed motion bears out, or lists its time."""
     at = case.lowest[1]
     listed = any(x.start <= at <= x.end for x in answer.windows)
-    return listed or any(case.gap(x.time, run.at(x.time)[0]) < 0.0 for x in answer.missed)
+    return listed or any(case.gaps(run, np.array([x.time]))[0] < 0.0 for x in answer.missed)
 
 
 def judge(

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -50,12 +51,28 @@ class Case:
     @cached_property
     def lowest(self) -> tuple[float, float]:
         """The same with its time."""
-        return lowest(lambda t: self.gap(t, self.free(t)), *self.near)
+        return lowest(lambda times: [self.gap(t, self.free(t)) for t in times.tolist()], *self.near)
+
+    def gaps(self, run: Trajectory, times: Array) -> list[float]:
+        """The gaps of the motion that a run without an event has computed [m]."""
+        return [self.gap(t, q) for t, q in zip(times.tolist(), computed(run, times), strict=True)]
 
     def least_of(self, run: Trajectory) -> float:
-        """The smallest gap of the motion that a run without an event has computed [m]."""
+        """The smallest of them [m]."""
         a, b = max(self.near[0], run.t[0]), min(self.near[1], run.t[-1])
-        return lowest(lambda t: self.gap(t, run.at(t)[0]), a, b)[0]
+        return lowest(lambda times: self.gaps(run, times), a, b)[0]
+
+
+def computed(run: Trajectory, times: Array) -> Array:
+    """Positions between kept states; of steps by cubics: `Trajectory.at` makes them again, and looks for events."""
+    if isinstance(run.method, EventDriven):
+        return run.at(times)[0]
+    k = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 2)
+    h = (run.t[k + 1] - run.t[k])[:, None]
+    s = (times - run.t[k])[:, None] / h
+    moved, start, end = run.q[k + 1] - run.q[k], h * run.v[k], h * run.v[k + 1]
+    bend = 3.0 * moved - 2.0 * start - end
+    return np.asarray(run.q[k] + s * (start + s * (bend + s * (start + end - 2.0 * moved))))
 
 
 def bell(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
@@ -192,15 +209,15 @@ KINDS: dict[str, Callable[[str, np.random.Generator], Case]] = {
 
 def smallest(gap: Callable[[float], float], a: float, b: float) -> float:
     """The smallest value between a and b."""
-    return lowest(gap, a, b)[0]
+    return lowest(lambda times: [gap(t) for t in times.tolist()], a, b)[0]
 
 
-def lowest(gap: Callable[[float], float], a: float, b: float) -> tuple[float, float]:
+def lowest(gaps: Callable[[Array], list[float]], a: float, b: float) -> tuple[float, float]:
     """The smallest value between a and b and its place: dense looks, and denser ones around the best."""
     best, place = math.inf, a
     for _ in range(ZOOMS):
         times = np.linspace(a, b, LOOKS if math.isinf(best) else LOOKS // 40)
-        values = [gap(float(t)) for t in times]
+        values = gaps(times)
         k = int(np.argmin(values))
         if values[k] < best:
             best, place = values[k], float(times[k])
