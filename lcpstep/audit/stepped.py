@@ -38,12 +38,14 @@ def stepped(run: Trajectory, m: Model, closed: Mask, cuts: Array, rounding: floa
     closed : (m, n_c)   which contacts are closed in a piece;  cuts : (k,)   corners;  rounding : of the positions
     """
     off: Any = None
-    resting, struck = closed.any(axis=1), ends_with_event(run)
+    contacts: Any = run.scene.contacts
+    resting: Mask = np.any(closed, axis=1)
+    struck = ends_with_event(run)
     if getattr(run.method, "order", None) != "exact":
         off = 0.0
     elif run.scene.n_c == 1 or not resting.any():  # of one contact nothing flies while it rests
         off = bounds(run, m, struck, ENOUGH * rounding)
-    friction = run.scene.n_c > 1 and run.scene.contacts.friction is not None and resting.any()
+    friction = run.scene.n_c > 1 and contacts.friction is not None and resting.any()
     if run.scene.n_j > 0 or off is None or friction:  # what holds bodies there may move, which nobody tells
         return made_again(run), 0.0
     t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
