@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 from unittest.mock import patch
 
@@ -18,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven
+from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
@@ -28,12 +31,48 @@ SPAN = 10.0
 
 @dataclass(frozen=True)
 class Case:
-    """A scene, what kind it is, how narrow, and the smallest gap of its free motion."""
+    """A scene, what kind it is, how narrow, and what is known of its first flight.
+
+    gap : gap(t, q) [m];  free : the exact free motion q(t);  near : times between which the gap can be small
+    """
 
     kind: str
     width: float
     scene: Scene
-    least: float
+    gap: Callable[[float, Any], float]
+    free: Callable[[float], Any]
+    near: tuple[float, float]
+
+    @cached_property
+    def least(self) -> float:
+        """The smallest gap of the exact free motion [m]."""
+        return self.lowest[0]
+
+    @cached_property
+    def lowest(self) -> tuple[float, float]:
+        """The same with its time."""
+        return lowest(lambda times: [self.gap(t, self.free(t)) for t in times.tolist()], *self.near)
+
+    def gaps(self, run: Trajectory, times: Array) -> list[float]:
+        """The gaps of the motion that a run without an event has computed [m]."""
+        return [self.gap(t, q) for t, q in zip(times.tolist(), computed(run, times), strict=True)]
+
+    def least_of(self, run: Trajectory) -> float:
+        """The smallest of them [m]."""
+        a, b = max(self.near[0], run.t[0]), min(self.near[1], run.t[-1])
+        return lowest(lambda times: self.gaps(run, times), a, b)[0]
+
+
+def computed(run: Trajectory, times: Array) -> Array:
+    """Positions between kept states; of steps by cubics: `Trajectory.at` makes them again, and looks for events."""
+    if isinstance(run.method, EventDriven):
+        return run.at(times)[0]
+    k = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 2)
+    h = (run.t[k + 1] - run.t[k])[:, None]
+    s = (times - run.t[k])[:, None] / h
+    moved, start, end = run.q[k + 1] - run.q[k], h * run.v[k], h * run.v[k + 1]
+    bend = 3.0 * moved - 2.0 * start - end
+    return np.asarray(run.q[k] + s * (start + s * (bend + s * (start + end - 2.0 * moved))))
 
 
 def bell(t: float, q: Any, v: Any, p: Any, out: Any) -> None:
@@ -103,11 +142,14 @@ def moving(kind: str, rng: np.random.Generator) -> Case:
     )  # fmt: skip
     out = np.zeros((1, 3))
 
-    def gap(t: float) -> float:
+    def gap(t: float, q: Any) -> float:
         motion(t, None, None, p, out)
-        return math.cos(TURN * t + phase) + 1.05 - float(out[0, 0])
+        return float(q[0]) + 1.05 - float(out[0, 0])
 
-    return Case(kind, width, scene, smallest(gap, at - 4.0 * width, at + 4.0 * width))
+    def free(t: float) -> Any:
+        return (math.cos(TURN * t + phase),)
+
+    return Case(kind, width, scene, gap, free, (at - 4.0 * width, at + 4.0 * width))
 
 
 def over_ground(kind: str, rng: np.random.Generator) -> Case:
@@ -126,11 +168,14 @@ def over_ground(kind: str, rng: np.random.Generator) -> Case:
         name=f"{kind} {width:.2g}",
     )  # fmt: skip
 
-    def gap(t: float) -> float:
-        s = (t - at) / width
-        return math.cos(TURN * t + phase) + 1.05 - height * math.exp(-s * s)
+    def gap(t: float, q: Any) -> float:
+        s = (q[0] - at) / width
+        return float(q[1]) + 1.05 - height * math.exp(-s * s)
 
-    return Case(kind, width, scene, smallest(gap, at - 4.0 * width, at + 4.0 * width))
+    def free(t: float) -> Any:
+        return t, math.cos(TURN * t + phase)
+
+    return Case(kind, width, scene, gap, free, (at - 4.0 * width, at + 4.0 * width))
 
 
 def grazing(kind: str, rng: np.random.Generator) -> Case:
@@ -147,7 +192,14 @@ def grazing(kind: str, rng: np.random.Generator) -> Case:
         system=LinearSystem(M=1.0, K=rate**2), contacts=LinearContacts(G=1.0, offset=offset, restitution=0.8),
         q0=q0, v0=-amplitude * rate * math.sin(phase), t_span=(0.0, SPAN), name=kind,
     )  # fmt: skip
-    return Case(kind, 1.0, scene, amplitude * share)
+
+    def gap(t: float, q: Any) -> float:
+        return float(q[0]) + offset
+
+    def free(t: float) -> Any:
+        return (amplitude * math.cos(rate * t + phase),)
+
+    return Case(kind, 1.0, scene, gap, free, (0.0, SPAN))
 
 
 KINDS: dict[str, Callable[[str, np.random.Generator], Case]] = {
@@ -156,12 +208,18 @@ KINDS: dict[str, Callable[[str, np.random.Generator], Case]] = {
 
 
 def smallest(gap: Callable[[float], float], a: float, b: float) -> float:
-    """The smallest value between a and b: dense looks, and denser ones around the best."""
-    best = math.inf
+    """The smallest value between a and b."""
+    return lowest(lambda times: [gap(t) for t in times.tolist()], a, b)[0]
+
+
+def lowest(gaps: Callable[[Array], list[float]], a: float, b: float) -> tuple[float, float]:
+    """The smallest value between a and b and its place: dense looks, and denser ones around the best."""
+    best, place = math.inf, a
     for _ in range(ZOOMS):
         times = np.linspace(a, b, LOOKS if math.isinf(best) else LOOKS // 40)
-        values = [gap(float(t)) for t in times]
+        values = gaps(times)
         k = int(np.argmin(values))
-        best = min(best, values[k])
+        if values[k] < best:
+            best, place = values[k], float(times[k])
         a, b = float(times[max(k - 1, 0)]), float(times[min(k + 1, len(times) - 1)])
-    return best
+    return best, place

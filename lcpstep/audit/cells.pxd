@@ -1,9 +1,10 @@
 cimport cython
 from libc.math cimport floor
-from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.arrays cimport doubles, indices, small_numbers
 from lcpstep.pointers cimport after, inf, max, min, whole
 
 cdef double SLACK
+cdef Py_ssize_t BINS
 
 
 @cython.final
@@ -11,7 +12,9 @@ cdef class Cells:
     cdef object arrays, bounds
     cdef readonly bint given, rough, whole_rough
     cdef readonly Py_ssize_t n, n_c
-    cdef Py_ssize_t here
+    cdef Py_ssize_t here, n_bins
+    cdef object starts
+    cdef Py_ssize_t* bins
     cdef readonly double period
     cdef double per
     cdef double* ends
@@ -22,6 +25,8 @@ cdef class Cells:
     cdef double* whole_low
     cdef double* whole_high
     cdef double* whole_fast
+    cdef double* whole_bottom
+    cdef double* whole_size
     cdef readonly double bottom, top, slow, low, high
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
     @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)

@@ -27,9 +27,11 @@ cdef class Gap:
     cdef void note_ends(
         self, double begin, double end, double begin_gap, double end_gap, double begin_bend, double end_bend
     ) noexcept nogil
+    cdef double own_motion(self, Py_ssize_t c, double t) noexcept nogil
     cdef double sigma(self, Py_ssize_t c, double t) noexcept nogil
 
 cdef double late(double t, double speed) noexcept nogil
+cdef double same_time(double t) noexcept nogil
 @cython.locals(least=double)
 cdef bint open_between(
     double g_a, double g_b, double h, double low, double high, bint first, bint last, double error

@@ -82,12 +82,16 @@ class Gap:
         self.begin_bend, self.end_bend = begin_bend, end_bend
         self.begin_known = self.end_known = True
 
+    def own_motion(self, c: int, t: float) -> float:
+        """How far what contact c meets has moved at a time, apart from the frame."""
+        if not self.motion.given:
+            return 0.0
+        self.motion.fill(t, self.q, self.v, self.moving)
+        return self.moving[3 * c]
+
     def sigma(self, c: int, t: float) -> float:
         """What contact c meets at a time."""
-        total = 0.0
-        if self.motion.given:
-            self.motion.fill(t, self.q, self.v, self.moving)
-            total += self.moving[3 * c]
+        total = self.own_motion(c, t)
         if self.frame.given:
             self.frame.fill(t, self.q, self.v, self.moving)
             total += self.G[c] * self.moving[0]
@@ -97,6 +101,11 @@ class Gap:
 def late(t: float, speed: float) -> float:
     """What the rounding of its time makes of something that moves with this speed at most."""
     return TIMES * abs(t) * speed if speed < inf else 0.0
+
+
+def same_time(t: float) -> float:
+    """The latest time that rounding does not tell from this one."""
+    return t + TIMES * abs(t)
 
 
 def open_between(
@@ -201,7 +210,7 @@ def between_corners(g: Gap, c: int, t0: float, cuts: Doubles, i: int, n_cuts: in
     a = 0.0
     while a < g.length:
         b = g.length
-        if i < n_cuts and cuts[i] - t0 < b:
+        if i < n_cuts and same_time(cuts[i]) < t0 + b:
             b = cuts[i] - t0
             i += 1
         if not clear(g, c, t0, a, b):

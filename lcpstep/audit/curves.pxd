@@ -1,9 +1,9 @@
 cimport cython
-from lcpstep.arrays cimport doubles, small_numbers
+from lcpstep.arrays cimport doubles, indices, small_numbers
 from lcpstep.audit.cells cimport Cells
 from lcpstep.audit.clear cimport Gap, between_corners, late, open_between
 from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport abs, after, inf, max, min
+from lcpstep.pointers cimport abs, after, indices_after, inf, max, min
 
 cdef double ROUNDING, SECOND
 
@@ -19,7 +19,7 @@ cdef class Curve(Gap):
 cdef double casteljau(double* x, Py_ssize_t degree, double share, double* part) noexcept nogil
 cdef void differences(Curve g, double size) noexcept nogil
 @cython.locals(whole=bint, good=bint, drifts=bint, i=Py_ssize_t, n=Py_ssize_t, n_c=Py_ssize_t, n_q=Py_ssize_t,
-               n_cuts=Py_ssize_t, rows=Py_ssize_t, degree=Py_ssize_t, step=Py_ssize_t)
+               n_cuts=Py_ssize_t, rows=Py_ssize_t, r=Py_ssize_t, c=Py_ssize_t, k=Py_ssize_t, degree=Py_ssize_t, step=Py_ssize_t)
 cpdef object clear_curves(
     Curve g, object t, object B, object G, object offset, object obstacle, object absolute, double relative,
     object drift, object touched, object skipped, object cuts, object found
@@ -27,7 +27,10 @@ cpdef object clear_curves(
 cdef double later(
     double* t, unsigned char* touched, Py_ssize_t k, Py_ssize_t n, Py_ssize_t n_c, Py_ssize_t c, double found
 ) noexcept nogil
-cdef double along(Curve g, double* B, double* G, Py_ssize_t n_q, double offset) noexcept nogil
+cdef object used(object G)
+cdef double along(
+    Curve g, double* B, double* G, Py_ssize_t* used, Py_ssize_t n_used, Py_ssize_t n_q, double offset
+) noexcept nogil
 cdef bint at_once(Curve g, Py_ssize_t c, double t, double size, double s, double s_b, bint whole) noexcept nogil
 @cython.locals(n=Py_ssize_t, n_q=Py_ssize_t, k=Py_ssize_t, x=double)
 cpdef object interpolate(object t, object q, object v, object inner, object begin, object inverse, object B)

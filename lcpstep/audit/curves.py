@@ -11,11 +11,11 @@ import cython
 import numpy as np
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
+    from lcpstep.arrays import doubles, indices, small_numbers
     from lcpstep.audit.cells import Cells
     from lcpstep.audit.clear import Gap, between_corners, late, open_between
     from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+    from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, inf, max, min
 
 ROUNDING = 1.1e-13  # of the numbers that a gap is made of
 SECOND = 1e-15  # of them, times how large the second differences' factor is
@@ -93,6 +93,8 @@ def clear_curves(
     last, following, gone = doubles(events[0]), doubles(events[1]), doubles(drift)
     times, control, normal, height = doubles(t), doubles(B), doubles(G), doubles(offset)
     s, corner, off = doubles(obstacle), doubles(cuts), doubles(absolute)
+    columns, counts = used(G)
+    column, count = indices(columns), indices(counts)
     touch, left, out = small_numbers(touched), small_numbers(skipped), small_numbers(found)
     with cython.nogil:
         i = 0
@@ -111,16 +113,17 @@ def clear_curves(
             for c in range(n_c):
                 if left[k * n_c + c] != 0:
                     continue
+                own, normal_c = indices_after(column, c * n_q), after(normal, c * n_q)
                 size = along(
-                    g, after(control, k * (degree + 1) * n_q), after(normal, c * n_q), n_q, height[c]
+                    g, after(control, k * (degree + 1) * n_q), normal_c, own, count[c], n_q, height[c]
                 )
                 g.error = relative * size
-                for j in range(n_q):
-                    g.error += abs(normal[c * n_q + j]) * off[k * rows + j]
+                for r in range(count[c]):
+                    g.error += abs(normal_c[own[r]]) * off[k * rows + own[r]]
                 g.own = g.error
                 if drifts:
-                    for j in range(n_q):
-                        g.own -= abs(normal[c * n_q + j]) * gone[k * n_q + j]
+                    for r in range(count[c]):
+                        g.own -= abs(normal_c[own[r]]) * gone[k * n_q + own[r]]
                 g.first, g.last = touch[k * n_c + c] != 0, touch[(k + 1) * n_c + c] != 0
                 good = at_once(
                     g, c, times[k + 1], size, s[step * k + 3 * c], s[step * (k + 1) + 3 * c], whole
@@ -145,13 +148,19 @@ def later(t: Doubles, touched: Any, k: int, n: int, n_c: int, c: int, found: flo
     return t[k] if k <= n else inf
 
 
-def along(g: Curve, B: Doubles, G: Doubles, n_q: int, offset: float) -> float:
-    """Coefficients of offset + G q, and how large the numbers are that these are made of."""
+def used(G: Any) -> tuple[Any, Any]:
+    """The columns in which rows of G are not zero, (n_c, n_q) with the rest behind them, and how many, (n_c,)."""
+    columns = np.argsort(G == 0.0, axis=1, kind="stable").astype(np.intp)
+    return columns, np.count_nonzero(G, axis=1).astype(np.intp)
+
+
+def along(g: Curve, B: Doubles, G: Doubles, used: Indices, n_used: int, n_q: int, offset: float) -> float:
+    """Coefficients of offset + G q, and how large the numbers are that these are made of; used: columns of G."""
     size = 0.0
     for i in range(g.degree + 1):
         total, largest = offset, abs(offset)
-        for j in range(n_q):
-            part = G[j] * B[i * n_q + j]
+        for r in range(n_used):
+            part = G[used[r]] * B[i * n_q + used[r]]
             total += part
             largest += abs(part)
         g.x[i] = total

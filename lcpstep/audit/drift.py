@@ -68,4 +68,5 @@ def frequency(run: Trajectory, m: Model, size: Array, second: Array) -> Array:
     h = np.diff(run.t)[:, None]
     with np.errstate(all="ignore"):
         bent = np.sum(np.where(h > 0.0, second / h, 0.0), axis=0)
-        return np.asarray(np.sqrt(np.nan_to_num(bent / size)))
+        squares = bent / size
+    return np.sqrt(np.where(np.isfinite(squares), squares, 0.0))

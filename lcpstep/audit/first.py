@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from lcpstep.audit.curved import Curved
 from lcpstep.audit.curves import Curve, clear_curves, hulls
 from lcpstep.audit.flat import Flat
-from lcpstep.audit.flights import Swing, clear_flights
+from lcpstep.audit.flights import clear_flights
 from lcpstep.audit.limits import AT_EVENT, BESIDE, NEGLIGIBLE, PRESSED, UNKNOWN
 from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.obstacle import Obstacle
+from lcpstep.audit.swing import Swing
 from lcpstep.events.flight.run import flight_of
 from lcpstep.intervals import NotEnclosed
 from lcpstep.kernels.function import Function
@@ -27,10 +28,9 @@ def look(p: Any) -> NDArray[np.bool_]:
     found = np.zeros((len(p.t) - 1, p.scene.n_c), dtype=np.uint8)
     if isinstance(p.problem, Flat):
         by, o = by_flights if isinstance(p.motion, Oscillation) else by_curves, p.problem.obstacle
-        met = sampled(o, p.t)
         try:
             finer_at_releases(p, o)
-            by(p, o, met, found)
+            by(p, o, found)
         except NotEnclosed as why:
             p.problem.why = str(why)
     elif p.problem.bound is None:
@@ -46,17 +46,17 @@ def finer_at_releases(p: Any, o: Obstacle) -> None:
             o.refine(p.t[1:-1][opens], len(p.closed))
 
 
-def by_flights(p: Any, o: Obstacle, met: Any, found: Any) -> None:
+def by_flights(p: Any, o: Obstacle, found: Any) -> None:
     """Flights in closed form."""
     m, motion = p.m, p.motion
     flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
     gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
     if gap.known:
         touched, kind, cuts = marks(p, o)
-        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, met, touched, kind, cuts, found)
+        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, touched, kind, cuts, found)
 
 
-def by_curves(p: Any, o: Obstacle, met: Any, found: Any) -> None:
+def by_curves(p: Any, o: Obstacle, found: Any) -> None:
     """Polynomials between kept states."""
     m, motion = p.m, p.motion
     absolute, relative = p.problem.error
@@ -67,6 +67,7 @@ def by_curves(p: Any, o: Obstacle, met: Any, found: Any) -> None:
     B = np.ascontiguousarray(motion.B)
     touched, kind, cuts = marks(p, o)
     drift = np.zeros((0, p.scene.n_q)) if p.problem.drift is None else p.problem.drift
+    met = sampled(o, p.t)
     clear_curves(gap, p.t, B, G, offset, met, absolute, relative, drift, touched, kind, cuts, found)
 
 

@@ -69,7 +69,7 @@ class Flat:
             fast = fast + s.speed.size
         absolute = np.sum(np.abs(G) * own(self.error[0], w.k), axis=1)
         rounding = ROUNDING * size
-        rounding += TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.nan_to_num(fast, posinf=0.0)
+        rounding += TIMES * np.maximum(np.abs(w.a), np.abs(w.b)) * np.where(fast < np.inf, fast, 0.0)
         error = absolute + self.error[1] * size + rounding
         computed = error if self.drift is None else error - np.sum(np.abs(G) * self.drift[w.k], axis=1)
         if self.anchors is not None and not rough:  # most windows do without

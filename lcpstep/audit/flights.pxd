@@ -1,32 +1,21 @@
 cimport cython
-from libc.math cimport cos, hypot, sin, sqrt
+from libc.math cimport sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.cells cimport Cells
-from lcpstep.audit.clear cimport DEEPEST, MOST, Gap, beside, between_corners, late, open_between
-from lcpstep.events.flight.motion cimport Flight, absolute, leave_from, steady
-from lcpstep.pointers cimport abs, after, inf, max, min, nan
+from lcpstep.audit.clear cimport DEEPEST, MOST, beside, between_corners, late, open_between, same_time
+from lcpstep.audit.parting cimport above, above_at_ends, parts_at_ends, swung
+from lcpstep.audit.swing cimport Swing, driven
+from lcpstep.events.flight.motion cimport Flight, leave_from
+from lcpstep.pointers cimport abs, after, inf, max, min
 
-cdef double SLACK, ROUNDING, PRESSING, ERRORS
+cdef double SLACK, ROUNDING, PRESSING, BEFORE, HALF_TURN, ERRORS
 cdef Py_ssize_t UNKNOWN, PRESSED
 
-
-@cython.final
-cdef class Swing(Gap):
-    cdef Flight s
-    cdef readonly bint swings, known
-    cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bound, fast
-    cdef double size(self, double z, double w) noexcept nogil
-    cdef void begin(self, double t, double y, double w) noexcept nogil
-
-@cython.locals(whole=bint, good=bint, begins=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t, step=Py_ssize_t)
+@cython.locals(whole=bint, good=bint, begins=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
 cpdef object clear_flights(
-    Swing g, object t, object q, object y, object w, object obstacle, object touched, object kind,
-    object cuts, object found
+    Swing g, object t, object q, object y, object w, object touched, object kind, object cuts, object found
 )
-@cython.locals(good=bint)
-cdef bint at_once(
-    Swing g, Flight o, double t, double* q, double* x, double* w, double s, double s_b, bint whole
-) noexcept nogil
+@cython.locals(good=bint, even=bint)
+cdef bint at_once(Swing g, Flight o, double t, double* q, double* x, double* w, bint whole) noexcept nogil
 cdef double equation(Swing g, Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)
@@ -34,4 +23,3 @@ cdef bint pressed(Swing g, Flight s, double t0, double a, double b) noexcept nog
 cdef bint pressed_between_corners(
     Swing g, Flight s, double t0, double* cuts, Py_ssize_t i, Py_ssize_t n_cuts
 ) noexcept nogil
-cdef double driven(Flight s, double t) noexcept nogil

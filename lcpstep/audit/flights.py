@@ -1,10 +1,4 @@
-"""Certificates of flights in closed form, as kernels: one linear degree of freedom above a flat obstacle.
-
-    y = rest + C exp(-delta tau) cos(w tau - phi) + S cos(Omega t - psi),   |y^(n)| <= C w0^n + S Omega^n,  w0^2 = w2
-
-for delta >= 0, so that the state at the start of a flight bounds its acceleration. Of a body without a spring and a
-damper the first term is a parabola. Other motions are left to `motion.Oscillation`.
-"""
+"""Certificates of flights in closed form, as kernels: one linear degree of freedom, flat obstacles; see `swing`."""
 
 from __future__ import annotations
 
@@ -13,81 +7,39 @@ from typing import Any
 import cython
 
 from lcpstep.audit.limits import ERRORS, PRESSED, UNKNOWN
+from lcpstep.audit.limits import ROUNDED as ROUNDING
 
 if not cython.compiled:
-    from math import cos, hypot, sin, sqrt
+    from math import sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.cells import Cells
-    from lcpstep.audit.clear import DEEPEST, MOST, Gap, beside, between_corners, late, open_between
-    from lcpstep.events.flight.motion import Flight, absolute, leave_from, steady
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
+    from lcpstep.audit.clear import DEEPEST, MOST, beside, between_corners, late, open_between, same_time
+    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, swung
+    from lcpstep.audit.swing import Swing, driven
+    from lcpstep.events.flight.motion import Flight, leave_from
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
-ROUNDING = 1.1e-13  # of the positions: what a gap may be off by
-
-
-class Swing(Gap):
-    """The gap of a flight in closed form.
-
-    amplitude   of the oscillation that is left of a flight, a bound from its start on; with `most`, how large the
-        numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go
-    fast        the largest velocity of what moves by itself
-    force_at, force    a time, and the force over the mass then, times G, as it was last asked for
-
-    Parameters
-    ----------
-    cells, motion, frame, state, limits : see `Gap`;  s : Flight
-    """
-
-    def __init__(self, cells: Cells, motion: Any, frame: Any, state: Any, limits: Any, s: Flight) -> None:
-        Gap.__init__(self, cells, motion, frame, [s.G], state, limits)
-        self.s = s
-        self.swings = s.w2 > s.delta * s.delta and s.delta >= 0.0
-        self.known = self.swings or (s.w2 == 0.0 and s.delta == 0.0)
-        self.forced = hypot(s.X, s.Y)
-        self.height = s.f0 / s.w2 if self.swings else 0.0
-        self.per_root = 1.0 / sqrt(s.w2 - s.delta * s.delta) if self.swings else 0.0
-        self.amplitude, self.force, self.force_at = 0.0, 0.0, nan
-        self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
-        self.most, self.bound = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
-        self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
-
-    def at(self, tau: float) -> None:
-        """Ask for the motion."""
-        absolute(self.s, tau)
-        self.place, self.bend = self.s.offset + self.s.G * self.s.y_tau, self.s.G * self.s.a_tau
-
-    def size(self, z: float, w: float) -> float:
-        """How large an oscillation is that has this place and velocity."""
-        rate = (w + self.s.delta * z) * self.per_root
-        return sqrt(z * z + rate * rate)
-
-    def begin(self, t: float, y: float, w: float) -> None:
-        """A flight begins at time t with this absolute state."""
-        if self.swings:
-            rest, rate = steady(self.s, t)
-            self.amplitude = (1.0 + SLACK) * self.size(y - rest - self.height, w - rate)
-            self.most = self.amplitude + self.forced + abs(self.height)
-            self.bound = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
+BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
+HALF_TURN = 3.0  # rad, and less than that
 
 
 def clear_flights(
-    g: Swing, t: Any, q: Any, y: Any, w: Any, obstacle: Any, touched: Any, kind: Any, cuts: Any, found: Any
+    g: Swing, t: Any, q: Any, y: Any, w: Any, touched: Any, kind: Any, cuts: Any, found: Any
 ) -> None:
     """Which pieces are certified, (m,), into `found`; called from Python.
 
     Parameters
     ----------
-    t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones;  obstacle : (m + 1 or 1, 3)   s, s' and s'' there
+    t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones
     touched : (m + 1,) uint8   whether an event of the run lies there
     kind : (m,) uint8   of the pieces: 0, or PRESSED for a closed contact, or UNKNOWN, which are left out
     cuts : (k,)   times at which the obstacle may have a corner
     """
-    n, n_cuts, step = len(found), len(cuts), 3 if len(obstacle) > 1 else 0
+    n, n_cuts = len(found), len(cuts)
     times, places, position, speed = doubles(t), doubles(q), doubles(y), doubles(w)
-    s, corner = doubles(obstacle), doubles(cuts)
+    corner = doubles(cuts)
     touch, left, out = small_numbers(touched), small_numbers(kind), small_numbers(found)
     with cython.nogil:
         i, begins = 0, True
@@ -99,9 +51,9 @@ def clear_flights(
                 continue
             if left[k] == UNKNOWN:
                 continue
-            while i < n_cuts and corner[i] <= times[k]:
+            while i < n_cuts and corner[i] <= same_time(times[k]):
                 i += 1
-            whole = i == n_cuts or corner[i] >= times[k + 1]
+            whole = i == n_cuts or same_time(corner[i]) >= times[k + 1]
             g.first, g.last, g.length = touch[k] != 0, touch[k + 1] != 0, times[k + 1] - times[k]
             if left[k] == PRESSED:
                 out[k] = 1 if pressed_between_corners(g, g.s, times[k], corner, i, n_cuts) else 0
@@ -109,39 +61,45 @@ def clear_flights(
             if begins:
                 g.begin(times[k], position[k], speed[k])
                 begins = False
-            good = at_once(
-                g, g.s, times[k], after(places, k), after(position, k), after(speed, k),
-                s[step * k], s[step * (k + 1)], whole,
-            )  # fmt: skip
+            good = at_once(g, g.s, times[k], after(places, k), after(position, k), after(speed, k), whole)
+            if not good:
+                good = above_at_ends(
+                    g, g.s, times[k], position[k], position[k + 1], speed[k], corner, i, n_cuts
+                )
             if not good:
                 leave(g, g.s, times[k], position[k], speed[k])
                 good = between_corners(g, 0, times[k], corner, i, n_cuts)
             out[k] = 1 if good else 0
 
 
-def at_once(
-    g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, s: float, s_b: float, whole: bool
-) -> bool:
+def at_once(g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, whole: bool) -> bool:
     """Whether a piece from t on is certified by the states at its ends and the equation of motion.
 
-    q, x : relative and absolute places;  w : velocities, after an event;  s, s_b : of the obstacle
+    q, x : relative and absolute places;  w : velocities, after an event
     whole : whether no corner lies within
     """
     y, y_b, h, size = x[0], x[1], g.length, g.most
     if not g.swings:
         size = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h + g.forced
-    g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset) + max(abs(s), abs(s_b)))
+    g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset))
     g.error += late(max(abs(t), abs(t + h)), g.fast)
     begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bound, g.middle + g.bound
+    high = min(high, swung(g, o, min(begin, end)))
     lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
-    if lowest > g.cells.whole_top[0]:
+    if lowest - ROUNDING * g.cells.whole_size[0] > g.cells.whole_top[0]:
+        return True
+    even = whole and not g.cells.whole_rough
+    if even and parts_at_ends(g, begin, end, o.G * w[0], low, high) and above(g, t, high, 0):
         return True
     g.cells.find(0, t, t + h)
-    if lowest > g.cells.top:
+    met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
+    if lowest - met > g.cells.top:
         return True
+    g.error += met
     g.own, g.small = g.error, min(g.error, g.negligible)
     g.begin_known = g.end_known = False
-    g_a, g_b = o.offset + o.G * q[0] - s, o.offset + o.G * q[1] - s_b
+    g_a = 0.0 if g.first else o.offset + o.G * q[0] - g.own_motion(0, t)
+    g_b = 0.0 if g.last else o.offset + o.G * q[1] - g.own_motion(0, t + h)
     g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
     good = not g.cells.rough and whole
     if good and open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error):
@@ -169,7 +127,8 @@ def at_once(
 def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:
     """G y'' of a state; the force is known where the piece before has ended."""
     if t != g.force_at:
-        g.force_at, g.force = t, driven(o, t)
+        g.force_at = t
+        g.force, _ = driven(o, t)
     return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + g.force
 
 
@@ -190,7 +149,7 @@ def pressed_between_corners(g: Swing, s: Flight, t0: float, cuts: Doubles, i: in
     a = 0.0
     while a < g.length:
         b = g.length
-        if i < n_cuts and cuts[i] - t0 < b:
+        if i < n_cuts and same_time(cuts[i]) < t0 + b:
             b = cuts[i] - t0
             i += 1
         if not pressed(g, s, t0, a, b):
@@ -206,30 +165,33 @@ def pressed(g: Swing, s: Flight, t0: float, a: float, b: float) -> bool:
     """
     constant = s.G * s.f0 + s.w2 * s.offset
     forced = abs(s.G) * (abs(s.fc) + abs(s.fs))
+    if g.first and a < g.moment:  # what is so near to an event is part of it
+        a = min(max(a, BEFORE * g.moment), b)
+    if g.last and g.length - b < g.moment:
+        b = max(min(b, g.length - BEFORE * g.moment), a)
     tau, n, looked = a, 1, 0
-    force, g.times[0], g.bends[0] = driven(s, t0 + a), b, driven(s, t0 + b)
+    force, turn = driven(s, t0 + a)
+    g.times[0] = b
+    g.bends[0], g.gaps[0] = driven(s, t0 + b)
     while n > 0:
         looked += 1
         k = n - 1
         h = g.times[k] - tau
         g.cells.find(0, t0 + tau, t0 + g.times[k])
-        alpha = constant + max(force, g.bends[k]) + 0.125 * s.Omega * s.Omega * forced * h * h
+        alpha = constant + max(force, g.bends[k])
+        if turn * g.gaps[k] < 0.0 or s.Omega * h > HALF_TURN:  # it need not be largest at an end
+            alpha += 0.125 * s.Omega * s.Omega * forced * h * h
         alpha -= s.w2 * g.cells.bottom + 2.0 * s.delta * g.cells.slow + g.cells.low
         error = PRESSING * (abs(constant) + forced + abs(s.w2 * g.cells.top) + abs(g.cells.low))
         small = min(error, g.negligible)
         good = alpha <= error or (alpha < ERRORS * small and beside(g, tau, g.times[k], g.near))
         if (good and not g.cells.rough) or beside(g, tau, g.times[k], g.moment):
-            tau, force = g.times[k], g.bends[k]
+            tau, force, turn = g.times[k], g.bends[k], g.gaps[k]
             n = k
         elif n > DEEPEST or looked > MOST:
             return False
         else:
             g.times[n] = 0.5 * (tau + g.times[k])
-            g.bends[n] = driven(s, t0 + g.times[n])
+            g.bends[n], g.gaps[n] = driven(s, t0 + g.times[n])
             n += 1
     return True
-
-
-def driven(s: Flight, t: float) -> float:
-    """G F(t)."""
-    return s.G * (s.fc * cos(s.Omega * t) + s.fs * sin(s.Omega * t)) if s.Omega != 0.0 else 0.0

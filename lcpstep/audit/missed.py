@@ -40,18 +40,20 @@ ROUNDING = 4e-14  # of the positions: what their second differences over a step,
 JUMPS = float(Kind.IMPACT), float(Kind.ACCUMULATION), float(Kind.JAM)
 
 
-def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: Array) -> Array:
+def missed(run: Trajectory, m: Model, motion: Polynomials, closed: Mask, cuts: Array, jump: Mask) -> Array:
     """An estimate of how far the computed positions are off in each piece, (m, n_q).
 
-    closed : (m, n_c)   which contacts are closed in a piece;  cuts : (k,)   corners
+    closed : (m, n_c)   which contacts are closed in a piece;  cuts : (k,)   corners;  jump : see `jumped`
     """
     t, v, B = (np.ascontiguousarray(x, dtype=float) for x in (run.t, run.v, motion.B))
-    jump, h = jumped(run, t), np.diff(t)
+    h = np.diff(t)
     marks = jump.view(np.uint8)
     place, speed, within, first, second, gone = (np.zeros((len(h), run.scene.n_q)) for _ in range(6))
     errors(m, t, B, v, marks, places(motion.degree), RULE, ROUNDING, place, speed, within)
     held = np.flatnonzero(np.any(closed, axis=1) | (run.scene.n_j > 0))
-    if len(held):
+    if run.scene.n_c == 1 and run.scene.n_j == 0:  # nothing flies there, and what follows begins anew
+        place[held] = speed[held] = within[held] = 0.0
+    elif len(held):
         place[held], speed[held], within[held] = by_rest(run, m, motion, closed[held], held)
     for x in (place, speed, within):
         x[~np.isfinite(x)] = 0.0
@@ -87,12 +89,17 @@ class Nodes:
         h, B, n = np.diff(motion.t)[k], motion.B[k], motion.B.shape[2]
         with np.errstate(all="ignore"):
             q, v, a = (
-                np.nan_to_num(np.einsum("si,kij->ksj", x, B) / h[:, None, None] ** i)
+                finite(np.matmul(x, B) / h[:, None, None] ** i)
                 for i, x in enumerate(places(motion.degree).transpose(1, 0, 2))
             )
         self.t = np.ascontiguousarray((motion.t[k, None] + h[:, None] * NODES).ravel())
         self.q, self.v = (np.ascontiguousarray(x.reshape(-1, n)) for x in (q, v))
         self.a = a
+
+
+def finite(x: Array) -> Array:
+    """Zero where it is no number."""
+    return np.where(np.isfinite(x), x, 0.0)
 
 
 def by_rest(
@@ -101,16 +108,19 @@ def by_rest(
     """The same of pieces with closed contacts or joints, from f - p'': less exact where steps are short."""
     nodes, h = Nodes(motion, k), np.diff(motion.t)[k][:, None]
     off = states.accelerations(m, nodes.t, nodes.q, nodes.v).reshape(nodes.a.shape) - nodes.a
-    off = free_part(run, closed, off, nodes)
+    off, apart = free_part(run, m, closed, off, nodes)
     with np.errstate(all="ignore"):
         noise = ROUNDING * np.max(np.abs(motion.B[k]), axis=1) / (h * h)
     off = np.sign(off) * np.maximum(np.abs(off) - noise[:, None], 0.0)
     moved, turned = np.tensordot(off, WEIGHTS * (1.0 - NODES), (1, 0)), np.tensordot(off, WEIGHTS, (1, 0))
-    return np.abs(h * h * moved), np.abs(h * turned), 0.125 * h * h * np.max(np.abs(off), axis=1)
+    return np.abs(h * h * moved), np.abs(h * turned), 0.125 * h * h * np.max(np.abs(off), axis=1) + apart
 
 
-def free_part(run: Trajectory, closed: Mask, off: Array, nodes: Nodes) -> Array:
-    """What of an acceleration (m, 3, n_q) no force of the closed contacts and joints can give."""
+def free_part(run: Trajectory, m: Model, closed: Mask, off: Array, nodes: Nodes) -> tuple[Array, Array]:
+    """What of an acceleration (m, 3, n_q) no force of the closed contacts and joints can give.
+
+    And how far positions are from those at which the closed contacts touch, (m, n_q).
+    """
     contacts, joints, tangents = models(run.scene)
     t, q, v = nodes.t, nodes.q, nodes.v
     shut = np.repeat(closed, len(NODES), axis=0)
@@ -119,12 +129,21 @@ def free_part(run: Trajectory, closed: Mask, off: Array, nodes: Nodes) -> Array:
     G, MG = (np.concatenate([np.where(x[2][..., None], x[i], 0.0) for x in found], axis=1) for i in (0, 1))
     flat = off.reshape(len(t), -1, 1)
     with np.errstate(all="ignore"):
-        force = np.matmul(np.linalg.pinv(np.matmul(G, MG.transpose(0, 2, 1))), np.matmul(G, flat))
-    return np.asarray((flat - np.matmul(MG.transpose(0, 2, 1), force)).reshape(off.shape))
+        inverse, back = np.linalg.pinv(np.matmul(G, MG.transpose(0, 2, 1))), MG.transpose(0, 2, 1)
+        force = np.matmul(inverse, np.matmul(G, flat))
+        gap = np.zeros((len(t), G.shape[1], 1))
+        gap[:, : contacts.n_c, 0] = np.where(shut, states.gaps_at(m, t, q), 0.0)
+        apart = np.abs(np.matmul(back, np.matmul(inverse, gap))).reshape(off.shape).max(axis=1)
+    return np.asarray((flat - np.matmul(back, force)).reshape(off.shape)), apart
 
 
 def jumped(run: Trajectory, t: Array) -> Mask:
     """At which states velocities may have jumped, (m + 1,)."""
     kinds = np.array(run.impacts["kind"], dtype=float)
-    times: Any = np.array(run.impacts["time"], dtype=float)[np.isin(kinds, JUMPS)]
-    return np.isin(t, times)
+    times: Any = np.array(run.impacts["time"], dtype=float)[
+        functools.reduce(np.logical_or, (kinds == x for x in JUMPS))
+    ]
+    if not len(times):
+        return np.zeros(len(t), dtype=bool)
+    at = np.minimum(np.searchsorted(times, t), len(times) - 1)  # both are in the order of time
+    return np.asarray(times[at] == t)

@@ -17,6 +17,7 @@ from lcpstep.audit.drift import begins, drift
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.logged import close, mark
 from lcpstep.audit.missed import jumped, missed
+from lcpstep.audit.stepped import stepped
 from lcpstep.audit.sums import missed as between_states
 from lcpstep.audit.windows import Windows
 from lcpstep.events import EventDriven
@@ -26,7 +27,7 @@ from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import Flights
 from lcpstep.events.running import Moved
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.states import extremes
+from lcpstep.kernels.states import extremes, gaps_at
 from lcpstep.model import looked_at
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.trajectory import Kind, Trajectory
@@ -35,7 +36,6 @@ from lcpstep.turns import turns
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 LOOKS = 1000  # states that the largest gap is taken from
-INNER = 3  # positions within a step that is known by running it again
 TOLERANCES = 10.0  # within which an event-driven run is: docs/accuracy.md
 ROUNDING = 1e-13  # of positions in closed form
 STILL = 4e-15  # of the velocities: a gap with this rate before and after an impact stays as it is
@@ -75,8 +75,11 @@ class Pieces:
         if mode is not None:
             self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
-            self.closed = closed_from_the_start(run, t)
+            self.closed = closed_from_the_start(run, self.m, t)
             close(t, time, contact, kind, rate, self.closed.view(np.uint8))
+        if self.motion is None:
+            self.motion, off = stepped(run, self.m, self.closed, self.cuts, error[0])
+            error = (error[0] + off, error[1])
         known = by_tolerance(run.method) and not self.certain and self.closed.any() and is_known(self.scene)
         self.cones = Cones(self.scene, self.motion, run.v, self.closed, error) if known else None
         gone = self.added_up()
@@ -101,9 +104,7 @@ class Pieces:
             self.touched[1:] |= self.closed
             self.touched[:-1] |= self.closed
         if isinstance(run.dense, Moved) and by_tolerance(run.method) and not run.dense.constant:
-            self.problem.anchors = Anchors(
-                self.t, self.touched, lambda: jumped(run, self.t), error, self.motion
-            )
+            self.problem.anchors = Anchors(self.t, self.touched, lambda: self.jumps, error, self.motion)
 
     def added_up(self) -> Array | None:
         """What steps of a given order have added up, (m, n_q); see `drift`, `missed`."""
@@ -112,15 +113,20 @@ class Pieces:
             return drift(run, self.m, dense.jumps, self.closed, self.cuts)
         if getattr(run.method, "order", "exact") == "exact":
             return None
-        return missed(run, self.m, self.motion, self.closed, self.cuts)
+        return missed(run, self.m, self.motion, self.closed, self.cuts, self.jumps)
 
     def sharpen(self) -> bool:
         """Ask the forces along the motion how far it may be off, where that is known by tolerances alone; once."""
         anchors = self.problem.anchors
         if anchors is None or anchors.estimated is not None:
             return False
-        anchors.estimated = missed(self.run, self.m, self.motion, self.closed, self.cuts)
+        anchors.estimated = missed(self.run, self.m, self.motion, self.closed, self.cuts, self.jumps)
         return True
+
+    @functools.cached_property
+    def jumps(self) -> Mask:
+        """At which states velocities may have jumped, (m + 1,)."""
+        return jumped(self.run, self.t)
 
     @functools.cached_property
     def events(self) -> list[Array]:
@@ -139,7 +145,10 @@ class Pieces:
 
 
 def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[Any, float]]:
-    """The motion between kept states, the times of these, modes where they are known, and errors of positions."""
+    """The motion between kept states, the times of these, modes where they are known, and errors of positions.
+
+    No motion: of steps that say nothing of it, see `stepped`.
+    """
     dense: Any = run.dense
     method = run.method
     if isinstance(dense, Flights):
@@ -162,11 +171,7 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     if isinstance(dense, Bent):
         bent = polynomials.through(run.t, run.q, run.v, run.q[:-1, None][:, :0])
         return bent, run.t, None, (rounding, 0.0)
-    shares = np.arange(1, INNER + 1) / (INNER + 1)
-    times = run.t[:-1, None] + np.diff(run.t)[:, None] * shares
-    q, _ = run.at(times.ravel())
-    inner = q.reshape(len(times), INNER, -1)
-    return polynomials.through(run.t, run.q, run.v, inner), run.t, None, (rounding, 0.0)
+    return None, run.t, None, (rounding, 0.0)
 
 
 def by_tolerance(method: Any) -> bool:
@@ -188,14 +193,15 @@ def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:
         return np.asarray(stops)
     first, last = np.floor(t_span[0] / period), np.ceil(t_span[1] / period)
     turn = np.arange(first, last + 1.0) * period
-    return np.unique((turn[:, None] + np.append(0.0, stops)).ravel())
+    found = (turn[:, None] + np.unique(np.append(0.0, stops))).ravel()
+    return found if np.all(found[1:] > found[:-1]) else np.unique(found)
 
 
-def closed_from_the_start(run: Trajectory, t: Array) -> Mask:
+def closed_from_the_start(run: Trajectory, m: Model, t: Array) -> Mask:
     """Which contacts start closed and stay so up to their first event, without a line in the log, (m, n_c)."""
     closed = np.zeros((len(t) - 1, run.scene.n_c), dtype=bool)
     looks = [0, int(np.searchsorted(t, t[0], side="right"))]
-    g = np.array([run.scene.gap(t[k], run.q[k], run.v[k])[0] for k in looks])
+    g = gaps_at(m, t[looks], np.ascontiguousarray(run.q[looks]))
     size = max(1.0, float(np.max(np.abs(run.q))))
     for c in np.flatnonzero(np.all(np.abs(g) <= CLOSED_GAP * size, axis=0)):
         own = run.impacts[run.impacts.contact == c]

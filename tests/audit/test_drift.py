@@ -1,11 +1,13 @@
 """What steps of order two add up: the estimate against closed forms, and certificates that know it."""
 
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
 
-from benchmarks.audit.cases import KINDS
+from benchmarks.audit.__main__ import MISSED, PASSED, judge, reported
+from benchmarks.audit.cases import KINDS, Case, bell, blind, bump
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, simulate
 from lcpstep.audit import audit
@@ -64,3 +66,48 @@ def test_a_wall_within_the_error_is_listed():
     assert answer.windows
     assert "as small as the error" in answer.windows[0].why
     assert answer.certified < answer.flights
+
+
+def passage(motion, p, q0, v0):
+    """An oscillator of one turn a second above a table that rises once, as `benchmarks.audit` has it."""
+    turn, out = 2.0 * math.pi, np.zeros((1, 3))
+    size, phase = math.hypot(q0, v0 / turn), math.atan2(-v0 / turn, q0)
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=turn**2), q0=q0, v0=v0, t_span=(0.0, 10.0), p=np.array(p),
+        contacts=LinearContacts(G=1.0, offset=1.05, restitution=0.8, motion=motion),
+    )  # fmt: skip
+
+    def gap(t, q):
+        motion(t, None, None, p, out)
+        return float(q[0]) + 1.05 - float(out[0, 0])
+
+    near = p[2] - p[1], p[2] + p[1]
+    return Case("tangent", p[1], scene, gap, lambda t: (size * math.cos(turn * t + phase),), near)
+
+
+def near_miss():
+    """The exact motion reaches 1.1e-4 m below the table; that of order two is 1.4e-4 m too high by then."""
+    return passage(bump, [1.3488807, 5.6762387e-3, 7.02053127], 0.41912522, -5.70468262)
+
+
+def test_what_the_computed_motion_passes_by_is_listed_and_no_miss_of_the_audit():
+    found = Counter()
+    judge(near_miss(), Located, {"h": 1e-3}, found)
+    assert found[PASSED] == found["of these listed"] == 1
+    assert found[MISSED] == 0
+
+
+def test_order_four_takes_it():
+    found = Counter()
+    assert len(judge(near_miss(), Located, {"h": 1e-3, "order": 4}, found).impacts) > 0
+    assert found[PASSED] == found[MISSED] == 0
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_the_judge_tells_a_motion_that_has_flown_through(order):
+    case = passage(bell, [1.5, 1e-5, 7.0203], 0.41912522, -5.70468262)
+    with blind():
+        run = simulate(case.scene, Located(1e-3, order=order))
+    assert len(run.impacts) == 0
+    assert case.least_of(run) < -0.1
+    assert reported(case, run, audit(run))

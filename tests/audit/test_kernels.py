@@ -27,14 +27,14 @@ def sinus(t, q, v, p, out):
     out[0, 0], out[0, 1], out[0, 2] = s, p[1] * c, -p[1] * p[1] * s
 
 
-def shaken(rng):
-    """A random damped oscillator or free body under a force, above a table that may move."""
+def shaken(rng, forced=True):
+    """A random damped oscillator or free body, under a force or none, above a table that may move."""
     w, free = rng.uniform(1.0, 10.0), rng.random() < 0.3
     rate = 2.0 * math.pi * rng.uniform(0.2, 2.0)
     moves = rng.random() < 0.5
     force = Harmonic(
         constant=-rng.uniform(1.0, 5.0) if free else rng.uniform(-1.0, 1.0),
-        cosine=rng.uniform(-3.0, 3.0), sine=rng.uniform(-3.0, 3.0), omega=rate,
+        cosine=forced * rng.uniform(-3.0, 3.0), sine=forced * rng.uniform(-3.0, 3.0), omega=forced * rate,
     )  # fmt: skip
     system = LinearSystem(
         M=1.0,
@@ -72,6 +72,23 @@ def test_certified_pieces_are_open_and_are_most_of_them(method):
         assert np.mean(found[flying]) > 0.9
         for k in rng.choice(np.flatnonzero(found & flying), 12):
             assert least(run, k) > -1e-9
+
+
+def test_flights_on_springs_and_above_cams_that_are_certified_are_open():
+    """Bounds of motion under springs alone, and of gaps that part from their events above corners."""
+    rng = np.random.default_rng(7)
+    made = [shaken(rng, forced=False) for _ in range(8)]
+    made += [scenes.cam_follower(rpm=x, t_end=6.0) for x in rng.uniform(100.0, 900.0, 6)]
+    shares = []
+    for scene in made:
+        run = simulate(scene, EventDriven())
+        p = Pieces(run)
+        found = first.look(p)[:, 0]
+        flying = ~p.closed[:, 0] & (np.diff(p.t) > 1e-9)
+        shares.append(np.mean(found[flying]))
+        for k in rng.choice(np.flatnonzero(found & flying), 12):
+            assert least(run, k) > -1e-9
+    assert np.mean(shares) > 0.95
 
 
 @pytest.mark.parametrize("width", [1e-2, 1e-4])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Located, simulate
+from lcpstep import EventDriven, simulate
 from lcpstep.audit.pieces import moved
 from lcpstep.audit.polynomials import by_steps, derivatives, through
 from lcpstep.model import model
@@ -65,15 +65,6 @@ def test_dense_output_lies_within_the_bounds_of_its_polynomials():
         for i, box in enumerate(boxes):
             assert np.all((box.place.lo <= q[:, i]) & (q[:, i] <= box.place.hi))
             assert np.all((box.speed.lo - 1e-8 <= v[:, i]) & (v[:, i] <= box.speed.hi + 1e-8))
-
-
-def test_steps_of_order_four_are_met_to_their_order():
-    m = simulate(scenes.pendulum_stop(t_end=1.0), Located(1e-2, order=4))
-    motion, t, _, _ = moved(m, model(m.scene))
-    rows = np.flatnonzero(np.diff(t) > 0.0)
-    middle = 0.5 * (t[rows] + t[rows + 1])
-    q, _ = m.at(middle)
-    np.testing.assert_allclose(motion.windows(rows, middle, middle)[:, 0], q, rtol=0, atol=1e-11)
 
 
 def test_a_polynomial_is_found_through_its_values():
