@@ -49,4 +49,15 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("moreau",),
     ),
+    # Interrupted by impacts of the others, hops of the elastic contact as low as rounding rose again, hop by hop
+    "a body thrown into a corner of three walls, one of them elastic": (
+        Description(
+            M=((0.889, 0.228, 0.253), (0.228, 1.41, 0.319), (0.253, 0.319, 1.74)), q0=(0.0, 0.0, 0.0),
+            v0=(0.042089197239613185, -0.008110598907803175, -0.011619812416507239), t_span=(0.0, 20.055), h=0.0382,
+            G=((-0.0564, -0.903, 0.426), (0.289, 0.143, 0.947), (-0.777, 0.516, 0.36)), offset=(0.0, 0.0, 0.426),
+            restitution=(0.0, 1.0, 0.0), K=((0.0683, -0.0112, 0.0835), (-0.0112, 0.117, 0.0953),
+            (0.0835, 0.0953, 0.281)), constant=(0.0, 0.0, -17.1), omega=0.67, form=1, general=True, family='wedge',
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
 }  # fmt: skip

@@ -52,6 +52,16 @@ def test_a_contact_that_opens_at_the_start_does_not_open_before_it():
     assert log.time[0] == 64.0
 
 
+def test_hops_that_others_interrupt_end():
+    """They had gone on for ever, at 1e-8 m/s, from gaps that rounding had made larger."""
+    d = RECENTLY["a body thrown into a corner of three walls, one of them elastic"][0]
+    motion = run(d, "event-driven").motion
+    assert motion.status == Status.DONE
+    assert abs(motion.v[-1]).max() < 1e-40
+    speeds = motion.impacts.after[(motion.impacts.contact == 1) & (motion.impacts.kind == Kind.IMPACT)]
+    assert speeds[-1] < 1e-10
+
+
 def judge(numbers, seed, methods, share):
     """Findings of new classes, each with its scene."""
     scenes = ((k, draw(seed, k)) for k in numbers)
