@@ -13,7 +13,8 @@ from benchmarks.judge.runs import REFERENCE, Run, run
 
 SWINGS = 500  # states of which it is asked how fast joints let them swing
 LOOSE = "event-driven-loose"  # knows how fast a motion is where the reference takes too long
-BROKEN = ("NOT_FINITE", "NEWTON_FAILED")  # endings of runs that may have grown before they say so
+# Endings of runs that may have grown before they say so
+BROKEN = ("NOT_FINITE", "NEWTON_FAILED", "PROJECTION_FAILED")
 
 
 def breaks_down(d: Description, r: Run) -> float:

@@ -10,6 +10,7 @@ from benchmarks.judge.breaking import breaks_down
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
+from tests.judge.kept_recently import RECENTLY
 
 # A light body beside a heavy one: thrown off its wall, its mass turns by many radians in a step
 THROWN = Description(
@@ -42,3 +43,17 @@ def test_what_grows_before_is_found(thrown, monkeypatch):
 def test_a_run_that_says_nothing_is_judged_to_its_end(thrown):
     silent = replace(thrown, status="DONE", motion=replace(thrown.motion, t=thrown.motion.t * (3.0 / 0.7126)))
     assert "energy gained" in {x.kind for x in check(THROWN, silent)}
+
+
+def test_a_run_that_leaves_its_joints_is_judged_up_to_where_they_swing_too_fast(monkeypatch):
+    """A heavy body turns about within a millisecond, steps are seven long; before that it gains nothing."""
+    d, _ = RECENTLY["a joint that hands the energy of a heavy body to light ones within a millisecond"]
+    r = run(d, "located")
+    assert r.status == "PROJECTION_FAILED"
+    assert checks.gain(d, r) > 20.0
+    assert 0.08 < breaks_down(d, r) < 0.1
+    assert "energy gained" not in {x.kind for x in check(d, r)}
+    m = r.motion
+    faster = replace(r, motion=replace(m, v=m.v * np.where(m.t < 0.05, 1.0 + m.t / 0.05, 2.0)[:, None]))
+    monkeypatch.setattr(checks, "run", lambda *_: faster)
+    assert "energy gained" in {x.kind for x in check(d, faster)}
