@@ -139,11 +139,20 @@ def simulate(
         from lcpstep.model import culprit
 
         raise _raised(run, culprit(scene, (), run.q, run.v))
-    _compare_derivatives(run)
-    _warn_of_fast_gaps(run)
-    doubt = _no_room(run) or too_deep(run) or unresolved(run)
-    run = replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
+    run = _looked_over(run)
     return _with_error(run, wide, kept, seconds) if error else run
+
+
+def _looked_over(run: Trajectory) -> Trajectory:
+    """The run with its doubt, if there is one; an interrupt leaves it as it is, and its message says so."""
+    try:
+        _compare_derivatives(run)
+        _warn_of_fast_gaps(run)
+        doubt = _no_room(run) or too_deep(run) or unresolved(run)
+    except KeyboardInterrupt:
+        unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
+        raise SimulationInterrupted(lambda: unseen) from None
+    return replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
 
 
 def _can_tell_errors(scene: Any, method: Method) -> None:
@@ -204,7 +213,7 @@ def _warn_of_fast_gaps(run: Trajectory) -> None:
 
     words = fast_gap(run)
     if words:
-        warnings.warn(f"{run.scene.name!r}: {words}", FastTurn, stacklevel=3)
+        warnings.warn(f"{run.scene.name!r}: {words}", FastTurn, stacklevel=4)
 
 
 def _raised(run: Any, message: str) -> SimulationError:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, cli, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, cli, simulate, simulation
 from lcpstep.cli import interrupt
 from lcpstep.pace import Pace
 from lcpstep.recording import Recorder
@@ -65,6 +65,25 @@ def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, m
     with pytest.raises(SimulationInterrupted) as caught:
         simulate(scene, method)
     np.testing.assert_array_equal(caught.value.trajectory.t, whole.t)
+
+
+@pytest.mark.parametrize(
+    "look", ["_compare_derivatives", "_warn_of_fast_gaps", "_no_room", "too_deep", "unresolved"]
+)
+def test_an_interrupt_while_a_finished_run_is_looked_over_loses_nothing(look, monkeypatch):
+    scene = scenes.double_pendulum(t_end=0.1)
+    whole = simulate(scene, EventDriven())
+
+    def hit(run):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(simulation, look, hit)
+    with pytest.raises(SimulationInterrupted) as caught:
+        simulate(scene, EventDriven())
+    kept = caught.value.trajectory
+    np.testing.assert_array_equal(kept.q, whole.q)
+    assert kept.status == Status.DONE
+    assert "interrupted before" in kept.message
 
 
 WAYS = {

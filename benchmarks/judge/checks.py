@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from benchmarks.judge import physics
+from benchmarks.judge.breaking import breaks_down, judged_until, up_to
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import CPU_EACH, REFERENCE, Finding, Run, run
-from benchmarks.judge.scales import EPS
+from benchmarks.judge.runs import CPU_EACH, Finding, Run, run
+from benchmarks.judge.scales import EPS, drift
 from benchmarks.judge.told import whole
 from lcpstep.trajectory import Kind
 
 CPU = 0.5  # seconds of a run, besides CPU_EACH of each of its steps and events
 TURNS, SECONDS = 10**6, 0.06  # of a loop in Python: what it takes where the bounds are meant for
 ROUNDING = 1e-9  # of the size of what is compared
-SWINGS = 500  # states of which it is asked how fast joints let them swing
 EXACT = ("event-driven", "located-exact")
 
 
@@ -32,43 +31,6 @@ def finite(d: Description, r: Run) -> Iterator[Finding]:
             yield Finding(r.method, "not finite", f"{name} in {int(np.sum(bad))} entries, status {r.status}")
     if r.status == "NOT_FINITE" and breaks_down(d, r) == np.inf:
         yield Finding(r.method, "not finite", r.text)
-
-
-def breaks_down(d: Description, r: Run) -> float:
-    """When an explicit method goes through a bend in less than a step, which it says by NOT_FINITE; or never (inf).
-
-    Held at a speed v on an obstacle of curvature k / |G|, a body turns at w = k v / |G|, and explicit Runge-Kutta
-    methods of order p <= 4 are unbounded at w h > 2.8: no order helps where the normal turns by so much in a step.
-    How fast the motion is the reference says; w h > 1 is asked, for the speed rises while it turns.
-    """
-    if not (d.curved or any(d.joint_bend)) or r.tolerance > 0.0:
-        return np.inf
-    reference = run(d, REFERENCE)
-    if not reference.usable:
-        return np.inf
-    return min(turns(d, reference.motion), swings(d, reference.motion))
-
-
-def turns(d: Description, m: Any) -> float:
-    """When a contact that is pressed turns by more than a radian in a step."""
-    if not d.curved:
-        return np.inf
-    rows = np.linalg.norm(physics.jacobians(d, m.q), axis=-1)
-    by = np.abs(d.row("bend", d.contacts)) * np.linalg.norm(m.v, axis=-1)[:, None] * d.h
-    rests = (m.impulse > 0.0).astype(bool)
-    return float(np.min(m.t[np.any(rests & (by > rows), axis=1)], initial=np.inf))
-
-
-def swings(d: Description, m: Any) -> float:
-    """When what joints carry swings by more than a radian in a step, as a light body on which a heavy one hangs."""
-    if not any(d.joint_bend):
-        return np.inf
-    long = np.flatnonzero(np.diff(m.t) > 0.0)
-    for k in long[:: 1 + len(long) // SWINGS]:
-        forces = m.joint_impulse[k + 1] / (m.t[k + 1] - m.t[k])
-        if physics.swinging(d, m.q[k], forces) * d.h > 1.0:
-            return float(m.t[k])
-    return np.inf
 
 
 def reaches_the_end(d: Description, r: Run) -> Iterator[Finding]:
@@ -148,12 +110,7 @@ def open_impulses(d: Description, r: Run, rounding: float) -> Iterator[Finding]:
     np.maximum.at(fast, m.impacts.contact, np.abs(m.impacts.before))
     reach = fast * np.max(h)
     allowed = ROUNDING * sizes.length + 1e3 * EPS * sizes.place + 10.0 * allowed_gap(d, r, reach)
-    G = physics.jacobians(d, m.q[0])
-    mobility = np.einsum("ci,ij,cj->c", G, np.linalg.inv(physics.masses(d, m.q[0])), G)
-    allowed = allowed + 1e2 * EPS * mobility * np.max(m.impulse) * np.max(
-        h
-    )  # gaps move by rounding of impulses
-    bad = (m.impulse[1:] > 1e3 * rounding) & (low > allowed)
+    bad = (m.impulse[1:] > 1e3 * rounding) & (low > allowed + drift(d, m))
     if np.any(bad):
         k, c = np.argwhere(bad)[0]
         p, gap = m.impulse[k + 1, c], low[k, c]
@@ -170,11 +127,11 @@ def allowed_gap(d: Description, r: Run, reach: Any) -> Any:
 def penetration(d: Description, r: Run) -> Iterator[Finding]:
     """Nothing lies within an obstacle, but for what the order of the method explains.
 
-    Of a run that says NOT_FINITE the states are asked up to where it breaks down: those after grow to what it says.
+    Of a run that says itself that it breaks down the states are asked up to there.
     """
     if not d.contacts:
         return
-    until = breaks_down(d, r) if r.status == "NOT_FINITE" else np.inf
+    until = judged_until(d, r)
     r = up_to(r, until)
     deep, sizes = depth(d, r), r.scales(d)
     rounding = ROUNDING * sizes.length + 1e3 * EPS * float(np.max(sizes.place))
@@ -192,16 +149,6 @@ def penetration(d: Description, r: Run) -> Iterator[Finding]:
         if finest.usable and depth(d, finest) > 0.7 * deep:
             text = f"{words}, {depth(d, finer):.3g} and {depth(d, finest):.3g} with a quarter and a 16th of the step"
             yield Finding(r.method, "penetration", text)
-
-
-def up_to(r: Run, until: float) -> Run:
-    """A run without its states after a time."""
-    if until == np.inf or not r.usable:
-        return r
-    there = r.motion.t <= until
-    return replace(
-        r, motion=replace(r.motion, **{k: getattr(r.motion, k)[there] for k in ("t", "q", "v", "impulse")})
-    )
 
 
 def within_a_step(d: Description, r: Run, rounding: float) -> bool:
@@ -224,6 +171,8 @@ def energy(d: Description, r: Run) -> Iterator[Finding]:
     """Nothing that is not fed gains energy, but for what the order of the method explains."""
     if physics.fed(d):
         return
+    until = judged_until(d, r)
+    r = up_to(r, until)
     gained, sizes = gain(d, r), r.scales(d)
     events = r.motion.counts.events + r.motion.counts.steps
     rounding = 1e-12 * sizes.energies + 1e-13 * events * sizes.energy
@@ -233,9 +182,9 @@ def energy(d: Description, r: Run) -> Iterator[Finding]:
     if r.method in EXACT:
         yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J")
         return
-    finer = run(d, r.method, 0.25)
+    finer = up_to(run(d, r.method, 0.25), until)
     if gained > 1e-3 * sizes.energy and finer.usable and gain(d, finer) > 0.7 * gained:
-        finest, most = run(d, r.method, 0.0625), gain(d, finer)
+        finest, most = up_to(run(d, r.method, 0.0625), until), gain(d, finer)
         if finest.usable and (most > sizes.energy or gain(d, finest) > 0.7 * most):
             more = f"{most:.3g} and {gain(d, finest):.3g} with a quarter and a 16th of the step"
             yield Finding(r.method, "energy gained", f"{gained:.3g} of {sizes.energy:.3g} J, {more}")

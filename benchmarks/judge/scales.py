@@ -12,6 +12,7 @@ from benchmarks.judge.describe import Description
 from benchmarks.judge.start import shortest
 
 EPS = 2.0**-52
+DRIFT, WITHIN = 4.0, 1e2  # times the rounding of what impulses give to gaps: over all steps, and within one
 STILL = 1e-6  # of the length that forces would move it by: the size of a motion that stands still
 
 
@@ -65,3 +66,15 @@ def scales(d: Description, q: Any, v: Any) -> Scales:
         energies=float(np.max(kinetic) + terms + force @ (inverse @ force) * time**2),
         impulse=float(np.max(mass @ fast) + np.max(force) * time),
     )  # fmt: skip
+
+
+def drift(d: Description, m: Any) -> Any:
+    """How far rounding of impulses has moved gaps by the end of each kept step, (kept - 1, contacts).
+
+    What rests is struck alike in every step: speeds are what impulses leave of each other, the rounding of that sum
+    has the same sign each time, and gaps follow its sum over the steps.
+    """
+    G, h = np.abs(physics.jacobians(d, m.q[0])), np.diff(m.t)[:, None]
+    mobility = G @ np.abs(np.linalg.inv(physics.masses(d, m.q[0]))) @ G.T
+    single = np.diag(mobility) * np.max(m.impulse, initial=0.0) * np.max(h)
+    return EPS * (WITHIN * single + DRIFT * np.cumsum(h * (m.impulse[1:] @ mobility), axis=0))

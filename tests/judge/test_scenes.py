@@ -70,6 +70,16 @@ def test_walls_that_close_upon_a_body_end_every_run():
     assert exact.motion.t[-1] == pytest.approx(closed, abs=5e-5)
 
 
+def test_hops_that_others_interrupt_end():
+    """They had gone on for ever, at 1e-8 m/s, from gaps that rounding had made larger."""
+    d = RECENTLY["a body thrown into a corner of three walls, one of them elastic"][0]
+    motion = run(d, "event-driven").motion
+    assert motion.status == Status.DONE
+    assert abs(motion.v[-1]).max() < 1e-40
+    speeds = motion.impacts.after[(motion.impacts.contact == 1) & (motion.impacts.kind == Kind.IMPACT)]
+    assert speeds[-1] < 1e-10
+
+
 def judge(numbers, seed, methods, share):
     """Findings of new classes, each with its scene."""
     scenes = ((k, draw(seed, k)) for k in numbers)

@@ -9,7 +9,7 @@ from lcpstep.kernels.quadratic cimport first_zero
 from lcpstep.kernels.vectors cimport largest
 from lcpstep.pointers cimport abs, inf, max, min, nan
 
-cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, STEADY
+cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, FAINT, STEADY
 
 cdef void find_landings(Mechanism s, double h) noexcept nogil
 @cython.locals(low=bint)
@@ -24,7 +24,8 @@ cdef (double, double, bint) follow(Mechanism s, Py_ssize_t c, double tau) noexce
 cdef double speed_at(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 cdef double change_of_curve(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 cdef double eighth_power(double d0, double d1, double d2, double d3, double most) noexcept nogil
+cdef void interrupt(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 @cython.locals(f=double, u=double, _=bint)
-cdef void reach_corner(Mechanism s, double h) noexcept nogil
+cdef void reach_end(Mechanism s, double h) noexcept nogil
 @cython.locals(steady=bint)
 cdef void carry(Mechanism s) noexcept nogil

@@ -4,7 +4,9 @@
 
 A hop as low as the rounding of positions is lost in their difference, and with it the end of a chattering sequence,
 which is where the hops before put it. So the landing of a hop that starts on the surface is sought in the integrals;
-a low one that crosses a corner goes on beyond it from the gap and the speed that they give there.
+a low one that crosses a corner goes on beyond it from the gap and the speed that they give there. So does one hardly
+higher than that rounding beyond the end of a step, or what happens to another contact: from a gap that rounding has
+made larger an elastic one would gain energy, hop by hop, and never come to rest.
 """
 
 from __future__ import annotations
@@ -36,6 +38,7 @@ REMAINDER = 331776.0 / (9.0 * 1625702400.0)
 LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
+FAINT = 1e-12  # the same where no corner is: of lower ones it tells no more than four digits
 STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
 
 
@@ -74,11 +77,12 @@ def hop_time(s: Mechanism, c: int, g: float, u: float, alpha: float) -> float:
 
 
 def is_low(s: Mechanism, c: int, h: float) -> bool:
-    """Whether a hop that is pressed stays low up to the corner at which the step of size h ends."""
-    if h > SHORT * s.scan or h < s.high - s.t0:
+    """Whether a hop that is pressed stays low up to the end of the step of size h, at a corner or not."""
+    if h > SHORT * s.scan:
         return False
+    low = LOW if h >= s.high - s.t0 else FAINT
     highest = s.start.gap[c] + h * (abs(s.start.speed[c]) + 0.5 * h * abs(s.start.curve[c]))
-    return highest <= LOW * largest(s.q0, 0.0, s.n_q)
+    return highest <= low * largest(s.q0, 0.0, s.n_q)
 
 
 def hop_end(s: Mechanism, c: int, guess: float, longest: float) -> float:
@@ -151,8 +155,16 @@ def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> flo
     return most * pow(ratio, 8.0)
 
 
-def reach_corner(s: Mechanism, h: float) -> None:
-    """Gaps and speeds of the low hops at the corner that ends the step, into `right`."""
+def interrupt(s: Mechanism, c: int, tau: float) -> None:
+    """Something happens to contact c at tau: low hops of others that would land later are followed up to there."""
+    for d in range(s.n_c):
+        if d != c and s.contact.lands[d] > tau and is_low(s, d, tau):
+            s.contact.lands[d] = NEVER
+    reach_end(s, tau)
+
+
+def reach_end(s: Mechanism, h: float) -> None:
+    """Gaps and speeds of the low hops at the end of the step, into `right`."""
     for c in range(s.n_c):
         if s.contact.lands[c] == NEVER:
             f, u, _ = follow(s, c, h)
@@ -160,7 +172,7 @@ def reach_corner(s: Mechanism, h: float) -> None:
 
 
 def carry(s: Mechanism) -> None:
-    """Beyond the corner low hops go on from what `reach_corner` has found, unless the surface jumps there."""
+    """Beyond the end of the step low hops go on from what `reach_end` has found, unless the surface jumps there."""
     for c in range(s.n_c):
         u = s.right.speed[c]
         steady = abs(s.contact.speed[c] - u) <= STEADY * speed_noise(s, c) / NOISE

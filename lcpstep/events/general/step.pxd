@@ -3,7 +3,7 @@ from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPE
 from lcpstep.events.general.equations cimport measure, measure_on
 from lcpstep.events.general.forces cimport contact_forces
 from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project
-from lcpstep.events.general.hops cimport carry, find_landings, reach_corner, shortest_hop, speed_at
+from lcpstep.events.general.hops cimport carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
 from lcpstep.events.general.keep cimport keep, keep_wanted
 from lcpstep.events.general.motion cimport arrive, press_between, rebase
 from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE, SWITCH

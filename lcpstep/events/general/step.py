@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_again, note, parted, project
-    from lcpstep.events.general.hops import carry, find_landings, reach_corner, shortest_hop, speed_at
+    from lcpstep.events.general.hops import carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import arrive, press_between, rebase
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
@@ -78,7 +78,7 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
     """Take over the step that has just been made, which ends early if an event was found in it."""
     border, h, tau, end = min(s.t_end, s.high), s.length, s.found, s.seen_to
     if tau == NONE:
-        reach_corner(s, h)
+        reach_end(s, h)
         t_next = border if h >= border - s.t0 else s.after(h)
         take_over(s, record, tally, t_next, h)
         return pass_end(s, record, tally)
@@ -91,15 +91,18 @@ def complete(s: Mechanism, record: Record, tally: Tally) -> int:
         tau = shorten(s, tau)
     if kind == LANDS:
         u = speed_at(s, c, tau)
+    interrupt(s, c, tau)
     take_over(s, record, tally, min(s.after(tau), border), tau)
     if not measure_on(s, s.t0):
         return NOT_FINITE
     if kind == OPENS:
+        carry(s)
         s.next = OBEY
         return DONE
     s.next = JUMP
     if not arrive(s, c):
         return NO_SURFACE
+    carry(s)
     if kind == LANDS:
         s.contact.speed[c] = min(u, 0.0)
     elif kind == NEVER_LEFT:
@@ -112,7 +115,7 @@ def complete_to_guard(s: Mechanism, record: Record, tally: Tally) -> int:
     tau = reach_guard(s)
     if tau > 0.0:
         make_dense(s, tau)
-        reach_corner(s, tau)
+        reach_end(s, tau)
     take_over(s, record, tally, min(s.after(tau), min(s.t_end, s.high)), tau)
     if not measure_on(s, s.t0):
         return NOT_FINITE

@@ -15,6 +15,7 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport (
     AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER, idle, release, stick, turn,
 )
+from lcpstep.stepping.pieces.times cimport driven_by
 
 cdef double SHORT, SAME_SPEED, SMALL
 cdef Py_ssize_t IN_A_ROW
@@ -27,7 +28,8 @@ cdef bint at_this_instant(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t choose_connected(Work w, Py_ssize_t n_s) noexcept nogil
 cdef void note_hit(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 @cython.locals(ends_in_time=bint)
-cdef bint closes(Model m, Plan plan, Work w, Py_ssize_t c, bint alone) noexcept nogil
+cdef bint closes(Model m, Plan plan, Work w, Py_ssize_t c, bint alone, double t) noexcept nogil
+cdef bint unresolved(Plan plan, Work w, Py_ssize_t c, double hop, double t) noexcept nogil
 cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
 @cython.locals(touches=bint)
 cdef void push(Plan plan, Work w, Py_ssize_t d, double p) noexcept nogil

@@ -44,6 +44,7 @@ if not cython.compiled:
         stick,
         turn,
     )
+    from lcpstep.stepping.pieces.times import driven_by
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
@@ -70,7 +71,7 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
         if w.status[c] == OPEN:
             if first != CORNER:
                 note_hit(plan, w, c)
-                w.plastic[c] = 1 if closes(m, plan, w, c, n_s == 1) else 0
+                w.plastic[c] = 1 if closes(m, plan, w, c, n_s == 1, t) else 0
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
         elif first == CORNER:
@@ -169,7 +170,7 @@ def note_hit(plan: Plan, w: Work, c: int) -> None:
     w.last[c] = w.sigma
 
 
-def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
+def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
     """Whether the contact that fires is closed: its next hops are too short to be followed."""
     r = m.restitution[c]
     if r == 1.0 or r == 0.0:
@@ -180,12 +181,23 @@ def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool) -> bool:
     if w.half[c] >= 0.0:
         return False
     hop = -r * w.rate[c] / -w.half[c]
+    if (not alone or hop > w.end - w.sigma) and unresolved(plan, w, c, hop, t):
+        return True
     if not alone:
         return hop < SHORT_TOGETHER * plan.h
     ends_in_time = hop / (1.0 - r) <= w.end - w.sigma
     return (
         ends_in_time and (hop < SHORT * plan.h or w.hits[c] > plan.many)
     ) or hop < COLLAPSE * SHORT * plan.h
+
+
+def unresolved(plan: Plan, w: Work, c: int, hop: float, t: float) -> bool:
+    """Whether a hop is no higher than its obstacle goes in what time t is rounded by.
+
+    By events of closed contacts beside it, and by ends of steps, it is cut into pieces, each of which begins with a
+    gap that is wrong by so much: far from time zero such hops may be thrown up again for ever.
+    """
+    return not plan.exact and 0.25 * hop * hop * -w.half[c] <= driven_by(w, c, t)
 
 
 def jump(plan: Plan, w: Work, n_s: int) -> float:
@@ -248,7 +260,7 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
     if w.plastic[c] == 1:
         T = 0.0
         if w.half[c] < 0.0 and w.close_hits[c] < IN_A_ROW:
-            T = r * before / w.half[c] / (1.0 - r)
+            T = min(r * before / w.half[c] / (1.0 - r), w.end - w.sigma)
             p += -2.0 * w.half[c] * T / w.W[c * w.n_c + c]
         record.note(t + T, c, before, 0.0, p, ACCUMULATION)
         stick(w, record, c, t + T)

@@ -16,7 +16,7 @@ from lcpstep.stepping.pieces.smooth cimport (
 )
 from lcpstep.stepping.pieces.state cimport Plan, Work
 from lcpstep.stepping.pieces.switches cimport stick
-from lcpstep.stepping.pieces.times cimport within
+from lcpstep.stepping.pieces.times cimport driven_by, within
 
 cdef Py_ssize_t POLISHING
 

@@ -41,7 +41,7 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import stick
-    from lcpstep.stepping.pieces.times import within
+    from lcpstep.stepping.pieces.times import driven_by, within
 
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 
@@ -156,7 +156,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
     for _ in range(POLISHING):
         look(m, plan, w, t, tau)
         u = w.rate[c] + 2.0 * tau * w.half[c]
-        if abs(w.gap_try[c]) <= 0.125 * plan.slack:
+        if abs(w.gap_try[c]) <= max(0.125 * plan.slack, driven_by(w, c, t)):
             return c, tau
         if w.gap_try[c] > 0.0:
             low = tau

@@ -11,5 +11,9 @@ cdef inline bint at_corner(Plan plan, Work w, double t) noexcept nogil:
     return not plan.plain and t >= w.high - 2.0 * plan.margin
 
 
+cdef inline double driven_by(Work w, Py_ssize_t c, double t) noexcept nogil:
+    return 4.0 * EPS * abs(t * w.gap_t[c])
+
+
 cdef inline double just_after(Plan plan, double t) noexcept nogil:
     return t + LATE * plan.h + 4.0 * EPS * abs(t)

@@ -17,6 +17,11 @@ def at_corner(plan: Plan, w: Work, t: float) -> bool:
     return bool(not plan.plain and t >= w.high - 2.0 * plan.margin)
 
 
+def driven_by(w: Work, c: int, t: float) -> float:
+    """How far the obstacle of contact c goes in what time t is rounded by, and a phase that callbacks make of it."""
+    return float(4.0 * EPS * abs(t * w.gap_t[c]))
+
+
 def just_after(plan: Plan, t: float) -> float:
     """Up to where times asked for are the end t of a step, but for rounding."""
     return float(t + LATE * plan.h + 4.0 * EPS * abs(t))
