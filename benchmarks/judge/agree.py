@@ -22,6 +22,7 @@ from benchmarks.judge.runs import WAYS, Finding, Run, run
 from benchmarks.judge.scales import EPS
 from benchmarks.judge.start import along, joined
 from benchmarks.judge.told import look_up, looks, told_until
+from lcpstep.trajectory import Kind
 
 SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
 FACTOR, NOISE = 30.0, 100.0

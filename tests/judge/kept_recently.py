@@ -44,6 +44,7 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
             force_omega=5.05, amplitude=(-0.000815, 0.00163), phase=(0.0, 2.27), omega=12.3, form=1, family='slit',
         ),
         ("moreau",),
+    ),
     # What the end of chattering owed was paid back by a negative impulse of the force that followed
     "a ball whose first hops are below the tolerance, on a wall that moves": (
         Description(
