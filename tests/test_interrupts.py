@@ -166,6 +166,42 @@ def test_an_interrupt_while_modules_are_loaded_is_answered_without_a_traceback(a
     assert said(err, "start again with") == "lcpstep hard --full"
 
 
+FINALIZED = """
+import argparse, os, signal, sys, time, weakref
+from lcpstep.cli import interrupt
+
+class Thing:
+    pass
+
+def struck():
+    os.kill(os.getpid(), signal.SIGINT)
+    time.sleep(0.01)
+
+def main():
+    thing = Thing()
+    weakref.finalize(thing, struck)
+    try:
+        del thing
+        time.sleep(0.5)
+    except KeyboardInterrupt:
+        print("heard")
+        return interrupt.report()
+
+interrupt.begin(argparse.Namespace(), [])
+sys.exit(interrupt.ending(main))
+"""
+
+
+def test_an_interrupt_in_a_finalizer_is_raised_when_that_is_over():
+    """Python drops it there, and prints a traceback; the command was ended from outside, whatever it had to save."""
+    done = subprocess.run(
+        [sys.executable, "-c", FINALIZED], env=environment(), capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == interrupt.INTERRUPTED
+    assert done.stdout == "heard\n"
+    assert "Traceback" not in done.stderr
+
+
 def said(err, what):
     """What a command says after these words."""
     return next(

@@ -8,6 +8,7 @@ it at once, whatever it is about to save.
 
 from __future__ import annotations
 
+import _thread
 import argparse
 import os
 import shlex
@@ -27,6 +28,7 @@ INTERRUPTED = 130  # exit status
 PATIENCE = 0.6  # until the interrupt has ended what was under way [s]
 COLLECTING = 10.0  # until what was computed has been put together, where it has ended it [s]
 ENDING = 0.3  # of the interpreter, when the command has ended [s]
+LATER = 0.02  # is an interrupt raised again that was raised where nothing hears it [s]
 _answered, _over = threading.Event(), threading.Event()
 _options = argparse.Namespace()
 _written: list[Path] = []
@@ -86,6 +88,7 @@ def ending(main: Callable[[], int]) -> int:
     writer.setblocking(False)
     signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
     signal.signal(signal.SIGINT, _first)
+    sys.unraisablehook = _unheard
     threading.Thread(target=_attend, args=(reader, writer), daemon=True).start()
     status = main()
     _over.set()
@@ -96,6 +99,17 @@ def _first(number: int, frame: Any) -> None:
     """The first interrupt is raised, as Python does it; the second finds another answer."""
     signal.signal(number, _second)
     raise KeyboardInterrupt
+
+
+def _unheard(raised: Any) -> None:
+    """Python drops what is raised in a finalizer, with a traceback: an interrupt is raised again after it."""
+    if not issubclass(raised.exc_type, KeyboardInterrupt):
+        sys.__unraisablehook__(raised)
+        return
+    signal.signal(signal.SIGINT, _first)
+    again = threading.Timer(LATER, _thread.interrupt_main)
+    again.daemon = True
+    again.start()
 
 
 def _second(number: int, frame: Any) -> None:
