@@ -17,6 +17,7 @@ from unittest.mock import patch
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven
@@ -67,12 +68,7 @@ def computed(run: Trajectory, times: Array) -> Array:
     """Positions between kept states; of steps by cubics: `Trajectory.at` makes them again, and looks for events."""
     if isinstance(run.method, EventDriven):
         return run.at(times)[0]
-    k = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 2)
-    h = (run.t[k + 1] - run.t[k])[:, None]
-    s = (times - run.t[k])[:, None] / h
-    moved, start, end = run.q[k + 1] - run.q[k], h * run.v[k], h * run.v[k + 1]
-    bend = 3.0 * moved - 2.0 * start - end
-    return np.asarray(run.q[k] + s * (start + s * (bend + s * (start + end - 2.0 * moved))))
+    return np.asarray(CubicHermiteSpline(run.t, run.q, run.v)(times))
 
 
 def bell(t: float, q: Any, v: Any, p: Any, out: Any) -> None:

@@ -75,8 +75,12 @@ def rates(d: Description, t: Any, q: Any, v: Any) -> Any:
 def masses(d: Description, q: Any) -> Any:
     """M(q) (..., n, n)."""
     b = d.row("b")
-    factor = d.spread * (1.0 + 0.5 * np.sin(q @ b))
-    return d.matrix("M") + np.asarray(factor)[..., None, None] * np.outer(b, b)
+    return d.matrix("M") + np.asarray(along_b(d, q))[..., None, None] * np.outer(b, b)
+
+
+def along_b(d: Description, q: Any) -> Any:
+    """The part of M(q) that turns with the place, m in m(q) b b^T, (...)."""
+    return d.spread * (1.0 + 0.5 * np.sin(q @ d.row("b")))
 
 
 def forces(d: Description, t: Any, q: Any, v: Any) -> Any:
@@ -92,8 +96,7 @@ def forces(d: Description, t: Any, q: Any, v: Any) -> Any:
 def energy(d: Description, q: Any, v: Any) -> tuple[Any, Any]:
     """Kinetic energy, and potential energy of constant forces, springs and pendulum, each (...)."""
     b = d.row("b")
-    along = d.spread * (1.0 + 0.5 * np.sin(q @ b)) * (v @ b) ** 2
-    kinetic = 0.5 * (np.sum(v @ d.matrix("M") * v, axis=-1) + along)
+    kinetic = 0.5 * (np.sum(v @ d.matrix("M") * v, axis=-1) + along_b(d, q) * (v @ b) ** 2)
     springs = 0.5 * np.sum(q @ d.matrix("K") * q, axis=-1)
     return kinetic, springs - q @ d.row("constant") - d.pendulum * np.cos(q @ b)
 

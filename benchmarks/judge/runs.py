@@ -7,6 +7,7 @@ import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -159,12 +160,10 @@ class Run:
             object.__setattr__(self, "_scales", scales(d, self.motion.q, self.motion.v))
         return self._scales  # type: ignore[attr-defined, no-any-return]
 
-    @property
+    @cached_property
     def _known(self) -> dict[bytes, Any]:
         """States by the times that they were asked for at."""
-        if not hasattr(self, "_asked"):
-            object.__setattr__(self, "_asked", {})
-        return self._asked  # type: ignore[attr-defined, no-any-return]
+        return {}
 
     def at(self, times: Any) -> Any:
         """States at an array of times, as `motion.at` tells them; what was asked for before is remembered."""

@@ -17,7 +17,7 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.audit.limits import ERRORS, TIMES
+from lcpstep.audit.limits import ERRORS, SLACK, TIMES
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
@@ -26,8 +26,6 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, inf, max, min, nan
 
 DEEPEST, MOST = 28, 256  # halvings of a window in a row, and windows that one may become
-
-SLACK = 1e-13  # of the numbers that a bound is made of
 
 
 class Gap:

@@ -68,5 +68,9 @@ def frequency(run: Trajectory, m: Model, size: Array, second: Array) -> Array:
     h = np.diff(run.t)[:, None]
     with np.errstate(all="ignore"):
         bent = np.sum(np.where(h > 0.0, second / h, 0.0), axis=0)
-        squares = bent / size
-    return np.sqrt(np.where(np.isfinite(squares), squares, 0.0))
+        return np.sqrt(finite(bent / size))
+
+
+def finite(x: Array) -> Array:
+    """Zero where it is no number."""
+    return np.where(np.isfinite(x), x, 0.0)

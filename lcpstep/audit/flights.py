@@ -6,7 +6,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.audit.limits import ERRORS, PRESSED, UNKNOWN
+from lcpstep.audit.limits import ERRORS, PRESSED, SLACK, UNKNOWN
 from lcpstep.audit.limits import ROUNDED as ROUNDING
 
 if not cython.compiled:
@@ -19,7 +19,6 @@ if not cython.compiled:
     from lcpstep.events.flight.motion import Flight, leave_from
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
-SLACK = 1e-13  # of the numbers that a bound is made of
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
 HALF_TURN = 3.0  # rad, and less than that

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.audit.drift import begins, frequency
+from lcpstep.audit.drift import begins, finite, frequency
 from lcpstep.audit.polynomials import Polynomials, basis
 from lcpstep.audit.quadrature import errors
 from lcpstep.audit.sums import add_up, changes
@@ -97,11 +97,6 @@ class Nodes:
         self.a = a
 
 
-def finite(x: Array) -> Array:
-    """Zero where it is no number."""
-    return np.where(np.isfinite(x), x, 0.0)
-
-
 def by_rest(
     run: Trajectory, m: Model, motion: Polynomials, closed: Mask, k: Any
 ) -> tuple[Array, Array, Array]:
@@ -143,7 +138,12 @@ def jumped(run: Trajectory, t: Array) -> Mask:
     times: Any = np.array(run.impacts["time"], dtype=float)[
         functools.reduce(np.logical_or, (kinds == x for x in JUMPS))
     ]
+    return among(times, t)
+
+
+def among(times: Array, t: Array) -> Mask:
+    """Which of the times t (m,) are times of events, (m,); both are in their order."""
     if not len(times):
         return np.zeros(len(t), dtype=bool)
-    at = np.minimum(np.searchsorted(times, t), len(times) - 1)  # both are in the order of time
+    at = np.minimum(np.searchsorted(times, t), len(times) - 1)
     return np.asarray(times[at] == t)

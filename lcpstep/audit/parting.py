@@ -8,6 +8,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.audit.limits import ROUNDED as ROUNDING
+from lcpstep.audit.limits import SLACK
 
 if not cython.compiled:
     from math import sqrt
@@ -17,7 +18,6 @@ if not cython.compiled:
     from lcpstep.events.flight.motion import Flight
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
-SLACK = 1e-13  # of the numbers that a bound is made of
 DEEP = 4  # halvings in a row of windows that are above the obstacle
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.audit.missed import among
 from lcpstep.audit.polynomials import Polynomials, through
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
@@ -40,7 +41,7 @@ def stepped(run: Trajectory, m: Model, closed: Mask, cuts: Array, rounding: floa
     off: Any = None
     contacts: Any = run.scene.contacts
     resting: Mask = np.any(closed, axis=1)
-    struck = ends_with_event(run)
+    struck = among(np.array(run.impacts["time"], dtype=float), run.t[1:])  # pieces that end with an event
     if getattr(run.method, "order", None) != "exact":
         off = 0.0
     elif run.scene.n_c == 1 or not resting.any():  # of one contact nothing flies while it rests
@@ -61,15 +62,6 @@ def made_again(run: Trajectory) -> Polynomials:
     times = run.t[:-1, None] + np.diff(run.t)[:, None] * shares
     q, _ = run.at(times.ravel())
     return through(run.t, run.q, run.v, q.reshape(len(times), INNER, -1))
-
-
-def ends_with_event(run: Trajectory) -> Mask:
-    """Which pieces end with an event of the run, (m,)."""
-    times = np.array(run.impacts["time"], dtype=float)
-    if not len(times):
-        return np.zeros(len(run.t) - 1, dtype=bool)
-    at = np.minimum(np.searchsorted(times, run.t[1:]), len(times) - 1)
-    return np.asarray(times[at] == run.t[1:])
 
 
 def accelerations(m: Model, t: Array, q: Array, v: Array, cuts: Array) -> tuple[Array, Array]:

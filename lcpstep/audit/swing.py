@@ -12,6 +12,8 @@ from typing import Any
 
 import cython
 
+from lcpstep.audit.limits import SLACK
+
 if not cython.compiled:
     from math import cos, hypot, sin, sqrt
 
@@ -19,8 +21,6 @@ if not cython.compiled:
     from lcpstep.audit.clear import Gap
     from lcpstep.events.flight.motion import Flight, absolute, steady
     from lcpstep.pointers import abs, nan
-
-SLACK = 1e-13  # of the numbers that a bound is made of
 
 
 class Swing(Gap):

@@ -35,13 +35,17 @@ class Seen(NamedTuple):
 
 def seen(scene: Scene, m: Model) -> Seen:
     """Samples of what moves by itself in a scene; None of what does not."""
-    times, found = sample_times(scene), []
-    for f, n in ((m.motion, scene.n_c), (m.frame, scene.n_q)):
-        places = np.zeros((len(times), n, 3)) if f.given else None
-        if places is not None:
-            sampled(f, times, np.array(scene.q0), np.array(scene.v0), places)
-        found.append(places)
-    return Seen(times, *found)
+    times = sample_times(scene)
+    parts = (m.motion, scene.n_c), (m.frame, scene.n_q)
+    return Seen(times, *(samples_of(scene, f, n, times) if f.given else None for f, n in parts))
+
+
+def samples_of(scene: Scene, f: Function, n: int, times: Array) -> Array:
+    """Samples (times, n, 3) of a function of time; zero where there is none."""
+    out = np.zeros((len(times), n, 3))
+    if f.given:
+        sampled(f, times, np.array(scene.q0), np.array(scene.v0), out)
+    return out
 
 
 def scan_interval(scene: Scene, m: Model, rate: float, samples: Seen | None = None) -> float:

@@ -18,8 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.scan import SAMPLES, Seen, sampled, sampled_length, seen
-from lcpstep.kernels.function import Function
+from lcpstep.events.scan import SAMPLES, Seen, sampled_length, samples_of, seen
 from lcpstep.kernels.model import Model
 from lcpstep.turns import turns
 
@@ -28,14 +27,6 @@ PER_PIECE = 8  # samples between two corners
 AGAIN = 16  # every so many samples, is the motion the same a period later?
 SAME = 1e-9  # relative
 STEEPER, HARDER = 2.0, 1.25  # than in the samples: speeds and accelerations between them
-
-
-def looked_at(scene: Scene, f: Function, times: Array) -> Array:
-    """Samples (k, 1, 3) of a function; zero where there is none."""
-    out = np.zeros((len(times), 1, 3))
-    if f.given:
-        sampled(f, times, np.array(scene.q0), np.array(scene.v0), out)
-    return out
 
 
 class Reach(NamedTuple):
@@ -54,7 +45,7 @@ def reach(scene: Scene, m: Model, all_seen: Seen | None = None) -> Reach:
         return Reach(math.inf, 0.0, 0.0, 0.0)
 
     def samples(times: Array) -> Array:
-        frame, motion = (looked_at(scene, f, times) for f in (m.frame, m.motion))
+        frame, motion = (samples_of(scene, f, 1, times) for f in (m.frame, m.motion))
         return np.asarray((G * frame + motion)[:, 0])
 
     regular, motion, frame = all_seen or seen(scene, m)
