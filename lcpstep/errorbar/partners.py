@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errorbar.blows import matched
-from lcpstep.errorbar.layout import ANOTHER, OF_COMPANION, OF_RUN
+from lcpstep.errorbar.layout import ALONE, ANOTHER, OF_COMPANION, OF_RUN
 from lcpstep.errorbar.matching import Log, summary
 from lcpstep.errorbar.pairs import LATE, MARGIN, Array, Pairs, middle, one_to_one
 from lcpstep.trajectory import Kind
@@ -27,20 +27,12 @@ WORDS = {
     ANOTHER: "an impact of another strength",
     OF_RUN: "an impact of the run without partner",
     OF_COMPANION: "an impact of the companion without partner",
+    ALONE: "an impact without partner",
 }
 WEAK = 0.02  # of the largest jump: the error of the motion shows what a weaker impact without partner does
-
-
-class Suspect(NamedTuple):
-    """An event that may be another one in the other run: its time [s], jump [m/s], and what is wrong with it.
-
-    since : when the contact did something else in one of the runs, shortly before; its time where it did not [s]
-    """
-
-    time: float
-    jump: float
-    reason: str
-    since: float = math.inf
+TIME, HARD, WHAT, CONTACT, SINCE = range(5)
+"""Numbers of an event that may be another one in the other run: its time [s], jump [m/s], what is wrong, its contact;
+when the contact did something else in one of the runs, shortly before, or its time [s]."""
 
 
 class Partners(NamedTuple):
@@ -85,79 +77,85 @@ def partners(
     for contact in contacts:
         numbers, many, rows, doubts, struck = matched(one, other, contact, weak, resolution)
         found, alone = _credible(Pairs.told(numbers, rows, many, weak), resolution, apart)
-        differing = [Suspect(time, jump, WORDS[int(kind)]) for time, jump, kind in doubts.tolist()] + alone
+        differing = np.concatenate([doubts, alone])
         margin = MARGIN * float(np.max(found.time, initial=resolution))
-        for x in differing:
-            if x.time < end - margin:
-                since = _since(x.time, (one, other), contact, found.stop, margin)
-                suspects.append(x._replace(reason=f"{x.reason} at contact {contact}", since=since))
-            else:
-                windows.append(np.array([[x.time, end]]))
+        late = differing[:, TIME] >= end - margin
+        windows.append(np.column_stack([differing[late, TIME], np.full(np.count_nonzero(late), end)]))
+        times, logs = differing[~late, TIME], [_of_contact(x, contact) for x in (one, other)]
+        since = _since(times, [t for t, _ in logs], found.stop, margin)
+        suspects.append(np.column_stack([differing[~late], np.full(len(times), contact), since]))
         if chatters:
-            windows.append(_tails((one, other), contact, found.start, struck, end))
+            windows += [_tails(*x, found.start, np.sort(struck), end) for x in logs]
         pairs.append(found)
     all_pairs = Pairs(*(np.concatenate(x) for x in zip(*pairs, strict=True)))
-    first, harmless = _first(suspects, alike)
+    first, harmless = _first(np.concatenate(suspects), alike)
     windows += [all_pairs.windows(resolution), harmless]
-    return Partners(all_pairs, np.concatenate(windows), first.time, first.reason)
+    reason = f"{WORDS[int(first[WHAT])]} at contact {int(first[CONTACT])}" if len(first) else ""
+    return Partners(all_pairs, np.concatenate(windows), first[TIME] if len(first) else math.inf, reason)
 
 
-def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pairs, list[Suspect]]:
-    """Pairs without those that are no partners, and these impacts: between partners one run alone has struck.
+def _credible(pairs: Pairs, resolution: float, apart: Apart | None) -> tuple[Pairs, Array]:
+    """Pairs without those that are no partners, and these impacts (l, 3): between partners one run alone has struck.
 
     Where velocities are alike between two impacts far from each other, each belongs to one that the other run logged
     at another contact: walls that meet, or two of one surface, may be named in either way.
     """
+    nobody = np.zeros((0, 3))
     if apart is None or not len(pairs.time):
-        return pairs, []
+        return pairs, nobody
     late = np.flatnonzero((pairs.time > LATE * middle(pairs.time)) & (pairs.time > resolution))
     if not len(late):
-        return pairs, []
+        return pairs, nobody
     good = np.ones(len(pairs.time), dtype=bool)
     good[late] = apart((pairs.start + 0.5 * pairs.time)[late], pairs.jump[late])
-    lost, words = pairs.of(~good), "an impact without partner"
-    alone = [
-        Suspect(float(t), float(jump), words)
-        for x in (lost.start, lost.start + lost.time)
-        for t, jump in zip(x, lost.jump, strict=True)
-    ]
-    return pairs.of(good), alone
+    if good.all():
+        return pairs, nobody
+    lost = pairs.of(~good)
+    both = np.concatenate([lost.start, lost.start + lost.time])
+    return pairs.of(good), np.column_stack([both, np.tile(lost.jump, 2), np.full(len(both), ALONE)])
 
 
-def _since(time: float, logs: tuple[Log, Log], contact: int, stops: Array, margin: float) -> float:
-    """When a contact did something before an event without partner, and after its last impact that has one.
+def _of_contact(log: Log, contact: int) -> tuple[Array, NDArray[np.intp]]:
+    """Times and kinds of the lines of one contact."""
+    own = log.contacts == contact
+    return log.times[own], log.kinds[own]
+
+
+def _last(x: Array, t: Array, side: Literal["left", "right"]) -> Array:
+    """The last of the sorted numbers x before times t; `right`: or at them."""
+    return np.append(-math.inf, x)[np.searchsorted(x, t, side)]
+
+
+def _next(x: Array, t: Array) -> Array:
+    """The first of the sorted numbers x after times t."""
+    return np.append(x, math.inf)[np.searchsorted(x, t, "right")]
+
+
+def _since(time: Array, logs: list[Array], stops: Array, margin: float) -> Array:
+    """When a contact did something before events without partner, and after its last impact that has one.
 
     One run may rest where the other strikes once more: their velocities differ from when the first has come to rest.
     """
-    after = max(float(np.max(stops[stops < time], initial=-math.inf)), time - margin)
-    near = [x.times[(x.contacts == contact) & (x.times > after) & (x.times <= time)] for x in logs]
-    return float(min(np.min(x, initial=time) for x in near))
+    after = np.maximum(_last(stops, time, "left"), time - margin)
+    return np.minimum(time, np.minimum(*(_next(x, after) for x in logs)))
 
 
-def _first(suspects: list[Suspect], alike: Alike | None) -> tuple[Suspect, Array]:
+def _first(suspects: Array, alike: Alike | None) -> tuple[Array, Array]:
     """The first of the events after which the motions differ, and the times from others to where they are alike."""
-    if not suspects:
-        return Suspect(math.inf, 0.0, ""), np.zeros((0, 2))
-    suspects = sorted(suspects, key=lambda x: x.time)
+    suspects = suspects[np.argsort(suspects[:, TIME], kind="stable")]
     again = np.full(len(suspects), math.nan)
-    if alike is not None:
-        again = alike(*(np.array([getattr(x, name) for x in suspects]) for name in ("time", "jump")))
-    harmful = [x for x, time in zip(suspects, again, strict=True) if not math.isfinite(time)]
-    harmless = [(x.since, time) for x, time in zip(suspects, again, strict=True) if math.isfinite(time)]
-    first = harmful[0] if harmful else Suspect(math.inf, 0.0, "")
-    return first, np.array(harmless).reshape(-1, 2)
+    if alike is not None and len(suspects):
+        again = alike(np.ascontiguousarray(suspects[:, TIME]), np.ascontiguousarray(suspects[:, HARD]))
+    harmless = np.isfinite(again)
+    first = suspects[~harmless][:1]
+    return first.reshape(-1), np.column_stack([suspects[harmless, SINCE], again[harmless]])
 
 
-def _tails(logs: tuple[Log, Log], contact: int, last: Array, struck: Array, end: float) -> Array:
-    """From the first impacts of chattering sequences without partner to where the sequences end in both runs.
+def _tails(times: Array, kinds: NDArray[np.intp], last: Array, struck: Array, end: float) -> Array:
+    """From the first impacts of chattering sequences without partner to where the sequences end in one of the runs.
 
     A sequence begins after the contact has closed, opened or come to rest before.
     """
-    found = []
-    for log in logs:
-        own = log.contacts == contact
-        turns = log.times[own & (log.kinds != Kind.IMPACT)]
-        for stop in log.times[own & (log.kinds == Kind.ACCUMULATION)]:
-            since = max(np.max(x, initial=-math.inf) for x in (last[last <= stop], turns[turns < stop]))
-            found.append((np.min(struck[(struck > since) & (struck <= stop)], initial=stop), min(stop, end)))
-    return np.array(found).reshape(-1, 2)
+    stops = times[kinds == Kind.ACCUMULATION]
+    since = np.maximum(_last(last, stops, "right"), _last(times[kinds != Kind.IMPACT], stops, "left"))
+    return np.column_stack([np.minimum(_next(struck, since), stops), np.minimum(stops, end)])
