@@ -20,6 +20,7 @@ cdef double[4] NODES, WEIGHTS
 cdef class Polynomial:
     cdef readonly object kept
     cdef readonly double scale
+    cdef readonly Py_ssize_t degree
     cdef double* T
     cdef double* a
     cdef double* q
@@ -43,6 +44,7 @@ cdef void factor_closed(Work w) noexcept nogil
 cdef void press(Work w, double* out, double share) noexcept nogil
 cdef void add_forces(Work w, double* out, Py_ssize_t n_k) noexcept nogil
 cdef bint expand(Model m, Plan plan, Work w, Polynomial z, double t, double length) noexcept nogil
+@cython.locals(moves=bint, quiet=Py_ssize_t)
 cdef bint taylor(Model m, Plan plan, Work w, Polynomial z, double t) noexcept nogil
 @cython.locals(good=bint)
 cdef bint hermite(Model m, Plan plan, Work w, Polynomial z, double t, double L) noexcept nogil

@@ -39,7 +39,7 @@ WEIGHTS = [0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.1739
 class Polynomial:
     """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events.
 
-    T : (DEGREE + 1, n_q)
+    T : (DEGREE + 1, n_q)   of which those up to `degree` are not zero
     scale
     a : (5, n_q)            accelerations of the stages
     q, v                    state last asked for
@@ -55,7 +55,7 @@ class Polynomial:
     def __init__(self, n_q: int, n_c: int) -> None:
         self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + 5 * n_c)
         x = doubles(self.kept)
-        self.scale = 1.0
+        self.scale, self.degree = 1.0, 1
         self.T, self.a = x, after(x, (DEGREE + 1) * n_q)
         x = after(x, (DEGREE + 6) * n_q)
         self.q, self.v, self.q_stage = x, after(x, n_q), after(x, 2 * n_q)
@@ -156,9 +156,9 @@ def expand(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float
 
 
 def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
-    """Taylor coefficients of y at t."""
-    n = w.n_q
-    z.scale = 1.0
+    """Taylor coefficients of y at t, up to where all that follow are zero."""
+    n, quiet = w.n_q, 0
+    z.scale, z.degree = 1.0, 1
     copy(z.T, w.q, w.n_q)
     copy(after(z.T, n), w.v, w.n_q)
     if m.frame.given:
@@ -172,8 +172,11 @@ def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
         factor_closed(w)
     c_k, s_k = cos(m.omega * t), sin(m.omega * t)
     for k in range(DEGREE - 1):
+        moves = False
         for i in range(n):
-            w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k + (m.constant[i] if k == 0 else 0.0)
+            w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k
+            moves = moves or w.a_try[i] != 0.0
+            w.a_try[i] += m.constant[i] if k == 0 else 0.0
             for j in range(n):
                 w.a_try[i] -= (
                     m.C[i * n + j] * (k + 1) * z.T[(k + 1) * n + j] + m.K[i * n + j] * z.T[k * n + j]
@@ -186,6 +189,11 @@ def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
             press(w, w.v_try, 0.0)
         for i in range(n):
             z.T[(k + 2) * n + i] = w.v_try[i] / ((k + 1) * (k + 2))
+            moves = moves or w.v_try[i] != 0.0
+        z.degree = k + 2
+        quiet = 0 if moves else quiet + 1
+        if quiet == 2:  # what follows is made of these two, and of forces that vanish like theirs
+            return True
         c_k, s_k = -m.omega * s_k / (k + 1), m.omega * c_k / (k + 1)
     return True
 
@@ -215,7 +223,7 @@ def hermite(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, L: float) ->
         z.q_stage[i] = w.q[i] + z.q_end[i]
         z.v_stage[i] = w.v[i] + z.v_end[i]
     good = good and acceleration(m, plan, w, t + L, z.q_stage, z.v_stage, after(z.a, 4 * n))
-    z.scale = L
+    z.scale, z.degree = L, QUINTIC
     for i in range(n):
         c_1, c_2 = L * w.v[i], 0.5 * L * L * z.a[i]
         d = z.q_end[i] - c_1 - c_2
@@ -235,11 +243,10 @@ def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float)
     if on_surface(plan, w):
         surface_state(m, plan, w, z, t + tau)
         return
-    degree = DEGREE if plan.exact else QUINTIC
     s = tau / z.scale
     for i in range(n):
-        q, v = z.T[degree * n + i], 0.0
-        for k in range(degree - 1, -1, -1):
+        q, v = z.T[z.degree * n + i], 0.0
+        for k in range(z.degree - 1, -1, -1):
             v = v * s + q
             q = q * s + z.T[k * n + i]
         z.q[i], z.v[i] = q, v / z.scale
