@@ -28,7 +28,7 @@ AROUND = np.array(
 NEAR = 1.0 / 64.0  # of a step: of the differences
 FASTER = 10.0  # than a step
 PLAIN, LEAST_SHARE = 1e-2, 1e-4  # of the gap there, and of all gaps: how far it leaves its line
-ROUNDING = 1e-12  # of the coordinates
+ROUNDING = 1e-12  # of the coordinates, and of the way that the obstacle goes in the time since zero
 LIMITS = np.array([NEAR, FASTER, PLAIN, LEAST_SHARE, ROUNDING])
 
 

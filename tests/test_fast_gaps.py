@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from benchmarks.judge.describe import Description
 from lagrangian import Contacts, Scene, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.turns import FastTurn
@@ -87,3 +88,18 @@ def test_no_ready_scene_is_warned_of(name):
     with warnings.catch_warnings():
         warnings.simplefilter("error", FastTurn)
         simulate(scenes.CATALOGUE[name].make(), EventDriven())
+
+
+def test_steps_as_short_as_rounding_of_time_lets_an_obstacle_move_tell_nothing():
+    shaken = Description(
+        M=((2660.0, 0.0, 0.0), (0.0, 15.7, 0.0), (0.0, 0.0, 0.00918)), q0=(0.072, 0.873, 1.49), v0=(0.0, 0.0, 0.0),
+        t_span=(55500.0, 55500.71912), h=0.00356, restitution=0.47,
+        G=((-0.425, 0.148, -1.38), (-1.81, 0.753, 0.931), (0.0167, -1.09, 1.44)),
+        offset=(3.487106106224562, -2.3623509023996054, -1.4110642563792035),
+        K=((2290.0, 45.7, 7.73), (45.7, 14.3, -0.181), (7.73, -0.181, 0.0368)), constant=(0.0, 0.0, -0.0901),
+        amplitude=(0.436, -0.218, 0.436), phase=(1.87, 1.87, 1.87), omega=12.5, bend=(-0.811, 0.225, 0.216),
+        round=(0.3, 0.3, 0.0), general=True, spread=0.78, pendulum=1.62, b=(1.09, 0.637, -0.869), family="curved",
+    )  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", FastTurn)
+        assert simulate(shaken.scene(), Located(shaken.h, tolerance=1e-5)).impacts.time[-1] < 55500.1

@@ -195,7 +195,7 @@ def find_turn(
             if not (left > most and bent[j] > faster * left):
                 continue
             gap_rates(m, t[k], own, v_own, G, other)
-            size = 0.0
+            size = abs(other[c] * t[k])
             for i_q in range(n_q):
                 size += abs(G[c * n_q + i_q] * own[i_q])
             if left > rounding * size:

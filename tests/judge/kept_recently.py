@@ -102,4 +102,15 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located", "located-4", "moreau"),
     ),
+    # A foot without load, held for an interval since another opened beside it, was held when that one closed and left
+    "seven feet, three of them on the ground, that part at the same time": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.165)), q0=(-0.915, 2.38), v0=(0.0, 0.0), t_span=(0.0, 2.9694), h=0.00404,
+            G=((1.0, -0.5), (1.0, -0.333), (1.0, -0.167), (1.0, 0.0), (1.0, 0.167), (1.0, 0.333), (1.0, 0.5)),
+            offset=(2.685, 1.70754, 1.54546, 1.755, 1.0355400000000001, 0.12246000000000001, -0.2749999999999999),
+            restitution=0.76, K=((0.27, 0.227), (0.227, 0.196)), C=((0.444, 0.00175), (0.00175, 0.0745)),
+            cosine=(-1.17, -0.297), sine=(-2.09, -0.217), force_omega=14.2, family='feet',
+        ),
+        ("event-driven", "event-driven-loose", "located-4", "located-exact"),
+    ),
 }  # fmt: skip

@@ -27,6 +27,8 @@ cdef double shorten(Mechanism s, double tau) noexcept nogil
 cdef double missed(Mechanism s, double tau) noexcept nogil
 @cython.locals(solved=bint, found=bint, balanced=bint)
 cdef bint look_ahead(Mechanism s, Py_ssize_t c, double tau, double end) noexcept nogil
+@cython.locals(some=bint)
+cdef bint any_held(Mechanism s, double t) noexcept nogil
 @cython.locals(solved=bint)
 cdef bint forces_at(Mechanism s, Py_ssize_t before, double ahead) noexcept nogil
 cdef void take_over(Mechanism s, Record record, Tally tally, double t, double tau) noexcept nogil

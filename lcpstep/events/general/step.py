@@ -152,8 +152,9 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
 
     Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
     c, one looks further. Where they press it then, it is held up to there: later in the interval it may yet open.
+    Once it opens, others are no longer held for what they did beside it.
     """
-    before, solved, found = s.n_held, True, False
+    before, solved, found, seen = s.n_held, True, False, tau
     balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
     ahead = (BALANCED if balanced else LOOK_AHEAD) * s.length
     first = ahead
@@ -163,18 +164,30 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
         s.left.multiplier[d] = s.contact.closed[d]
     for look in range(LOOKS + 1):
         if solved and not found:
-            for d in range(s.n_c):
-                s.contact.closed[d] = 1 if s.left.multiplier[d] == 1.0 else 0
-            solved = forces_at(s, before, tau + (ahead if look < LOOKS else first))
+            seen = tau + (ahead if look < LOOKS else first)
+            solved = forces_at(s, before, seen)
             found = s.contact.closed[c] == 0
             ahead = min(ahead * FURTHER, 0.5 * (end - tau))
+    if solved and found and any_held(s, s.t0 + seen):
+        solved = forces_at(s, before, seen)
     if s.contact.closed[c] == 1:
         s.contact.held_until[c] = s.t0 + (tau + first if s.contact.multiplier[c] > 0.0 else end)
     return solved
 
 
+def any_held(s: Mechanism, t: float) -> bool:
+    """Whether any contact was held beyond the time t, up to which all that are closed now are held."""
+    some = False
+    for d in range(s.n_c):
+        if s.contact.closed[d] == 1 and s.contact.held_until[d] > t:
+            s.contact.held_until[d], some = t, True
+    return some
+
+
 def forces_at(s: Mechanism, before: int, ahead: float) -> bool:
     """The same at a time after the base, from the motion with the rows in `kept`, which stay held."""
+    for d in range(s.n_c):
+        s.contact.closed[d] = 1 if s.left.multiplier[d] == 1.0 else 0
     observe(s, ahead)
     t = s.t0 + ahead
     solved = measure(s, t) and contact_forces(s, t) == DONE
