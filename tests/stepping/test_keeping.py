@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, Moreau, simulate
 from lcpstep.stepping.pieces import run as pieces
 from lcpstep.trajectory import Kind, Status
@@ -207,3 +207,32 @@ def test_an_interrupt_while_states_are_found_again_is_one(monkeypatch):
     monkeypatch.setattr(pieces.LocatedRun, "take", interrupted)
     with pytest.raises(KeyboardInterrupt):
         run.at([0.5])
+
+
+def asked_of_a_bowl(times):
+    """How often the gap of a ball in a bowl is asked for, and the run, by a tolerance, that keeps these times."""
+    calls = [0]
+
+    def bowl(t, q, v, p, out):
+        calls[0] += 1
+        out[0] = 1.0 - np.hypot(q[0], q[1])
+
+    def bowl_q(t, q, v, p, out):
+        out[0, :] = -q / np.hypot(q[0], q[1])
+
+    def bias(t, q, v, p, out):
+        r = np.hypot(q[0], q[1])
+        out[0] = (((q[0] * v[0] + q[1] * v[1]) / r) ** 2 - v[0] ** 2 - v[1] ** 2) / r
+
+    contacts = Contacts(gap=bowl, jacobian=bowl_q, bias=bias, n_c=1, restitution=0.9)
+    ball = LinearSystem(M=np.eye(2), force=[0.0, -9.81])
+    scene = Scene(ball, contacts=contacts, q0=[0.1, -0.9], v0=[0.0, 0.0], t_span=(0.0, 2.0))
+    run = simulate(scene, Located(0.5, tolerance=1e-2), keep=times)
+    return calls[0], run
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_states_asked_for_ahead_of_many_short_steps_are_made_once():
+    (few, run), (many, more) = asked_of_a_bowl([1.0, 2.0]), asked_of_a_bowl(np.linspace(1.75, 2.0, 500))
+    assert np.array_equal(run.q[-1], more.q[-1])
+    assert many - few < 4 * 500
