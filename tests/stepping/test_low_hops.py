@@ -80,3 +80,18 @@ def test_a_wall_that_is_touched_after_a_whole_period_is_not_struck(parts):
     t, omega, rest = np.linspace(struck.time[0] + 1e-6, 46.672, 500), np.sqrt(0.0969), -0.0129 / 0.0969
     circling = rest + (0.2744 - rest) * np.cos(omega * (t - struck.time[0]))
     np.testing.assert_allclose(run.at(t)[0][:, 0], circling, rtol=0, atol=1e-13)
+
+
+def shaken(t, q, v, p, out):
+    """A table."""
+    out[0, 0], out[0, 1], out[0, 2] = 1e-3 * np.sin(3.0 * t), 3e-3 * np.cos(3.0 * t), -9e-3 * np.sin(3.0 * t)
+
+
+@pytest.mark.parametrize("h", [1e-2, 2.5e-3])
+def test_elastic_hops_within_a_step_of_order_two_on_a_moving_table_stay_as_high_as_they_are(h):
+    u, most = 1e-6, 20_000
+    table = LinearContacts(G=1.0, motion=shaken, restitution=1.0)
+    scene = Scene(LinearSystem(M=1.0, force=-9.81), contacts=table, q0=0.0, v0=3e-3 + u, t_span=(0.0, 0.01))
+    hops = simulate(scene, Located(h, max_events=most), keep="impacts").impacts
+    assert len(hops) > most
+    assert np.allclose(hops.before, -u, rtol=1e-4)

@@ -19,6 +19,7 @@ from lcpstep.stepping.pieces.switches cimport stick
 from lcpstep.stepping.pieces.times cimport driven_by, within
 
 cdef Py_ssize_t POLISHING
+cdef double BRIEF
 
 @cython.locals(closed=bint)
 cdef bint begin_piece(Model m, Plan plan, Work w, Record record, double t) noexcept nogil

@@ -44,6 +44,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.times import driven_by, within
 
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
+BRIEF = 1.0 / 8.0  # of a piece: hops that last no longer obey the acceleration at their beginning
 
 
 def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
@@ -88,7 +89,9 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
 def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
     """Mean accelerations of the gaps of flat contacts over the piece without contact forces.
 
-    In w.alpha so that the velocity is right at the end; w.bend is what must be added for the position.
+    In w.alpha so that the velocity is right at the end; w.bend is what must be added for the position. A hop that is
+    soon over obeys the obstacle's acceleration at its beginning: by the mean it would land with another speed than it
+    has begun with, always higher or always lower, thousands of times in a piece.
     """
     if not plan.steady or moves(m):
         for c in range(w.n_c):
@@ -99,6 +102,8 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
             s, s_end = m.motion_now[c * 3 + 2], w.end_s[c]
             w.alpha[c] -= 0.5 * (s + s_end)
             w.bend[c] = (s_end - s) / 6.0
+            if from_ground(plan, w, c) and 0.0 < 2.0 * w.rate[c] < -BRIEF * (w.end - w.sigma) * w.alpha[c]:
+                w.bend[c] = 0.5 * (s_end - s)
             w.bias[c] = -0.5 * (s + s_end)
 
 
