@@ -18,9 +18,11 @@ from lcpstep.stepping.pieces.switches cimport (
 from lcpstep.stepping.pieces.times cimport driven_by
 
 cdef double SHORT, SAME_SPEED, SMALL
-cdef Py_ssize_t IN_A_ROW
+cdef Py_ssize_t IN_A_ROW, MANY_AT_ONCE
 
 cdef Py_ssize_t strike(Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t) noexcept nogil
+@cython.locals(x=double, fine=double)
+cdef void measure_rates(Work w) noexcept nogil
 @cython.locals(touched=bint, closing=bint, near=bint, pushed=bint, alike=bint)
 cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first) noexcept nogil
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t first, Py_ssize_t c) noexcept nogil
