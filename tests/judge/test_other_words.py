@@ -8,6 +8,7 @@ import pytest
 
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
+from tests.judge.kept_recently import RECENTLY
 
 # Thrown off together by an elastic wall, two plastic ones are met again one after the other, at 0.85 of the speeds
 INTO_A_CORNER = Description(
@@ -57,3 +58,24 @@ def test_a_body_that_joints_and_smooth_walls_wedge_is_not_left_open(method):
     r = run(d, method)
     assert r.status == "DONE"
     assert np.max(np.abs(r.motion.q - d.q0)) < 1e-12
+
+
+def test_contacts_that_collapse_beside_a_plastic_one_do_so_told_as_curved_ones_too():
+    """The plastic one, let go 2e-15 s before the other strikes, has no speed beyond rounding: it bears nothing."""
+    d = RECENTLY["a rebounding and a plastic contact that collapse, told as curved ones"][0]
+    flat, curved = (run(replace(d, gaps=gaps), "event-driven").motion for gaps in (False, True))
+    t = np.linspace(0.0, 0.2, 50)
+    np.testing.assert_allclose(curved.at(t)[0], flat.at(t)[0], rtol=0, atol=1e-12)
+
+
+def test_contacts_collapse_alike_at_another_zero_of_time():
+    """One kept its last rebound of 1e-6 m/s, at which time alone had closed the other."""
+    d = RECENTLY["six contacts with walls that move, of which two collapse beside a third"][0]
+    moved = replace(
+        d, t_span=(64.0, 64.7821), phase=(-857.6, -852.63, -852.63, -857.6, -852.63, -852.63),
+        cosine=(-416.1184714400546, 6.739413056808173, -9.668356284028603, 0.009952719704147092, -1061.623435109023,
+        -131.75505132156624), sine=(-139.88001189016424, 2.2654826527085827, -3.2500595017760254,
+        0.0033456494871223798, -356.86927862638714, -44.29002654381055),
+    )  # fmt: skip
+    at_zero, later = (run(x, "located-4").motion for x in (d, moved))
+    np.testing.assert_allclose(later.q[-1], at_zero.q[-1], rtol=0, atol=1e-11)

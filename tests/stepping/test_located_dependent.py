@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
-from lcpstep import Located, simulate
+from lcpstep import Located, Status, simulate
 
 SPAN = (0.0, 1.0)
 FEET = np.array([[1.0, -0.5], [1.0, -0.2], [1.0, 0.1], [1.0, 0.4], [1.0, 0.5]])
@@ -67,3 +67,18 @@ def test_steps_by_a_tolerance_do_not_depend_on_what_is_kept():
     full, some = simulate(scene, method), simulate(scene, method, keep=at)
     assert full.counts.steps == some.counts.steps
     np.testing.assert_allclose(np.sum(some.impulse, axis=0), np.sum(full.impulse, axis=0), rtol=0, atol=1e-13)
+
+
+def test_thousands_of_elastic_impacts_at_one_instant_keep_the_energy():
+    """Seven walls that leave a point no room: it is thrown to and fro for ever, and no faster."""
+    G = [
+        [0.371, 0.751, -2.18], [0.661, -0.726, -0.664], [-0.555, 2.41, 0.938], [-0.398, -0.986, 0.584],
+        [0.225, -0.263, -1.13], [-0.79, 0.748, -0.327], [0.223, -1.09, 0.706],
+    ]  # fmt: skip
+    walls = LinearContacts(G=G, restitution=1.0)
+    scene = Scene(LinearSystem(M=np.eye(3)), np.zeros(3), [0.455, -1.04, -0.151], (0.0, 0.1), contacts=walls)
+    for order in (2, 4, "exact"):
+        m = simulate(scene, Located(0.1, order, max_events=5000))
+        assert m.status == Status.TOO_MANY_EVENTS
+        assert m.impacts.time[-1] == 0.0
+        assert m.v[-1] @ m.v[-1] == pytest.approx(m.v[0] @ m.v[0], rel=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from lagrangian import LinearSystem, Scene, System
+from lagrangian import LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, simulate
 
 PUSH = 3.0
@@ -29,7 +29,7 @@ def shaken(t, q, v, p, out):
 def scene(system, periods, **given):
     return Scene(
         system=system, q0=given.get("q0", [0.0]), v0=given.get("v0", [0.0]), p=[PUSH], corners=[0.0, 0.5],
-        period=1.0, t_span=(float(periods), periods + given.get("span", 0.4)),
+        period=1.0, t_span=(float(periods), periods + given.get("span", 0.4)), contacts=given.get("contacts"),
     )  # fmt: skip
 
 
@@ -75,3 +75,17 @@ def test_sparse_scenes_begin_alike():
     made = scene(LinearSystem(M=M, K=0.0 * M, force=all_pushed), 0, q0=np.zeros(n), v0=np.zeros(n))
     run = simulate(made, Moreau(0.04))
     np.testing.assert_allclose(run.v[-1], PUSH * 0.4, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("periods", [0, 10**4])
+def test_an_elastic_contact_at_rest_stays_where_the_frame_sets_out_at_the_start(order, periods):
+    """The frame presses the body onto the wall, from a moment after the start on which its speed is no longer 0."""
+    made = scene(
+        LinearSystem(M=1.0, force=0.0, frame=shaken), periods,
+        contacts=LinearContacts(G=1.0, restitution=1.0),
+    )  # fmt: skip
+    run = simulate(made, Located(0.004, order))
+    assert len(run.impacts) == 0
+    np.testing.assert_allclose(run.q, 0.0, rtol=0, atol=1e-15 * (1 + periods))  # times round by so much
+    assert np.sum(run.impulse) == pytest.approx(PUSH * 0.4, abs=1e-11)

@@ -21,7 +21,7 @@ from lcpstep.pointers cimport abs, max
 cdef Py_ssize_t IMPACT, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
 
 cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
-@cython.locals(now=bint)
+@cython.locals(since=double)
 cdef bint just_opened(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(landed=bint, new=bint)
 cdef bint let_go(Mechanism s) noexcept nogil

@@ -69,9 +69,18 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
 
 
 def just_opened(s: Mechanism, c: int) -> bool:
-    """Whether contact c has struck at this instant, as far as time can be told, and the forces have opened it."""
-    now = s.t0 - s.contact.struck[c] <= 4.0 * RESOLUTION * abs(s.t0)
-    return now and s.contact.closed[c] == 0 and s.contact.curve[c] > 0.0
+    """Whether contact c has struck at this instant, as far as can be told, and the forces have opened it.
+
+    It may have struck before in time, but so shortly that it has gained no speed beyond rounding since then.
+    """
+    if s.contact.closed[c] == 1 or not s.contact.curve[c] > 0.0:
+        return False
+    since = s.t0 - s.contact.struck[c]
+    if since <= 4.0 * RESOLUTION * abs(s.t0):
+        return True
+    if s.constant or s.contact.gap[c] > rounding_of_gap(s, c):
+        return False
+    return s.contact.curve[c] * since <= speed_noise(s, c)
 
 
 def let_go(s: Mechanism) -> bool:

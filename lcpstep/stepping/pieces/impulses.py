@@ -1,12 +1,10 @@
-"""Impacts of `Located`: their impulses, and the end of chattering.
+"""Impacts of `Located`: their impulses. How sequences of them end is in `sequences`.
 
     0 <= u+ + r u-   complementary to  p >= 0        the contacts that fire, and the closed ones that a chain of
                                                      contacts connects with them
 
-A contact whose next hop would be shorter than a small fraction of the step is closed: under the acceleration of the
-piece, which is constant, the remaining impacts of a single contact end at T = 2 u+ / (|alpha| (1 - r)), and up to
-there they have the effect of a closed contact. Sources: J. J. Moreau, Unilateral contact and dry friction in finite
-freedom dynamics (1988); G. Osorio, Complex Behavior in Impacting Systems, eq. 4.2.
+Sources: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); G. Osorio, Complex
+Behavior in Impacting Systems, eq. 4.2.
 """
 
 from __future__ import annotations
@@ -17,6 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rounding, order_matters
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -31,27 +30,24 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.corners import choose_jumping
     from lcpstep.stepping.pieces.jointed import answer_impulse
-    from lcpstep.stepping.pieces.magnitudes import faint, speed_terms
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.refine import NONE, solve_chosen
+    from lcpstep.stepping.pieces.sequences import (
+        IN_A_ROW,
+        MANY_AT_ONCE,
+        at_this_instant,
+        choose_collapsing,
+        choose_connected,
+        closes,
+        measure_rates,
+        note_hit,
+    )
     from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import (
-        AT_ONCE_FAST,
-        COLLAPSE,
-        SHORT_TOGETHER,
-        idle,
-        release,
-        stick,
-        turn,
-    )
-    from lcpstep.stepping.pieces.times import driven_by
+    from lcpstep.stepping.pieces.switches import idle, release, stick, turn
 
-SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
-IN_A_ROW = (
-    8  # so many impacts, each at the instant of the one before, are an inelastic collapse once they are faint
-)
 
 
 def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) -> int:
@@ -59,11 +55,14 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
 
     Returns how many took part, -1 where the impact was not solved.
     """
+    if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
+        measure_rates(w)
     n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first)
     if n_s == 0:
         return 0
     if w.closed_now > 0:
         n_s = choose_connected(w, n_s)
+    collapsed = False
     for k in range(n_s):
         c = w.chosen[k]
         w.z[k] = w.b[k] = w.p[c] = 0.0
@@ -72,12 +71,18 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
             if first != CORNER:
                 note_hit(plan, w, c)
                 w.plastic[c] = 1 if closes(m, plan, w, c, n_s == 1, t) else 0
+                collapsed = collapsed or (w.plastic[c] == 1 and w.close_hits[c] >= IN_A_ROW)
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
         elif first == CORNER:
             w.b[k] = w.rate[c]
-    if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
-        return -1
+    together = choose_collapsing(plan, w, first, n_s) if collapsed else n_s
+    if together > n_s and solve_chosen(m, plan, w, w.W, INERTIA, together, NONE):
+        n_s = together
+    else:  # walls without clearance cannot all be met where their speeds differ by rounding
+        clear(w.z, n_s)
+        if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
+            return -1
     if jump(plan, w, n_s) == 0.0:
         idle(w)
     for k in range(n_s):
@@ -134,70 +139,6 @@ def tied(m: Model, plan: Plan, w: Work, first: int, c: int) -> bool:
     W, n, r = w.W, w.n_c, m.restitution
     W_c, W_d, W_cd = W[first * n + first], W[c * n + c], W[first * n + c]
     return order_matters(W_c, W_d, W_cd, r[first], r[c], w.rate[first], w.rate[c])
-
-
-def at_this_instant(plan: Plan, w: Work, c: int) -> bool:
-    """Whether contact c has struck at the instant at hand already."""
-    return w.last[c] >= 0.0 and w.sigma - w.last[c] <= COLLAPSE * plan.h
-
-
-def choose_connected(w: Work, n_s: int) -> int:
-    """Add the closed contacts that a chain of closed contacts connects with the chosen ones."""
-    n_c = w.n_c
-    for c in range(n_c):
-        w.p[c] = 1.0 if w.status[c] == CLOSED else 0.0  # still to be looked at
-    for k in range(n_s):
-        w.p[w.chosen[k]] = 0.0
-    k = 0
-    while k < n_s:
-        for c in range(n_c):
-            if w.p[c] == 1.0 and w.W[w.chosen[k] * w.n_c + c] != 0.0:
-                w.chosen[n_s] = c
-                w.p[c] = 0.0
-                n_s += 1
-        k += 1
-    return n_s
-
-
-def note_hit(plan: Plan, w: Work, c: int) -> None:
-    """Count the impact of contact c in this step, and among those at hardly any distance of each other."""
-    since = w.sigma - w.last[c]
-    w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
-    if since > COLLAPSE * plan.h or w.last[c] < 0.0:
-        w.close_hits[c] = 0
-    else:
-        w.close_hits[c] += 1
-    w.last[c] = w.sigma
-
-
-def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
-    """Whether the contact that fires is closed: its next hops are too short to be followed."""
-    r = m.restitution[c]
-    if r == 1.0 or r == 0.0:
-        return False
-    hits = w.close_hits[c]
-    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.rate[c])):
-        return True
-    if w.half[c] >= 0.0:
-        return False
-    hop = -r * w.rate[c] / -w.half[c]
-    if (not alone or hop > w.end - w.sigma) and unresolved(plan, w, c, hop, t):
-        return True
-    if not alone:
-        return hop < SHORT_TOGETHER * plan.h
-    ends_in_time = hop / (1.0 - r) <= w.end - w.sigma
-    return (
-        ends_in_time and (hop < SHORT * plan.h or w.hits[c] > plan.many)
-    ) or hop < COLLAPSE * SHORT * plan.h
-
-
-def unresolved(plan: Plan, w: Work, c: int, hop: float, t: float) -> bool:
-    """Whether a hop is no higher than its obstacle goes in what time t is rounded by.
-
-    By events of closed contacts beside it, and by ends of steps, it is cut into pieces, each of which begins with a
-    gap that is wrong by so much: far from time zero such hops may be thrown up again for ever.
-    """
-    return not plan.exact and 0.25 * hop * hop * -w.half[c] <= driven_by(w, c, t)
 
 
 def jump(plan: Plan, w: Work, n_s: int) -> float:

@@ -17,9 +17,9 @@ from lcpstep.stepping.pieces.jointed cimport joints_failed
 from lcpstep.stepping.pieces.keep cimport keep, keep_now
 from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms
 from lcpstep.stepping.pieces.settle cimport endless, settle
-from lcpstep.stepping.pieces.smooth cimport free_acceleration, measure, respond
+from lcpstep.stepping.pieces.smooth cimport free_acceleration, gap_bias, measure, respond
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport just_after, within
+from lcpstep.stepping.pieces.times cimport just_after, rounded_by, within
 
 
 cdef class Steps(Stepwise):
@@ -55,3 +55,5 @@ cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept no
 cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil
 @cython.locals(known=bint)
 cdef bint is_finite(Work w) noexcept nogil
+@cython.locals(some=bint)
+cdef bint touching(Plan plan, Work w) noexcept nogil

@@ -39,9 +39,9 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.settle import endless, settle
-    from lcpstep.stepping.pieces.smooth import free_acceleration, measure, respond
+    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import just_after, within
+    from lcpstep.stepping.pieces.times import just_after, rounded_by, within
 
 
 def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
@@ -60,13 +60,15 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
         respond(m, w)
         for c in range(w.n_c):
             w.alpha[c] = product(m.G, w.free, c, w.n_q)
+    if not plan.plain and touching(plan, w):
+        gap_bias(m, w, within(plan, w, t), w.q, w.v)
     for c in range(w.n_c):
         if w.gap[c] <= plan.slack:
             w.gap[c], w.grounded[c] = 0.0, GROUND
             size = abs(w.gap_t[c]) + plan.h * acceleration_terms(m, w, c)
             for i in range(w.n_q):
                 size += abs(w.G[c * w.n_q + i] * w.v[i])
-            if abs(w.rate[c]) <= 64 * EPS * size:
+            if abs(w.rate[c]) <= 64 * EPS * size + rounded_by(plan, w, c, t):
                 w.rate[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
     if record.n_times == 0:
@@ -75,6 +77,14 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
         keep(w, record, t, 0.0)
         record.next_time = 1
     return FINISHED
+
+
+def touching(plan: Plan, w: Work) -> bool:
+    """Whether some contact touches."""
+    some = False
+    for c in range(w.n_c):
+        some = some or w.gap[c] <= plan.slack
+    return some
 
 
 class Steps(Stepwise):

@@ -15,5 +15,9 @@ cdef inline double driven_by(Work w, Py_ssize_t c, double t) noexcept nogil:
     return 4.0 * EPS * abs(t * w.gap_t[c])
 
 
+cdef inline double rounded_by(Plan plan, Work w, Py_ssize_t c, double t) noexcept nogil:
+    return (plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c])
+
+
 cdef inline double just_after(Plan plan, double t) noexcept nogil:
     return t + LATE * plan.h + 4.0 * EPS * abs(t)

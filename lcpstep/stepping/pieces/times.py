@@ -22,6 +22,11 @@ def driven_by(w: Work, c: int, t: float) -> float:
     return float(4.0 * EPS * abs(t * w.gap_t[c]))
 
 
+def rounded_by(plan: Plan, w: Work, c: int, t: float) -> float:
+    """What the velocity of obstacle c changes by in what time is rounded by, and moved off a corner."""
+    return float((plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c]))
+
+
 def just_after(plan: Plan, t: float) -> float:
     """Up to where times asked for are the end t of a step, but for rounding."""
     return float(t + LATE * plan.h + 4.0 * EPS * abs(t))

@@ -1,0 +1,140 @@
+"""Sequences of impacts of `Located` at one instant, as kernels: their rounding, and where they end.
+
+A contact whose next hop would be shorter than a small fraction of the step is closed: under the acceleration of the
+piece, which is constant, the remaining impacts of a single contact end at T = 2 u+ / (|alpha| (1 - r)), and up to
+there they have the effect of a closed contact. Several contacts may strike each other to rest within no time at all,
+an inelastic collapse: these are closed together. Source: S. McNamara, W. Young, Inelastic collapse and clumping in a
+one-dimensional granular medium, Phys. Fluids A 4 (1992).
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import abs
+    from lcpstep.stepping.pieces.codes import CLOSED, OPEN, ROUNDING
+    from lcpstep.stepping.pieces.magnitudes import faint
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER
+    from lcpstep.stepping.pieces.times import driven_by
+
+SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
+IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are a collapse once faint or short
+AS_SLOW = (
+    100.0  # times the energy of a contact that comes to rest: what others that do so with it have at most
+)
+FINE = 1e-3  # of its terms: a speed below it may be finer than velocities resolve
+MANY_AT_ONCE = 64  # impacts of a contact at an instant: their rounding is no longer that of a few terms
+
+
+def measure_rates(w: Work) -> None:
+    """Gap velocities of open contacts from v, where those carried from impact to impact have drifted off it.
+
+    There are more gaps than coordinates: velocities that none of the bodies has would feed energy to impact after
+    impact. Speeds finer than the velocities resolve stay, and so does rest.
+    """
+    for c in range(w.n_c):
+        u, size = w.gap_t[c], abs(w.gap_t[c])
+        for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
+            x = w.G[c * w.n_q + i] * w.v[i]
+            u, size = u + x, size + abs(x)
+        fine = ROUNDING if abs(u) <= FINE * size else 0.0
+        if w.status[c] == OPEN and abs(u - w.rate[c]) > fine * size:
+            w.rate[c], w.fall[c] = u, 0.0
+
+
+def at_this_instant(plan: Plan, w: Work, c: int) -> bool:
+    """Whether contact c has struck at the instant at hand already."""
+    return w.last[c] >= 0.0 and w.sigma - w.last[c] <= COLLAPSE * plan.h
+
+
+def choose_connected(w: Work, n_s: int) -> int:
+    """Add the closed contacts that a chain of closed contacts connects with the chosen ones."""
+    n_c = w.n_c
+    for c in range(n_c):
+        w.p[c] = 1.0 if w.status[c] == CLOSED else 0.0  # still to be looked at
+    for k in range(n_s):
+        w.p[w.chosen[k]] = 0.0
+    k = 0
+    while k < n_s:
+        for c in range(n_c):
+            if w.p[c] == 1.0 and w.W[w.chosen[k] * w.n_c + c] != 0.0:
+                w.chosen[n_s] = c
+                w.p[c] = 0.0
+                n_s += 1
+        k += 1
+    return n_s
+
+
+def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
+    """Add the contacts that collapse with the first one, which is closed: their number with the chosen ones.
+
+    What is left of such a sequence, impact upon impact at one instant, ends with all of them at rest. One that is not
+    brought to rest now would keep the speed of its last rebound, and go for good where nothing presses it then.
+    """
+    n_c = w.n_c
+    for c in range(n_c):
+        w.p[c] = 0.0
+    for k in range(n_s):
+        w.p[w.chosen[k]] = 1.0  # chosen already
+    known, u, W = n_s, w.rate[first], w.W[first * n_c + first]
+    for c in range(n_c):
+        row = at_this_instant(plan, w, c) and w.close_hits[c] >= IN_A_ROW
+        slow = w.rate[c] * w.rate[c] * W <= AS_SLOW * u * u * w.W[c * n_c + c]
+        if w.status[c] == OPEN and w.p[c] == 0.0 and row and slow:
+            w.chosen[n_s] = c
+            n_s += 1
+    if w.closed_now > 0:
+        n_s = choose_connected(w, n_s)
+    for k in range(known, n_s):
+        c = w.chosen[k]
+        w.z[k] = w.b[k] = 0.0
+        w.plastic[c] = 1 if w.status[c] == OPEN else 0
+        if w.status[c] == OPEN:
+            w.b[k] = w.rate[c]
+    for k in range(n_s):
+        w.p[w.chosen[k]] = 0.0
+    return n_s
+
+
+def note_hit(plan: Plan, w: Work, c: int) -> None:
+    """Count the impact of contact c in this step, and among those at hardly any distance of each other."""
+    since = w.sigma - w.last[c]
+    w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
+    if since > COLLAPSE * plan.h or w.last[c] < 0.0:
+        w.close_hits[c] = 0
+    else:
+        w.close_hits[c] += 1
+    w.last[c] = w.sigma
+
+
+def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
+    """Whether the contact that fires is closed: its next hops are too short to be followed."""
+    r = m.restitution[c]
+    if r == 1.0 or r == 0.0:
+        return False
+    hits = w.close_hits[c]
+    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.rate[c])):
+        return True
+    if w.half[c] >= 0.0:
+        return False
+    hop = -r * w.rate[c] / -w.half[c]
+    if (not alone or hop > w.end - w.sigma) and unresolved(plan, w, c, hop, t):
+        return True
+    if not alone:
+        return hop < SHORT_TOGETHER * plan.h
+    ends_in_time = hop / (1.0 - r) <= w.end - w.sigma
+    return (
+        ends_in_time and (hop < SHORT * plan.h or w.hits[c] > plan.many)
+    ) or hop < COLLAPSE * SHORT * plan.h
+
+
+def unresolved(plan: Plan, w: Work, c: int, hop: float, t: float) -> bool:
+    """Whether a hop is no higher than its obstacle goes in what time t is rounded by.
+
+    By events of closed contacts beside it, and by ends of steps, it is cut into pieces, each of which begins with a
+    gap that is wrong by so much: far from time zero such hops may be thrown up again for ever.
+    """
+    return not plan.exact and 0.25 * hop * hop * -w.half[c] <= driven_by(w, c, t)
