@@ -12,7 +12,7 @@ from hypothesis import settings
 from tests.uncompiled import BUILT
 
 settings.register_profile("random", deadline=None)
-settings.register_profile("repeated", deadline=None, derandomize=True)
+settings.register_profile("repeated", deadline=None, derandomize=True, max_examples=60)
 settings.load_profile("repeated")
 
 

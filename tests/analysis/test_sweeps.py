@@ -86,6 +86,7 @@ def test_an_executor_whose_worker_is_killed_leaves_finished_parts_and_the_next_c
     assert all(np.array_equal(a["squares"], b["squares"]) for a, b in zip(resumed[0], whole[0], strict=True))
 
 
+@pytest.mark.slow
 def test_a_cluster_of_processes_retries_what_a_killed_worker_was_doing(tmp_path):
     distributed = pytest.importorskip("distributed")
     settings = {"distributed.scheduler.allowed-failures": 5}

@@ -98,6 +98,7 @@ def test_every_row_of_the_follower_agrees_not_only_its_impacts():
 # --- chattering, sticking, release
 
 
+@pytest.mark.slow
 def test_an_oscillator_that_sticks_at_its_stop():
     arguments = {"omega": 0.25, "amplitude": 2.0, "stop": 0.5, "restitution": 0.6}
     m, exact = simulate(scenes.impact_oscillator(**arguments), EventDriven()), oscillator(**arguments)
