@@ -13,9 +13,10 @@ from tests.commands import run
 xarray = pytest.importorskip("xarray")
 
 
+@pytest.mark.slow
 def test_attractor_classifies_saves_and_compares(capsys, tmp_path):
     status, out, _ = run(
-        capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 30, "--compare", 100, "--h", 1e-4,
+        capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 30, "--compare", 400, "--h", 2e-5,
         "--out", tmp_path, "--json",
     )  # fmt: skip
     assert status == DONE

@@ -170,7 +170,7 @@ def test_a_ball_on_the_table_has_an_orbit_of_one_period():
     np.testing.assert_allclose(impacts.after, v - A * w * math.cos(phi), rtol=0, atol=1e-10)
 
 
-SLOW_CAMS = [pytest.param(rpm, marks=pytest.mark.slow) for rpm in (120.0, 150.0)]
+SLOW_CAMS = [pytest.param(rpm, marks=pytest.mark.thorough) for rpm in (120.0, 150.0)]
 
 
 @pytest.mark.parametrize("rpm", [*SLOW_CAMS, 200.0])
