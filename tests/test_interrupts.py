@@ -302,7 +302,7 @@ def test_the_command_that_is_told_goes_on_from_there(tmp_path, monkeypatch):
         "--window",
         "660-760",
         "--points",
-        "300",
+        "200",
         "--drop",
         "60000",
         "--jobs",

@@ -205,7 +205,7 @@ BLOCK = ("stick-slip-oscillator", "--set", "amplitude=0.3", "omega=0.9")
         pytest.param(
             ("basin", *STICKING, "--position", -1, 1, "--velocity", -1, 1, "--grid", 4, 4, "--longest", 30,
              "--sample", 4),
-            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"], marks=pytest.mark.slow,
+            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"], marks=pytest.mark.thorough,
         ),
         (("orbit", "stick-slip-oscillator", "--mode", "stick", "--transient", 3), "period 8.06888787159", []),
     ],

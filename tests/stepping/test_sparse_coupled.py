@@ -89,7 +89,12 @@ SAME = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAME)
+LONG = "chain of 40", "chain of 20, smooth"  # of these
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in SAME]
+)
 def test_the_sparse_run_is_the_dense_run(name):
     scene, theta = SAME[name]
     a, b = (simulate(x, Moreau(2e-3, theta)) for x in (scene, made_dense(scene)))
@@ -147,7 +152,7 @@ def test_impulses_that_are_unique_are_those_of_the_dense_run():
     np.testing.assert_allclose(a.friction_impulse, b.friction_impulse, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.4])
+@pytest.mark.parametrize("restitution", [pytest.param(0.0, marks=pytest.mark.thorough), 0.4])
 def test_energy_is_lost_and_never_created(restitution):
     chain = scenes.hinged_chain(n=30, restitution=restitution, t_end=0.25)
     run = simulate(chain, Moreau(5e-4))
