@@ -54,6 +54,7 @@ def test_the_cost_of_an_error_lies_on_the_line_between_levels_and_beyond_is_said
 # --- studies
 
 
+@pytest.mark.slow
 def test_orders_of_moreau_are_those_of_theory():
     smooth = study(OSCILLATOR, [Moreau(), Moreau(theta=1.0)], **SHORT)
     assert smooth.order("Moreau").slope == pytest.approx(2.0, abs=0.05)

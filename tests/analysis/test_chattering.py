@@ -60,6 +60,7 @@ def assert_sequences_are_exact(rpm, turns, method=None, most=100):
             np.testing.assert_allclose(s.impacts, followed, rtol=0, atol=4e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rpm", [115.0, 119.7125])
 def test_sequences_that_end_near_a_corner_agree_with_many_digits(rpm):
     assert_sequences_are_exact(rpm, 1, most=1)
@@ -124,6 +125,7 @@ def test_an_impact_meets_the_corner_where_many_digits_say(meeting):
     assert before_the_corner(found * (1 - 1e-12)) != before_the_corner(found * (1 + 1e-12))
 
 
+@pytest.mark.slow
 def test_crossings_close_together_are_told_apart():
     # A tooth of the accumulation point whose tip passes the corner f by little: a grid of 0.4 rpm saw none of the two
     found = corner_crossings(resting, (139.0, 140.0), impacts=0)

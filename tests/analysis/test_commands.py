@@ -73,6 +73,7 @@ def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
         assert data["label"].shape == (30, 40)
 
 
+@pytest.mark.slow
 def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
     status, out, _ = run(
         capsys, "orbit", "cam-follower", "--rpm", 720, "--transient", 200, "--range", 715, 745,

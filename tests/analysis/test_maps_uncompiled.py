@@ -31,6 +31,7 @@ def lines(tmp_path_factory):
     return both_ways(tmp_path_factory.mktemp("sources"), PROGRAM)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 def test_periods_are_the_same_uncompiled(lines, way):
     built, plain = lines

@@ -132,6 +132,7 @@ bifurcation(make, "rpm", np.linspace(357.0, 362.0, 40), start="forward", drop=40
 """
 
 
+@pytest.mark.slow
 def test_a_diagram_killed_in_the_middle_goes_on_to_the_same_bits(tmp_path):
     out = tmp_path / "parts"
     run = subprocess.Popen(

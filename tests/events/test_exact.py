@@ -173,7 +173,7 @@ def test_a_ball_on_the_table_has_an_orbit_of_one_period():
 SLOW_CAMS = [pytest.param(rpm, marks=pytest.mark.thorough) for rpm in (120.0, 150.0)]
 
 
-@pytest.mark.parametrize("rpm", [*SLOW_CAMS, 200.0])
+@pytest.mark.parametrize("rpm", [*SLOW_CAMS, pytest.param(200.0, marks=pytest.mark.slow)])
 def test_the_follower_that_leaves_and_regains_the_cam_agrees_between_its_rows(rpm):
     period = 60.0 / rpm
     body = Body(m=1.221, k=1430.8, r=0.8, s=cam(rpm), corners=cam_corners(rpm), scan=mpf(period) / 300)
