@@ -80,7 +80,7 @@ FASTER_CAMS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("rpm", shared(FASTER_CAMS, 6))
+@pytest.mark.parametrize("rpm", shared(FASTER_CAMS, 14))
 def test_sequences_of_faster_cams(rpm):
     assert_sequences_are_exact(rpm, 2)
 
