@@ -65,6 +65,9 @@ class Build(build_ext):
             if importlib.util.find_spec("ziglang") is None:
                 sys.exit(NO_COMPILER)
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
+        for ext in self.extensions:
+            ext.digest = digest(ext)
+        translate([ext for ext in self.extensions if self.force or not is_built(ext)])
         super().run()
         if self.inplace:
             for ext in self.extensions:
@@ -103,15 +106,14 @@ def is_built(ext: Module) -> bool:
     return (HERE / file).exists() and note.exists() and note.read_text() == ext.digest
 
 
-def digested(ext: Module) -> Module:
-    """The module with its checksum: of Cython's version, of the options, of its source and of what that includes."""
+def digest(ext: Module) -> str:
+    """A checksum: of Cython's version, of the options, of a module's source and of what that includes."""
     found = [*create_dependency_tree().all_dependencies(ext.sources[0]), *ext.depends]
     places = HERE / "lcpstep", HERE / "build"
     mine = sorted({HERE / file for file in found if any(map((HERE / file).is_relative_to, places))})
     texts = [file.relative_to(HERE).as_posix().encode() + file.read_bytes() for file in mine]
     whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS)).encode(), *texts]
-    ext.digest = hashlib.sha256(b"\0".join(whole)).hexdigest()
-    return ext
+    return hashlib.sha256(b"\0".join(whole)).hexdigest()
 
 
 def has_compiler() -> bool:
@@ -156,25 +158,27 @@ def functions_of_ready_scenes() -> Module:
     return Module("lcpstep.kernels.ready", [str(file.relative_to(HERE))], extra_compile_args=OPTIONS)
 
 
-def translated(modules: list[Module]) -> list[Module]:
-    """These modules, as C what does not lie built."""
-    stale = [m for m in modules if not is_built(m)]
+def translate(modules: list[Module]) -> None:
+    """Write these modules as C, which takes the place of their sources.
+
+    Done by the command that compiles, and not when this file is run: pip and build run it several times, to ask for
+    requirements and metadata, each time in a process of its own.
+    """
     in_c = cythonize(
-        stale,
+        modules,
         nthreads=os.cpu_count() or 1,
         force=True,
         compiler_directives=DIRECTIVES,
         build_dir="build/cython",
     )
-    digests = {m.name: m.digest for m in stale}
-    for module in in_c:
-        module.digest = digests[module.name]
-    return [m for m in modules if is_built(m)] + in_c
+    sources = {made.name: made.sources for made in in_c}
+    for module in modules:
+        module.sources = sources[module.name]
 
 
 if __name__ == "__main__":
     setup(
-        ext_modules=translated([digested(m) for m in extensions()]),
+        ext_modules=extensions(),
         cmdclass={"build_ext": Build},
         setup_requires=[] if has_compiler() else ["ziglang"],  # into the build environment that pip makes
     )

@@ -111,8 +111,11 @@ def install(*arguments: str) -> None:
             wheel = fetch_pip(Path(folder))
             subprocess.check_call([python, f"{wheel}/pip", "install", "--quiet", str(wheel)])
         way = ways[0]
+    later = (
+        [] if sys.dont_write_bytecode else ["--no-compile"]
+    )  # each file is compiled as it is first imported
     pip = subprocess.Popen(
-        [*way, "install", "--verbose", *arguments], cwd=ROOT, text=True, errors="replace",
+        [*way, "install", "--verbose", *later, *arguments], cwd=ROOT, text=True, errors="replace",
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
     said = list(shown(pip.stdout))

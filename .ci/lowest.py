@@ -33,14 +33,11 @@ def pinned(bound: str) -> str:
 
 
 def set_up(environment: Path) -> None:
-    """Make the environment afresh and install the project into it."""
+    """Make the environment afresh, of dependencies alone: tests find the project as it is built beside them."""
     start.ENVIRONMENT = environment
     start.BIN = environment / start.BIN.name
     venv.create(environment, clear=True)
-    constraints = environment / "lowest.txt"
-    constraints.write_text("\n".join(lowest()) + "\n")
-    extras = ",".join(EXTRAS)
-    start.install("--constraint", str(constraints), "--editable", f".[{extras}]")
+    start.install(*lowest())
 
 
 if __name__ == "__main__":

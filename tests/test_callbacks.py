@@ -312,6 +312,7 @@ for name in ("default", "partial by keyword"):
 """
 
 
+@pytest.mark.slow
 @compiled_only
 def test_callbacks_with_more_arguments_are_read_back_from_where_they_were_kept():
     for _ in range(2):
@@ -361,6 +362,7 @@ for method in Moreau(0.1), EventDriven():
 """
 
 
+@pytest.mark.slow
 def test_a_callback_may_print(tmp_path):
     (tmp_path / "printing.py").write_text(PRINTING)
     for _ in range(2):  # the second process finds the machine code on disk

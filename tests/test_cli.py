@@ -22,6 +22,7 @@ def test_scenes_are_listed_with_one_line_each(capsys):
     assert all(x["about"] and x["parameters"] for x in listed)
 
 
+@pytest.mark.slow
 def test_compare_measures_and_draws(capsys, tmp_path):
     status, out, _ = run(
         capsys, "compare", "cam-follower", "--rpm", 358, 700, "--h", 1e-4, "--t-end", 0.3,

@@ -40,12 +40,26 @@ scene = Scene(system=System(1, 1.0, force), q0=1.0, v0=0.0, t_span=(0.0, 1.0))
 """
 
 
-@pytest.mark.parametrize("expression", ["NUMBER", "helper(1.0)", "ARRAY[0]"])
-def test_a_callback_kept_on_disk_is_not_taken_for_another(tmp_path, expression):
-    (tmp_path / "scene.py").write_text(SCENE_FILE.replace("{expression}", expression))
-    run = (
-        f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from scene import scene; "
-        "from lcpstep import Moreau, simulate; print(simulate(scene, Moreau(0.5)).v[-1, 0])"
-    )
-    for number in ("2.0", "3.0", "2.0"):
-        assert float(python(run, NUMBER=number).split("\n")[-1]) == float(number)
+EXPRESSIONS = ["NUMBER", "helper(1.0)", "ARRAY[0]"]
+
+
+@pytest.fixture(scope="module")
+def three_processes(tmp_path_factory):
+    """The number that each process was given, and what scenes with these expressions came to in it."""
+    folder = tmp_path_factory.mktemp("scenes")
+    for k, expression in enumerate(EXPRESSIONS):
+        (folder / f"scene{k}.py").write_text(SCENE_FILE.replace("{expression}", expression))
+    run = f"import sys; sys.path.insert(0, {str(folder)!r}); from lcpstep import Moreau, simulate\n"
+    for k in range(len(EXPRESSIONS)):
+        run += f"import scene{k}; print(simulate(scene{k}.scene, Moreau(0.5)).v[-1, 0])\n"
+    said = {}
+    for nth, number in enumerate(("2.0", "3.0", "2.0")):
+        lines = python(run, NUMBER=number).split("\n")[-len(EXPRESSIONS) :]
+        said[nth] = (float(number), dict(zip(EXPRESSIONS, map(float, lines), strict=True)))
+    return said
+
+
+@pytest.mark.parametrize("expression", EXPRESSIONS)
+def test_a_callback_kept_on_disk_is_not_taken_for_another(three_processes, expression):
+    for number, found in three_processes.values():
+        assert found[expression] == number

@@ -146,6 +146,7 @@ def test_a_method_that_writes_is_named_as_writing():
         simulate(falling(fills), Moreau(1e-2))
 
 
+@pytest.mark.slow
 @compiled_only
 def test_the_same_functions_on_arrays_of_its_own_are_compiled():
     def force(t, q, v, p, out):

@@ -69,6 +69,7 @@ def test_the_follower_touches_its_cam_where_the_gap_is_closed():
         assert follower.corners[0][1] == pytest.approx(top, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_an_impact_turns_its_shape_red_and_fades(run):
     made = film(run, seconds=5.0, fps=20)
     red = np.array([np.sum(np.all(np.abs(x - 255.0 * np.array(STRUCK)) < 40, axis=2)) for x in made.frames()])

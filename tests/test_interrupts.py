@@ -16,6 +16,7 @@ from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status,
 from lcpstep.cli import interrupt
 from lcpstep.pace import Pace
 from lcpstep.recording import Recorder
+from tests.marks import shared
 from tests.processes import environment
 from tests.stepping.test_sparse import column
 
@@ -250,8 +251,7 @@ def test_hard_cases_that_are_interrupted_go_on_with_the_scene_of_the_last_line(c
     assert said(err, "go on with") == "lcpstep hard --scene bouncing-ball dyadic-ball --method located"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("between", [0.0, 0.02, 0.2])
+@pytest.mark.parametrize("between", shared([0.0, 0.02, 0.2], 3))
 @pytest.mark.parametrize("command", ["simulate", "bifurcation", "hard", "map"])
 def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_path):
     words = [command, *LONG[command].split()]
@@ -302,7 +302,7 @@ def test_the_command_that_is_told_goes_on_from_there(tmp_path, monkeypatch):
         "--window",
         "660-760",
         "--points",
-        "300",
+        "200",
         "--drop",
         "60000",
         "--jobs",

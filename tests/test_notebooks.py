@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import lcpstep
+from tests.marks import shared
 
 ROOT = Path(lcpstep.__file__).parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -45,8 +46,7 @@ def test_a_notebook_is_kept_without_outputs_and_says_how_long_its_cells_take(fil
     assert set(said) <= set(NUMBERS)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", shared(NOTEBOOKS, 3), ids=lambda file: file.stem)
 def test_a_notebook_runs_and_its_last_figures_are_shown(file, tmp_path, monkeypatch):
     client = pytest.importorskip("nbclient")
     pytest.importorskip("ipykernel")

@@ -87,6 +87,7 @@ def scene(omega=2.0, stop=0.0):
 """
 
 
+@pytest.mark.slow
 def test_other_commands_take_files_too(folder, capsys):
     (folder / "driven.py").write_text(DRIVEN)
     ready, mine = "impact-oscillator", "driven.py"

@@ -128,11 +128,36 @@ def test_a_log_of_the_building_that_nobody_watches_is_not_written_over(capsys):
     assert capsys.readouterr().out == ""
 
 
+def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
+    """pip and build ask for it several times, each time in a process of its own."""
+    for name in ("setup.py", "ready.py", "pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, tmp_path)
+    shutil.copytree(ROOT / "lagrangian", tmp_path / "lagrangian")
+    (tmp_path / "lcpstep").mkdir()
+    for name in ("__init__.py", "pointers.pxd", "rows.pxd", "rows.py"):
+        shutil.copy(ROOT / "lcpstep" / name, tmp_path / "lcpstep")
+    words = [sys.executable, "setup.py", "egg_info"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Cythonizing" not in done.stdout
+    assert not (tmp_path / "build" / "cython").exists()
+
+
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """The source archive and the wheel, made as CI makes them; modules that are built are taken over."""
     folder = tmp_path_factory.mktemp("dist")
-    words = ["-m", "build", "--no-isolation", "--sdist", "--wheel", "--outdir", str(folder), str(ROOT)]
+    words = [
+        "-m",
+        "build",
+        "--no-isolation",
+        "--skip-dependency-check",
+        "--sdist",
+        "--wheel",
+        "--outdir",
+        str(folder),
+        str(ROOT),
+    ]
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return next(folder.glob("*.tar.gz")), next(folder.glob("*.whl"))

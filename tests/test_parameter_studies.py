@@ -30,6 +30,7 @@ measures = ["impacts", "strongest", "q_end"]
 FILES = 'file = "out.nc"\ntable = "out.csv"\npicture = "out.png"\nruns = "runs"\n'
 
 
+@pytest.mark.slow
 def test_a_study_is_run_over_all_combinations_and_its_result_carries_it(folder, capsys):
     (folder / "study.toml").write_text(TEXT + FILES)
     status, _, err = run(capsys, "run", "study.toml")

@@ -189,7 +189,7 @@ def brute(a, b, n=200):
     return max(d.min(axis=1).max(), d.min(axis=0).max())
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(points, points, st.randoms(use_true_random=False))
 def test_the_distance_of_polylines_is_that_of_their_points(a, b, random):
     a, b = (np.column_stack([sorted(random.choice(range(9)) for _ in v), v]) for v in (a, b))

@@ -170,6 +170,7 @@ def test_the_dry_thresholds_lock_the_wheel_on_a_wet_road():
         limit_cycle(hybrid_abs(road="wet"))
 
 
+@pytest.mark.slow
 def test_the_command_writes_what_it_prints(capsys, tmp_path):
     arguments = ["abs", "--grid", "6", "--points", "8", "--out", str(tmp_path), "--json"]
     assert main(arguments) == 0

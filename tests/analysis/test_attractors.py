@@ -143,6 +143,7 @@ def blocks(random, n, shift=0.0):
     return Sample(phase, [-random.exponential(1.0, 50) for _ in range(n)], 50, np.zeros((1, 2)))
 
 
+@pytest.mark.slow
 def test_samples_of_one_distribution_are_alike_and_of_two_are_not(monkeypatch):
     monkeypatch.setattr("lcpstep.analysis.likeness.RESAMPLES", 300)
     random = np.random.default_rng(0)

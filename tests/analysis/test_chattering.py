@@ -9,6 +9,7 @@ from lagrangian.profiles import rotating_cam
 from lcpstep import EventDriven, Kind, simulate
 from lcpstep.analysis.chattering import corner_crossings, plain, sequences
 from tests.cam_sequences import sequences as exact_sequences
+from tests.marks import shared
 
 # Speeds at which the end of a sequence meets a corner, by bisection of `cam_sequences` [rpm]
 FLAT = 119.712481039598336  # nose to top dwell, on the way up; the cam presses on both sides
@@ -59,30 +60,35 @@ def assert_sequences_are_exact(rpm, turns, method=None, most=100):
             np.testing.assert_allclose(s.impacts, followed, rtol=0, atol=4e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rpm", [115.0, 119.7125])
 def test_sequences_that_end_near_a_corner_agree_with_many_digits(rpm):
     assert_sequences_are_exact(rpm, 1, most=1)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("rpm", [114.98, 115.2, 118.0, 119.7, 119.712, 119.71248, 119.7125, 119.713, 119.73])
-@pytest.mark.parametrize("method", [EventDriven(), EventDriven(rtol=1e-13, atol=1e-14)])
-def test_sequences_of_slow_cams(rpm, method):
-    assert_sequences_are_exact(rpm, 1, method)
+SLOW_CAMS = [114.98, 115.2, 118.0, 119.7, 119.712, 119.71248, 119.7125, 119.713, 119.73]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "rpm",
-    [134.9, 136.3, 136.37, 136.4, 160.0, 171.0, 172.0, 175.0, 178.0, 180.0, 191.0, 195.0, 198.0, 198.56],
-)
+@pytest.mark.parametrize("rpm", shared(SLOW_CAMS, 4))
+def test_sequences_of_slow_cams(rpm):
+    for method in (EventDriven(), EventDriven(rtol=1e-13, atol=1e-14)):  # before one and the same reference
+        assert_sequences_are_exact(rpm, 1, method)
+
+
+FASTER_CAMS = [
+    134.9, 136.3, 136.37, 136.4, 160.0, 171.0, 172.0, 175.0, 178.0, 180.0, 191.0, 195.0, 198.0, 198.56,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("rpm", shared(FASTER_CAMS, 14))
 def test_sequences_of_faster_cams(rpm):
     assert_sequences_are_exact(rpm, 2)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("speed", "corner"), MEETINGS)
-def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(speed, corner):
+@pytest.mark.parametrize("meeting", shared(MEETINGS, 3))
+def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(meeting):
+    speed, corner = meeting
+
     def before_the_corner(rpm):
         cam, found = exact_sequences(rpm, 2, 1)
         n = corner if speed != LAST else corner + 6
@@ -93,7 +99,9 @@ def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(speed
 
 
 @pytest.mark.parametrize(("speed", "corner"), MEETINGS)
-@pytest.mark.parametrize("width", [(0.03, 0.02), (1e-3, 2e-3), (1e-6, 1e-6)])
+@pytest.mark.parametrize(
+    "width", [(0.03, 0.02), pytest.param((1e-3, 2e-3), marks=pytest.mark.thorough), (1e-6, 1e-6)]
+)
 def test_the_end_of_a_sequence_meets_the_corner_at_that_speed_from_both_sides(speed, corner, width):
     low, high = speed - width[0], speed + width[1]
     found = corner_crossings(resting, (low, high), impacts=0)
@@ -101,9 +109,9 @@ def test_the_end_of_a_sequence_meets_the_corner_at_that_speed_from_both_sides(sp
     assert meeting.p == pytest.approx(speed, rel=1e-12)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("number", "speed"), [(1, 124.998296821), (3, 121.685871922), (5, 120.735577178)])
-def test_an_impact_meets_the_corner_where_many_digits_say(number, speed):
+@pytest.mark.parametrize("meeting", shared([(1, 124.998296821), (3, 121.685871922), (5, 120.735577178)], 3))
+def test_an_impact_meets_the_corner_where_many_digits_say(meeting):
+    number, speed = meeting
     (found,) = [
         c.p
         for c in corner_crossings(resting, (speed - 0.3, speed + 0.2))
@@ -117,6 +125,7 @@ def test_an_impact_meets_the_corner_where_many_digits_say(number, speed):
     assert before_the_corner(found * (1 - 1e-12)) != before_the_corner(found * (1 + 1e-12))
 
 
+@pytest.mark.slow
 def test_crossings_close_together_are_told_apart():
     # A tooth of the accumulation point whose tip passes the corner f by little: a grid of 0.4 rpm saw none of the two
     found = corner_crossings(resting, (139.0, 140.0), impacts=0)

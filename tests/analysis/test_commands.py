@@ -13,6 +13,7 @@ from tests.commands import run
 xarray = pytest.importorskip("xarray")
 
 
+@pytest.mark.slow
 def test_attractor_classifies_saves_and_compares(capsys, tmp_path):
     status, out, _ = run(
         capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 30, "--compare", 400, "--h", 2e-5,
@@ -72,6 +73,7 @@ def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
         assert data["label"].shape == (30, 40)
 
 
+@pytest.mark.slow
 def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
     status, out, _ = run(
         capsys, "orbit", "cam-follower", "--rpm", 720, "--transient", 200, "--range", 715, 745,
@@ -204,7 +206,7 @@ BLOCK = ("stick-slip-oscillator", "--set", "amplitude=0.3", "omega=0.9")
         pytest.param(
             ("basin", *STICKING, "--position", -1, 1, "--velocity", -1, 1, "--grid", 4, 4, "--longest", 30,
              "--sample", 4),
-            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"], marks=pytest.mark.slow,
+            "O(1, 4)              share 1.00000", ["basins.nc", "basins.png"], marks=pytest.mark.thorough,
         ),
         (("orbit", "stick-slip-oscillator", "--mode", "stick", "--transient", 3), "period 8.06888787159", []),
     ],

@@ -64,6 +64,7 @@ def exact_orbit(orbit):
     return mp.findroot(closing, tuple(mp.mpf(float(z)) for z in (*orbit.x, orbit.p)))
 
 
+@pytest.mark.slow
 def test_the_corner_impact_has_thirteen_digits(orbit):
     z = exact_orbit(orbit)
     assert orbit.p == pytest.approx(float(z[2]), rel=1e-13)

@@ -183,6 +183,7 @@ def test_an_impact_on_a_corner_is_located():
         corner_crossings(resting, (2.0, 1.0))
 
 
+@pytest.mark.slow
 def test_the_command_finds_the_corner_impact_and_keeps_what_is_there(capsys, tmp_path):
     import json
 

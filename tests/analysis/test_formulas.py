@@ -221,6 +221,7 @@ def image(x, p):
 '''
 
 
+@pytest.mark.slow
 def test_a_map_of_ones_own(capsys, tmp_path):
     file = tmp_path / "henon.py"
     file.write_text(HENON)
@@ -320,6 +321,7 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
     assert said in err
 
 
+@pytest.mark.slow
 def test_every_ready_map_runs_from_its_defaults(capsys):
     for name in MAPS:
         assert run(capsys, name, "--keep", 60)[0] == DONE

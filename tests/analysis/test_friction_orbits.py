@@ -97,6 +97,7 @@ def test_the_woodpecker_has_a_stable_orbit_whatever_the_tolerance():
         assert np.max(np.abs(slope - J @ u)) < 1e-5
 
 
+@pytest.mark.slow
 def test_an_orbit_is_followed_over_the_speed_of_the_belt():
     def make(belt):
         return scenes.mass_on_belt(belt=belt, **SWAYING)
@@ -119,6 +120,7 @@ def test_what_is_no_event_of_the_scene_is_named():
         EventMap(scene, EventDriven(), "SLIP", limit=30.0).entry()
 
 
+@pytest.mark.slow
 def test_the_commands_take_scenes_with_friction(tmp_path, capsys):
     assert main(["orbit", "woodpecker", "--event", "impact", "--cyclic", "0", "--transient", "3"]) == 0
     said = capsys.readouterr().out

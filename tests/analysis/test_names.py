@@ -22,6 +22,7 @@ def found(rpm, method, n=40, seed=0, **settings):
     return attractors(scene, method, outside(scene, random_starts(BOX, n, seed), 0.0), **settings)
 
 
+@pytest.mark.slow
 def test_time_stepping_names_the_two_orbits_at_358_5_rpm_as_event_driven_does():
     exact, stepped = found(358.5, EventDriven()), found(358.5, Moreau(h=1e-4))
     assert exact.settings["tolerance"] == 1e-6
@@ -44,7 +45,7 @@ def test_time_stepping_names_the_two_orbits_at_358_5_rpm_as_event_driven_does():
     ("rpm", "h"),
     [
         (358.5, 5e-5), (690.0, 1e-4), (359.2, 1e-4),
-        pytest.param(358.5, 1e-5, marks=pytest.mark.slow), pytest.param(359.2, 3e-5, marks=pytest.mark.slow),
+        pytest.param(358.5, 1e-5, marks=pytest.mark.thorough), pytest.param(359.2, 3e-5, marks=pytest.mark.slow),
     ],
 )  # fmt: skip
 def test_an_exponent_by_time_stepping_is_right_within_its_error_or_not_told(rpm, h):
@@ -60,6 +61,7 @@ def test_an_exponent_by_time_stepping_is_right_within_its_error_or_not_told(rpm,
         assert stepped.lyapunov.reason
 
 
+@pytest.mark.slow
 def test_a_cycle_that_only_one_grid_has_is_no_attractor():
     scene = cam_follower(rpm=358.5)
     starts = outside(scene, random_starts(BOX, 100, 0), 0.0)[[0, 1, 2, 40, 76]]

@@ -221,6 +221,7 @@ def test_multipliers_of_an_undamped_flow_multiply_to_the_restitution_squared_per
     )
 
 
+@pytest.mark.slow
 def test_the_corner_and_the_flip_of_the_single_impact_orbit_are_found():
     P = PeriodMap(scenes.cam_follower(rpm=700.0), EventDriven())
     orbit = periodic_orbit(P.scene, iterate(P, [0.4, 0.4], 150)[-1])

@@ -48,7 +48,7 @@ def test_a_flip_over_another_parameter_is_proved_at_its_speed(capsys, tmp_path):
     assert "omega: [2.65000000" in out
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_orbit_proves_the_special_points_of_its_branch(capsys, tmp_path):
     status, out, _ = run(
         capsys, "orbit", "cam-follower", "--rpm", 700, "--transient", 200, "--range", 660, 760, "--out", tmp_path,

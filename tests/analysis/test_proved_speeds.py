@@ -30,6 +30,7 @@ def orbit():
     return periodic_orbit(cam(700.0), [1.33, -66.2])
 
 
+@pytest.mark.slow
 def test_the_corner_impact_of_the_cam_follower_is_enclosed_to_twelve_digits(orbit):
     found = corner_impact(cam, 674.0, orbit.x[0])
     proof = prove_speed(found)

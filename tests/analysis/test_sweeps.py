@@ -86,6 +86,7 @@ def test_an_executor_whose_worker_is_killed_leaves_finished_parts_and_the_next_c
     assert all(np.array_equal(a["squares"], b["squares"]) for a, b in zip(resumed[0], whole[0], strict=True))
 
 
+@pytest.mark.slow
 def test_a_cluster_of_processes_retries_what_a_killed_worker_was_doing(tmp_path):
     distributed = pytest.importorskip("distributed")
     settings = {"distributed.scheduler.allowed-failures": 5}
@@ -131,6 +132,7 @@ bifurcation(make, "rpm", np.linspace(357.0, 362.0, 40), start="forward", drop=40
 """
 
 
+@pytest.mark.slow
 def test_a_diagram_killed_in_the_middle_goes_on_to_the_same_bits(tmp_path):
     out = tmp_path / "parts"
     run = subprocess.Popen(

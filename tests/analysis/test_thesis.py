@@ -13,8 +13,9 @@ from lcpstep.thesis.maps import SCENARIOS, normal_form
 from lcpstep.thesis.numbers import Number, agreement, carried, entries, numbers
 from lcpstep.thesis.page import chapter_of, table
 from lcpstep.thesis.printed import PRINTED
+from tests.marks import shared
 
-FAST = ("2", "3.2", "3.3", "4.4", "7.2", "7.5")
+FAST = ("2", "4.4", "7.5")
 
 
 @pytest.mark.parametrize("name", FAST)
@@ -27,8 +28,7 @@ def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
     assert "exists already; --overwrite" in capsys.readouterr().err
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in FIGURES if name not in FAST])
+@pytest.mark.parametrize("name", shared([name for name in FIGURES if name not in FAST], 6))
 def test_every_figure_can_be_made(name, tmp_path, monkeypatch):
     """Of fewer periods and cells than are drawn: what they show is the matter of other tests."""
     for size, fewer in (("DROP", 50), ("LONG", 100), ("CELLS", 200)):

@@ -7,6 +7,7 @@ import pytest
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Status, simulate
+from tests.marks import shared
 from tests.models import RISING_CIRCLE
 
 TOLERANCE = 1e-10
@@ -56,8 +57,7 @@ def test_nothing_lies_inside_a_moving_wall_at_any_time(seed):
     check(before_moving_walls(seed), seed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30, 500))
+@pytest.mark.parametrize("seed", shared(range(30, 500), 10))
 def test_nothing_lies_inside_many_more_moving_walls(seed):
     check(before_moving_walls(seed), seed)
 

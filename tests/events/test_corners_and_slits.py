@@ -8,6 +8,7 @@ import pytest
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.gaps import closing_in
+from tests.marks import shared
 
 GRAVITY = 9.81
 FORCES = {"constant": 1.0, "harmonic": Harmonic(constant=1.0, cosine=2.0, omega=3.0)}
@@ -131,8 +132,7 @@ def test_a_point_comes_to_rest_in_a_groove(seed):
     check_groove(seed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(20, 400))
+@pytest.mark.parametrize("seed", shared(range(20, 400), 4))
 def test_so_it_does_in_many_more_grooves(seed):
     check_groove(seed)
 
@@ -177,8 +177,7 @@ def test_bundles_of_planes_end_and_hold(seed):
     check_bundle(seed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(60, 1000))
+@pytest.mark.parametrize("seed", shared(range(60, 1000), 4))
 def test_many_more_bundles_of_planes_end_and_hold(seed):
     check_bundle(seed)
 

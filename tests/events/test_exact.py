@@ -98,6 +98,7 @@ def test_every_row_of_the_follower_agrees_not_only_its_impacts():
 # --- chattering, sticking, release
 
 
+@pytest.mark.slow
 def test_an_oscillator_that_sticks_at_its_stop():
     arguments = {"omega": 0.25, "amplitude": 2.0, "stop": 0.5, "restitution": 0.6}
     m, exact = simulate(scenes.impact_oscillator(**arguments), EventDriven()), oscillator(**arguments)
@@ -169,10 +170,10 @@ def test_a_ball_on_the_table_has_an_orbit_of_one_period():
     np.testing.assert_allclose(impacts.after, v - A * w * math.cos(phi), rtol=0, atol=1e-10)
 
 
-SLOW_CAMS = [pytest.param(rpm, marks=pytest.mark.slow) for rpm in (120.0, 150.0)]
+SLOW_CAMS = [pytest.param(rpm, marks=pytest.mark.thorough) for rpm in (120.0, 150.0)]
 
 
-@pytest.mark.parametrize("rpm", [*SLOW_CAMS, 200.0])
+@pytest.mark.parametrize("rpm", [*SLOW_CAMS, pytest.param(200.0, marks=pytest.mark.slow)])
 def test_the_follower_that_leaves_and_regains_the_cam_agrees_between_its_rows(rpm):
     period = 60.0 / rpm
     body = Body(m=1.221, k=1430.8, r=0.8, s=cam(rpm), corners=cam_corners(rpm), scan=mpf(period) / 300)

@@ -8,6 +8,7 @@ import pytest
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Status, simulate
 from tests.events.test_corners_and_slits import bundle
+from tests.marks import shared
 
 TOLERANCE, SPAN = 1e-11, 5.0
 METHOD = EventDriven(TOLERANCE, TOLERANCE, max_events=50_000)
@@ -79,8 +80,7 @@ def test_the_motion_does_not_depend_on_how_it_is_asked_for(seed):
     check(seed)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(20, 300))
+@pytest.mark.parametrize("seed", shared(range(20, 300), 5))
 def test_nor_do_many_more(seed):
     check(seed)
 

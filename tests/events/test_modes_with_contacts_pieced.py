@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 from lagrangian import Guard, HybridScene, HybridSystem, LinearContacts, Mode, Scene, System
 from lcpstep import EventDriven, Kind, Status, simulate
+from tests.marks import shared
 
 END, SWITCHES = 6.0, 10
 SLOWER = 0.7
@@ -147,9 +148,8 @@ def pieced(scene, planes, slow):
     return found
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::lcpstep.callbacks.UncompiledCallback")
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", shared(range(12), 3))
 def test_a_run_with_modes_is_its_runs_without_them_in_turn(seed):
     scene, planes, slow = random_scene(seed)
     run, known = simulate(scene, EventDriven()), pieced(scene, planes, slow)

@@ -36,6 +36,7 @@ def exact_fundamental(delta, w2, tau):
     return E[0, 1], E[1, 1], E[2, 1]
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(rates, rates, times)
 def test_the_fundamental_motion_is_that_of_the_matrix_exponential(delta, w2, tau):

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from lcpstep import EventDriven, Kind, Moreau, Status, simulate
+from tests.marks import shared
 from tests.random_friction import answers, close_impacts, complaints, draw, left_open, nowhere_to_go
 
 PER_TEST = 20
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("first", range(1000, 1200, PER_TEST))
+@pytest.mark.parametrize("first", shared(range(1000, 1200, PER_TEST), 5))
 @pytest.mark.parametrize("law", ["moreau", "stronge"])
 def test_runs_end_create_no_energy_and_are_those_of_small_steps(first, law):
     for seed in range(first, first + PER_TEST):

@@ -1,5 +1,7 @@
 """The event loop's kernels as plain Python give what they give when built."""
 
+import pytest
+
 from tests.uncompiled import both_ways
 
 PROGRAM = """
@@ -74,6 +76,7 @@ def test_systems_with_modes_and_contacts_of_the_sources_alone_are_those_of_what_
     assert built[0].startswith("DONE")
 
 
+@pytest.mark.slow
 def test_motions_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

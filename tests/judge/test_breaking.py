@@ -26,12 +26,14 @@ def thrown():
     return run(THROWN, "moreau")
 
 
+@pytest.mark.slow
 def test_what_grows_beyond_a_step_far_too_long_is_said_by_the_status(thrown):
     assert thrown.status == "NEWTON_FAILED"
     assert 0.1 < breaks_down(THROWN, thrown) < 0.4
     assert "energy gained" not in {x.kind for x in check(THROWN, thrown)}
 
 
+@pytest.mark.slow
 def test_what_grows_before_is_found(thrown, monkeypatch):
     """Speeds that have grown to twice theirs within the first three steps, with finer steps too."""
     m = thrown.motion
@@ -45,6 +47,7 @@ def test_a_run_that_says_nothing_is_judged_to_its_end(thrown):
     assert "energy gained" in {x.kind for x in check(THROWN, silent)}
 
 
+@pytest.mark.slow
 def test_a_run_that_leaves_its_joints_is_judged_up_to_where_they_swing_too_fast(monkeypatch):
     """A heavy body turns about within a millisecond, steps are seven long; before that it gains nothing."""
     d, _ = RECENTLY["a joint that hands the energy of a heavy body to light ones within a millisecond"]

@@ -200,6 +200,7 @@ def test_a_run_that_does_not_come_on_is_an_anomaly(monkeypatch):
     assert kinds(verdict.findings) == {"hang"}
 
 
+@pytest.mark.slow
 def test_anomalies_are_made_small():
     """What is wrong with this scene is its second contact."""
     small = shrunk(CORNER, lambda d: 1.0 in [row[-1] for row in d.G], seconds=30.0)

@@ -35,6 +35,7 @@ def described(seed, count):
             yield d, 2.0 ** rng.integers(-20, 21), 2.0 ** rng.integers(-10, 11), 4.0 ** rng.integers(-10, 11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["located", "located-4", "located-exact"])
 def test_a_scene_moves_alike_in_any_units(method):
     for d, length, time, mass in described(11, 40):

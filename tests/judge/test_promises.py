@@ -181,6 +181,7 @@ def test_the_nearest_of_a_million_impacts_is_found_at_once():
     assert np.all(nearest(many, many) == 0.0)
 
 
+@pytest.mark.slow
 def test_impacts_are_told_until_companions_strike_in_another_order():
     """A body that comes to rest in the apex of four walls, between two times at which places are looked at."""
     d = Description(

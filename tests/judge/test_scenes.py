@@ -5,6 +5,7 @@ docs/accuracy.md says how often each happens.
 """
 
 from dataclasses import replace
+from itertools import count, islice
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
+from tests.marks import shared
 
 QUICK = ("event-driven", "located", "moreau")
 
@@ -30,7 +32,15 @@ def new(findings):
     return [x for x in findings if silent(x.kind) and x.kind not in OPEN.get(x.method, ())]
 
 
-@pytest.mark.parametrize("name", [*KEPT, *LATELY, *RECENTLY])
+LONG = {  # of these
+    "ends of chattering that thousands of impacts interrupt",
+    "contacts beside a joint, pressed by forces that begin at zero",
+    "a light mass on a rod that the heavy one lets go through a dead point",
+}
+NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in (*KEPT, *LATELY, *RECENTLY)]
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_what_was_wrong_once_is_right(name):
     d, methods = (KEPT | LATELY | RECENTLY)[name]
     assert judged(d, methods, share=1.0).findings == []
@@ -87,20 +97,25 @@ def judge(numbers, seed, methods, share):
         yield from [(answer.index, answer.scene, x) for x in new(answer.findings)]
 
 
-def test_some_hundred_scenes():
+def short(seed, scenes, contacts=100):
+    """Numbers of the first scenes whose runs take less than a hundred steps."""
+    numbers = (k for k in count() if (d := draw(seed, k)).length < 100.0 * d.h and d.contacts < contacts)
+    return list(islice(numbers, scenes))
+
+
+@pytest.mark.parametrize(
+    ("first", "last"), [(0, 50), pytest.param(50, 200, marks=pytest.mark.thorough)], ids=str
+)
+def test_some_hundred_scenes(first, last):
     """Short ones, by the methods that are asked for most."""
-    short = [k for k in range(700) if (d := draw(3, k)).length < 100.0 * d.h and d.contacts < 5]
-    assert len(short) > 200
-    assert list(judge(short[:200], 3, QUICK, 0.02)) == []
+    assert list(judge(short(3, last, contacts=5)[first:], 3, QUICK, 0.02)) == []
 
 
 GRAVE = {"hang", "not finite", "penetration", "raised", "tolerance missed", "finer tolerance missed"}
 
 
-@pytest.mark.slow
-def test_some_hundred_scenes_by_every_method():
+@pytest.mark.parametrize("first", shared(range(0, 300, 50), 6))
+def test_some_hundred_scenes_by_every_method(first):
     """None hangs, leaves the finite numbers, goes through a wall or misses its tolerance by more than ten times."""
-    short = [k for k in range(1000) if (d := draw(221122, k)).length < 100.0 * d.h]
-    assert len(short) > 300
-    found = judge(short[:300], 221122, tuple(WAYS), 0.0)
+    found = judge(short(221122, first + 50)[first:], 221122, tuple(WAYS), 0.0)
     assert [x for x in found if x[2].kind in GRAVE] == []

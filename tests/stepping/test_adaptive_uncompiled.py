@@ -33,6 +33,7 @@ for scene, method in cases:
 """
 
 
+@pytest.mark.slow
 def test_steps_are_alike_where_they_are_not_built(tmp_path):
     built, plain = both_ways(tmp_path, MOTIONS)
     assert plain == built

@@ -8,6 +8,7 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
+from tests.marks import shared
 from tests.stepping import coupled
 
 ORDERS = [2, 4, "exact"]
@@ -112,8 +113,7 @@ def test_contact_forces_that_begin_at_zero_decide_once():
         check_unloaded(k, [0.0, 0.5][k % 2])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("restitution", [0.0, 0.5])
+@pytest.mark.parametrize("restitution", shared([0.5, 0.0], 2))
 def test_contact_forces_that_begin_at_zero_decide_once_in_many_systems(restitution):
     for k in range(12, 150):
         check_unloaded(k, restitution)

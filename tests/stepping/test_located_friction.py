@@ -33,6 +33,7 @@ from tests.events.test_friction import (
     times,
     weight,
 )
+from tests.marks import shared
 from tests.uncompiled import both_ways
 
 ORDERS = (2, 4)
@@ -323,8 +324,7 @@ def test_feet_that_touch_down_far_slower_than_they_slide_find_their_impulses(see
     assert run.status is Status.DONE, run.message
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1000, 1150))
+@pytest.mark.parametrize("seed", shared(range(1000, 1150), 10))
 def test_more_random_discs_and_blocks_go_with_the_event_driven_run(seed):
     scene, t = block(seed), np.linspace(0.05, 1.0, 20)
     exact, _ = simulate(scene, EventDriven(1e-12, 1e-12)).at(t)

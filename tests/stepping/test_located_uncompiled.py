@@ -1,5 +1,7 @@
 """Steps with located impacts where nothing is built: the kernels as plain Python move everything alike."""
 
+import pytest
+
 from tests.uncompiled import both_ways
 
 # Impacts and forces of several contacts, more events in a step than may be, joints, a mass that changes; all orders
@@ -26,6 +28,7 @@ for scene, n, order in (
 """
 
 
+@pytest.mark.slow
 def test_kernels_of_located_move_alike_where_they_are_not_built(tmp_path):
     built, plain = both_ways(tmp_path, MOTIONS)
     assert plain == built

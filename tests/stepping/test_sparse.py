@@ -121,6 +121,7 @@ def test_what_rests_stays_exactly_where_it_is(theta):
     assert not m.v.any()
 
 
+@pytest.mark.slow
 def test_a_fallen_column_comes_to_exact_rest():
     n = 60
     m = simulate(column(n, r=0.5, gap=0.01, t_end=2.0), Moreau(1e-3), keep=100)
@@ -141,6 +142,7 @@ def test_mass_ratios_cost_no_digits():
     assert not m.v.any()
 
 
+@pytest.mark.slow
 def test_an_elastic_chain_bounces_off_a_wall_and_keeps_its_energy():
     # theta = 1/2: only the front, which strikes with e = 0, loses what the work of its impulses says
     n = 400

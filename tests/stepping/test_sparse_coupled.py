@@ -89,7 +89,10 @@ SAME = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", SAME)
+LONG = "chain of 40", "chain of 20, smooth"  # of these
+
+
+@pytest.mark.parametrize("name", [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in SAME])
 def test_the_sparse_run_is_the_dense_run(name):
     scene, theta = SAME[name]
     a, b = (simulate(x, Moreau(2e-3, theta)) for x in (scene, made_dense(scene)))
@@ -116,6 +119,7 @@ def thousand_blocks(**friction):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_thousand_blocks_on_a_belt_stick_and_slip_as_one_does():
     """Carried to x = mu_s, round an arc of a circle, and carried again: `scenes.stick_slip_belt`."""
     exact = scenes.stick_slip_belt(belt=0.2, mu=0.6, mu_s=1.0).exact
@@ -147,7 +151,7 @@ def test_impulses_that_are_unique_are_those_of_the_dense_run():
     np.testing.assert_allclose(a.friction_impulse, b.friction_impulse, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.4])
+@pytest.mark.parametrize("restitution", [pytest.param(0.0, marks=pytest.mark.thorough), 0.4])
 def test_energy_is_lost_and_never_created(restitution):
     chain = scenes.hinged_chain(n=30, restitution=restitution, t_end=0.25)
     run = simulate(chain, Moreau(5e-4))
@@ -159,6 +163,7 @@ def test_energy_is_lost_and_never_created(restitution):
     assert len(balance.created) == 0
 
 
+@pytest.mark.slow
 def test_friction_stays_within_its_cone_and_a_flat_chain_comes_to_exact_rest():
     run = simulate(scenes.hinged_chain(n=10), Moreau(1e-3))
     assert np.all(np.abs(run.friction_impulse) <= 0.3 * run.impulse + 1e-12)
@@ -168,6 +173,7 @@ def test_friction_stays_within_its_cone_and_a_flat_chain_comes_to_exact_rest():
     assert run.impulse[-1].sum() == pytest.approx(10 * 9.81 * 1e-3, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_free_chain_keeps_its_momentum_and_its_links_their_lengths_to_order_two():
     drift = []
     for h in (2e-3, 1e-3):

@@ -10,6 +10,7 @@ from lcpstep.stepping import sparse_coupled
 from lcpstep.stepping.sparse_coulomb import Coupled, Problem
 from lcpstep.stepping.sparse_path import OPEN, STICK, Path
 from lcpstep.stepping.sparse_updates import Lines
+from tests.marks import shared
 
 
 def row_of_points(seed, n, mu=0.3):
@@ -144,8 +145,7 @@ def test_paths_begin_from_the_step_before_rather_than_from_nothing(monkeypatch):
     assert min(begun) > 0
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("restitution", [0.3, 0.5])
+@pytest.mark.parametrize("restitution", shared([0.3, 0.5], 2))
 def test_a_chain_that_bounces_goes_on_while_it_comes_to_lie(monkeypatch, restitution):
     monkeypatch.setattr(sparse_coupled, "FEW", 0)
     run = simulate(scenes.hinged_chain(n=40, restitution=restitution, t_end=0.6), Moreau(1e-3))
