@@ -112,6 +112,7 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
             cosine=(-1.17, -0.297), sine=(-2.09, -0.217), force_omega=14.2, family='feet',
         ),
         ("event-driven", "event-driven-loose", "located-4", "located-exact"),
+    ),
     # Let go 2e-15 s before the other struck, the plastic one was closed by rounding and took part in its impact
     "a rebounding and a plastic contact that collapse, told as curved ones": (
         Description(
