@@ -89,7 +89,9 @@ class Parts(Control):
         """
         last = self.to_time if entire else self.from_time + end
         even = entire and start == 0.0
-        self.record.next_time = self.n_times  # it keeps no states: of thousands asked for ahead each would cost
+        self.record.next_time = (
+            self.n_times
+        )  # it keeps no states: of thousands asked for ahead each would cost
         code = self.part(start, end, last, even and until == inf, until, 0)
         self.led(self.one, code)
         self.restore()
