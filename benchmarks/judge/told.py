@@ -54,7 +54,8 @@ def told_until(d: Description, r: Run) -> float:
         q, v = r.at(times)
     except (IndexError, ValueError):  # a finding of its own
         return float(min(logged, default=np.inf)) - spread
-    g, u = physics.gaps(d, times, q), physics.rates(d, times, q, v)
+    at_start = (times <= r.motion.t[0])[:, None]  # where what is kept has been struck
+    g, u = physics.gaps(d, times, q), physics.rates(d, times, q, np.where(at_start, np.array(d.v0), v))
     arrive = (u < -1e-6 * fast) & (g + 2.0 * spread * u <= 0.0)
     pairs = np.einsum("ki,ij,kj->k", arrive, W & ~np.eye(d.contacts, dtype=bool), arrive, dtype=int)
     return float(min([*logged, *log.time[pairs > 0]], default=np.inf)) - spread

@@ -18,7 +18,7 @@ from benchmarks.judge.graze import grazes
 from benchmarks.judge.physics import jacobians, room
 from benchmarks.judge.runs import Finding, Run, run
 from benchmarks.judge.scales import EPS
-from benchmarks.judge.told import looks
+from benchmarks.judge.told import looks, told_until
 from benchmarks.judge.variants import VARIANTS, Variant, fits, rest
 from lcpstep.trajectory import Kind
 
@@ -66,6 +66,11 @@ def base(d: Description, r: Run) -> Base:
     floor += 1e2 * EPS * max(map(abs, d.t_span)) * float(np.max(np.abs(r.motion.v), initial=0.0))
     unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
     told = float(times[unclear[0]]) if len(unclear) else np.inf
+    start = d.t_span[0]
+    if (
+        told_until(d, r) <= start
+    ):  # walls that strike together where it begins: rounding says which is the first
+        told = start
     allowed = floor + NOISE * noise
     b = Base(d, r, times, q, allowed, told)
     unlike = [x[0] for other in companions if other.done and (x := without_partner(b, other, Variant("", d)))]

@@ -159,4 +159,17 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located",),
     ),
+    # The judge saw which of two walls strikes first only after it had struck, where both do so at the start
+    "a wedge whose walls set out together": (
+        Description(
+            M=((0.664, 0.0743, 0.0871), (0.0743, 1.09, 0.111), (0.0871, 0.111, 1.49)), q0=(-0.0751, 0.505, 0.288),
+            v0=(0.0, 0.0, 0.0), t_span=(0.0, 0.04553), h=0.00157, restitution=(0.0, 0.61, 0.35, 0.82),
+            G=((-0.586, -0.675, 0.449), (0.674, -0.585, 0.451), (0.165, 0.19, 0.968), (-0.0875, 0.076, 0.993)),
+            offset=(-0.00580402033330682, 0.21615439999999997, -0.34574249999999995, -0.5042936703333069),
+            K=((0.0788, -0.0634, 0.181), (-0.0634, 0.269, -0.207), (0.181, -0.207, 0.519)),
+            constant=(0.0141931, 0.08099034, 0.03134389), amplitude=(0.388, -0.194, -0.194, 0.388),
+            phase=(5.82, 0.0, 0.0, 5.82), omega=21.5, family='wedge',
+        ),
+        ("event-driven", "located-4", "located-4-tolerance"),
+    ),
 }  # fmt: skip
