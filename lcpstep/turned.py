@@ -5,7 +5,7 @@
 A row that carries an impulse and turns by more than a radian has turned the motion by as much in one step: no order
 helps there, what comes out may be anything, and nothing that is looked at afterwards need tell (the gap is closed
 again, energy has come and gone). A light body that a round joint or a bent obstacle turns about under a heavy one is
-so fast for a moment only, wherefore the steps that go farthest are asked. Steps by a tolerance are not asked.
+so fast for a moment only, wherefore the fastest steps are asked. Steps by a tolerance are not asked.
 Source of the bound: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), section
 II.1: methods of order p <= 4 with so many stages are unbounded beyond |h lambda| = 2.8.
 """
@@ -25,8 +25,8 @@ from lcpstep.trajectory import Status, Trajectory
 if TYPE_CHECKING:
     from lcpstep.kernels.model import Model
 
-LOOKS = 16  # steps that are looked at: those that go farthest
-MOST = 1.0  # radian in a step
+LOOKS = 16  # steps that are looked at, the fastest ones
+LEAST = math.cos(1.0)  # of the cosine: a radian in a step
 LATER = 1e-9  # of a step: of the times of its ends
 
 
@@ -56,31 +56,32 @@ def _too_far(run: Trajectory, m: Model, held: NDArray[np.bool_], h: float, what:
     """The row that turns farthest in one of the steps looked at, in words; held : (n, rows) at the kept states."""
     from lcpstep.kernels.states import responses
 
-    k = _farthest(run, h, held[:-1] & held[1:])
+    k = _fastest(run, h, held)
     if len(k) == 0:
         return ""
     G0, MG0 = responses(m, run.t[k], run.q[k], run.v[k])
     G1, MG1 = responses(m, run.t[k + 1], run.q[k + 1], run.v[k + 1])
     with np.errstate(all="ignore"):
-        cosine = np.sum(G1 * MG0, axis=-1) / np.sqrt(np.sum(G0 * MG0, axis=-1) * np.sum(G1 * MG1, axis=-1))
-    angle = np.arccos(np.clip(np.where(held[k] & held[k + 1], cosine, 1.0), -1.0, 1.0))
-    angle[~np.isfinite(angle)] = math.pi
-    i, c = np.unravel_index(int(np.argmax(angle)), angle.shape)
-    if not angle[i, c] > MOST:
+        squares = np.einsum("krn,krn->kr", G0, MG0) * np.einsum("krn,krn->kr", G1, MG1)
+        cosine = np.einsum("krn,krn->kr", G1, MG0) / np.sqrt(squares)
+    cosine = np.where(held[k] & held[k + 1], cosine, 1.0)
+    worst = int(np.argmin(cosine))  # the first that is not-a-number, if any is
+    if cosine.flat[worst] >= LEAST:
         return ""
+    i, c = np.unravel_index(worst, cosine.shape)
+    angle = float(np.arccos(np.clip(np.nan_to_num(cosine[i, c], nan=-1.0), -1.0, 1.0)))
     start, end = run.t[k[i]], run.t[k[i] + 1]
     return (
-        f"{what} {c} turns by {angle[i, c]:.3g} radian within a step at t = {start:.9g} s: steps are too long for "
-        f"this motion, which needs some below {(end - start) * 0.1 / angle[i, c]:.3g} s there"
+        f"{what} {c} turns by {angle:.3g} radian within a step at t = {start:.9g} s: steps are too long for "
+        f"this motion, which needs some below {(end - start) * 0.1 / angle:.3g} s there"
     )
 
 
-def _farthest(run: Trajectory, h: float, held: NDArray[np.bool_]) -> Any:
-    """Kept states from which a step, with something held, goes farthest in coordinates of the motion's own size."""
-    size = np.ptp(run.q, axis=0)
-    way = np.diff(run.t)
-    there = np.flatnonzero((way > 0.0) & (way <= h * (1.0 + LATER)) & held.any(axis=1))
-    if len(there) == 0:
-        return there
-    far = np.max(np.abs(run.q[there + 1] - run.q[there]) / np.where(size > 0.0, size, 1.0), axis=1)
-    return there[np.argpartition(far, max(len(far) - LOOKS, 0))[-LOOKS:]]
+def _fastest(run: Trajectory, h: float, held: NDArray[np.bool_]) -> Any:
+    """Kept states from which a step, with something held at both of its ends, begins or ends fastest."""
+    square = np.einsum("ij,ij->i", run.v, run.v)
+    way, pressed = run.t[1:] - run.t[:-1], held[:, 0] if held.shape[1] == 1 else held.any(axis=1)
+    there = (way > 0.0) & (way <= h * (1.0 + LATER)) & pressed[:-1] & pressed[1:]
+    rate = np.where(there, square[:-1] + square[1:], -1.0)
+    k = np.argpartition(rate, max(len(rate) - LOOKS, 0))[-LOOKS:]
+    return k[rate[k] >= 0.0]
