@@ -17,6 +17,7 @@ from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
 from lcpstep.resolution import unresolved
 from lcpstep.trajectory import Status
+from lcpstep.turned import turned
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -148,7 +149,7 @@ def _looked_over(run: Trajectory) -> Trajectory:
     try:
         _compare_derivatives(run)
         _warn_of_fast_gaps(run)
-        doubt = _no_room(run) or too_deep(run) or unresolved(run)
+        doubt = _no_room(run) or too_deep(run) or unresolved(run) or turned(run)
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
         raise SimulationInterrupted(lambda: unseen) from None
