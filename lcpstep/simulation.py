@@ -81,7 +81,8 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, where steps are too long for the forces that it meets, or lose energy
+        obstacle leaves no room to it, where steps are too long for the forces that it meets, lose energy, or turn by
+        more than a radian what holds the motion
 
     Raises
     ------

@@ -6,6 +6,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
+from benchmarks.judge.agree import disturbed
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
 
@@ -57,3 +58,13 @@ def test_a_body_that_joints_and_smooth_walls_wedge_is_not_left_open(method):
     r = run(d, method)
     assert r.status == "DONE"
     assert np.max(np.abs(r.motion.q - d.q0)) < 1e-12
+
+
+def test_a_motion_that_left_all_bounds_has_companions_near_its_start():
+    """Order 4 had gone to 1e36 m beside a round joint; 1e-12 of that is no start of the scene."""
+    rod = Description(
+        M=((1.0, 0.0), (0.0, 1.0)), q0=(0.6, 0.8), v0=(0.8, -0.6), t_span=(0.0, 1.0), h=0.1, J=((0.0, 0.0),),
+        joint_offset=(-0.5,), joint_bend=(1.0,), family="jointed",
+    )  # fmt: skip
+    near = disturbed(rod, 1e-12, 1e36, 1).scene()
+    assert 0.0 < np.max(np.abs(near.q0 - np.array(rod.q0))) < 0.1
