@@ -4,8 +4,8 @@
 
 Time-stepping looks at a contact once a step and so lies up to a step's way inside of it, which is no error but its
 order; and what rests moves by rounding only. A run that is through the wall lies inside by a good part of all that it
-has moved, or, where a method finds the time of each impact, by a thousandth. A few of the kept states are looked at:
-what lasts is not missed.
+has moved, or, where a method finds the time of each impact, by a thousandth, and by more than a hundredth of a step's
+way. Some of the kept states are looked at: what lasts is not missed.
 """
 
 from __future__ import annotations

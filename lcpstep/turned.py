@@ -30,10 +30,8 @@ SHARE = 0.1  # of a radian: what steps that resolve the motion turn by
 
 def turned(run: Trajectory) -> str:
     """Which row turns too far within a step, in words; "" where none does that was looked at."""
-    contacts, joints, words = run.scene.contacts, run.scene.joints, ""
-    bent = contacts is not None and not isinstance(contacts, LinearContacts)
-    round_ = joints is not None and not isinstance(joints, LinearJoints)
-    if not (bent or round_) or run.status != Status.DONE or len(run.t) < 2 or not _of_one_size(run):
+    (bent, round_), words = asked(run), ""
+    if not (bent or round_):
         return ""
     # Not before it is asked for: that loads what compiles callbacks
     from lcpstep.model import joints_looked_at, looked_at
@@ -47,12 +45,17 @@ def turned(run: Trajectory) -> str:
     return words
 
 
-def _of_one_size(run: Trajectory) -> bool:
-    """Whether its steps are, and its matrices small enough to be asked for."""
+def asked(run: Trajectory) -> tuple[bool, bool]:
+    """Whether it has contacts, and joints, that can turn, and steps of one size, and matrices that are small."""
+    contacts, joints, method = run.scene.contacts, run.scene.joints, run.method
+    bent = contacts is not None and not isinstance(contacts, LinearContacts)
+    round_ = joints is not None and not isinstance(joints, LinearJoints)
+    if not (bent or round_) or run.status != Status.DONE or len(run.t) < 2:
+        return False, False
     from lcpstep.model import LARGEST_KEPT
 
-    fixed = getattr(run.method, "tolerance", None) is None and getattr(run.method, "h", 0.0) > 0.0
-    return fixed and run.scene.n_q <= LARGEST_KEPT
+    fixed = getattr(method, "tolerance", None) is None and getattr(method, "h", 0.0) > 0.0
+    return (bent, round_) if fixed and run.scene.n_q <= LARGEST_KEPT else (False, False)
 
 
 def _too_far(run: Trajectory, m: Model, impulse: Any, what: str) -> str:

@@ -13,6 +13,7 @@ from lcpstep.cli.common import DONE, FAILED
 from lcpstep.kernels.turned import farthest_turn
 from lcpstep.model import joints_looked_at, looked_at
 from lcpstep.trajectory import Status
+from lcpstep.turned import turned
 from tests.commands import run as command
 from tests.uncompiled import both_ways
 
@@ -209,8 +210,9 @@ LIGHT = Description(
 
 @pytest.mark.parametrize("method", [Located(LIGHT.h), Moreau(LIGHT.h)], ids=["located", "moreau"])
 def test_light_bodies_under_a_heavy_one_in_bent_obstacles_are_told(method):
-    """Twelve tons push 0.1 kg about: off by more than the whole motion, outside of all walls again at the end."""
+    """Twelve tons push 0.1 kg about: off by a third of the motion, outside of all walls again at the end."""
     run, true = simulate(LIGHT.scene(), method), simulate(LIGHT.scene(), EventDriven())
     assert run.status is true.status is Status.DONE
     assert np.max(np.abs(run.q[-1] - true.q[-1])) > 0.3 * np.max(np.ptp(true.q, axis=0))
-    assert "radian within a step" in run.doubt
+    assert run.doubt != ""
+    assert "radian within a step" in turned(run)
