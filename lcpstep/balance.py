@@ -32,7 +32,7 @@ ROUNDING = 1e-12  # of the coordinates, in a step: no motion
 
 def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     """How much energy steps h, of that model, lose or gain, in words; "" where they do not."""
-    if not isinstance(run.scene.system, (System, LinearSystem)) or _driven(run.scene.joints):
+    if not isinstance(run.scene.system, (System, LinearSystem)) or driven(run.scene.joints):
         return ""
     gained, turned_over = _surplus(run, m, h, LOOKS)
     if not abs(gained) > SHARE * turned_over:
@@ -63,7 +63,7 @@ def _surplus(run: Trajectory, m: Model, h: float, looks: int) -> tuple[float, fl
     return times * gained, kinetic + times * work
 
 
-def _driven(rows: Any) -> bool:
+def driven(rows: Any) -> bool:
     """Whether contacts or joints move by themselves."""
     if rows is None or isinstance(rows, LinearJoints):
         return False
@@ -79,6 +79,6 @@ def _smooth(run: Trajectory, h: float, looks: int) -> Any:
     if len(events):  # states asked for within steps lie between those before and after a step
         fits &= np.searchsorted(events, t[k] - h - near) == np.searchsorted(events, t[k + 1] + h + near)
     contacts = run.scene.contacts
-    if contacts is not None and (contacts.friction is not None or _driven(contacts)):
+    if contacts is not None and (contacts.friction is not None or driven(contacts)):
         fits &= ~run.impulse[k + 1].any(axis=1)
     return k[fits]

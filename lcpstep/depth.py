@@ -4,8 +4,8 @@
 
 Time-stepping looks at a contact once a step and so lies up to a step's way inside of it, which is no error but its
 order; and what rests moves by rounding only. A run that is through the wall lies inside by a good part of all that it
-has moved, or, where a method finds the time of each impact, by a thousandth. A few of the kept states are looked at:
-what lasts is not missed.
+has moved, or, where a method finds the time of each impact, by a thousandth, and by more than a hundredth of a step's
+way. Some of the kept states are looked at: what lasts is not missed.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from lcpstep.faults import cause, forget
 from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]
-LOOKS = 6  # states that are looked at
+LOOKS = 64  # states that are looked at
 # Of the size of the motion, of time-stepping, which drifts, and of methods that find the time of each impact.
 # Coordinates that go the same way make that size large: links of a chain that flies off
 SHARE, SHARE_LOCATED = 0.1, 1e-3
-STEPS = 2.0  # that an impact may be noticed too late
+STEPS, STEPS_LOCATED = 2.0, 0.01  # that an impact may be noticed too late, of the same
 ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
 ROUNDING_BESIDE = (
     1e-12  # of how far others could have gone, in the metric of M: masses, springs, contacts couple
@@ -37,7 +37,8 @@ def too_deep(run: Trajectory) -> str:
     scene = run.scene
     if scene.contacts is None or run.status != Status.DONE or len(run.t) == 0:
         return ""
-    share = SHARE if hasattr(run.method, "theta") else SHARE_LOCATED  # the theta method drifts
+    drifts = hasattr(run.method, "theta")  # the theta method
+    share, steps = (SHARE, STEPS) if drifts else (SHARE_LOCATED, STEPS_LOCATED)
     if _shallow(run, share):
         return ""
     last = len(run.t) - 1
@@ -53,16 +54,16 @@ def too_deep(run: Trajectory) -> str:
         G = np.abs(normal(scene, int(c), states[row]))
         q, v = (np.array([x[i] for x in states]) for i in (1, 2))
         size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)
-        if depth <= max(share * size, STEPS * h * max(speed, _logged(run, int(c)))):
+        if depth <= max(share * size, steps * h * max(speed, _logged(run, int(c)))):
             return ""
-        (a_start, masses), span = _acceleration(scene), scene.t_span[1] - scene.t_span[0]
+        (fastest, masses), span = _acceleration(scene, states), scene.t_span[1] - scene.t_span[0]
     except ValueError:  # a callback that fails at a state in between, which the run has not asked it for
         return ""
-    a, most = float(G @ a_start), np.max(np.abs(q), axis=0)
+    a, most = float(G @ fastest), np.max(np.abs(q), axis=0)
     reach = float(G @ most) + span * (speed + span * a)
-    most = most + span * (np.max(np.abs(v), axis=0) + span * a_start)
+    most = most + span * (np.max(np.abs(v), axis=0) + span * fastest)
     beside = float(np.sqrt((G @ (G / masses)) * (most @ (masses * most))))
-    if depth <= max(ROUNDING * reach, ROUNDING_BESIDE * beside, STEPS * h * h * a):
+    if depth <= max(ROUNDING * reach, ROUNDING_BESIDE * beside, steps * h * h * a):
         return ""
     return (
         f"contact {c} lies {depth:.3g} m inside of its obstacle at t = {states[row][0]:.9g} s, in a motion of "
@@ -125,10 +126,15 @@ def _logged(run: Trajectory, c: int) -> float:
     return float(np.max(np.abs(np.concatenate([own.before, own.after])), initial=0.0))
 
 
-def _acceleration(scene: Scene) -> tuple[Array, Array]:
-    """How fast the coordinates would be accelerated at the start without contacts, roughly; and their masses."""
-    system, at = scene.system, (scene.t_span[0], np.array(scene.q0), np.array(scene.v0), np.array(scene.p))
-    shape = (scene.n_q,)
+def _acceleration(scene: Scene, states: list[tuple[float, Array, Array]]) -> tuple[Array, Array]:
+    """How fast the coordinates would be accelerated at most without contacts, roughly; and their masses."""
+    fastest, masses = zip(*(_accelerated(scene, *x) for x in states), strict=True)
+    return np.max(fastest, axis=0), masses[0]
+
+
+def _accelerated(scene: Scene, t: float, q: Array, v: Array) -> tuple[Array, Array]:
+    """The same at one state, where forces of a linear system do not cancel each other."""
+    system, at, shape = scene.system, (t, q, v, np.array(scene.p)), (scene.n_q,)
     if isinstance(system, System):
         f = checks.evaluate("system.force", system.force, at, shape)
         M: Any = system.mass
@@ -141,6 +147,9 @@ def _acceleration(scene: Scene) -> tuple[Array, Array]:
         else:
             given: Any = system.force
             f = checks.evaluate("system.force", given, at, shape)
-        f = np.abs(f) + np.abs(C @ at[2]) + np.abs(K @ at[1])
+        f = np.abs(f) + np.abs(C @ v) + np.abs(K @ q)
+        if system.frame is not None:
+            c = checks.evaluate("system.frame", system.frame, at, (scene.n_q, 3))
+            f += np.abs(K @ c[:, 0]) + np.abs(C @ c[:, 1]) + np.abs(M @ c[:, 2])
     masses = np.asarray(M.diagonal(), dtype=float)
     return np.abs(f) / masses, masses

@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 LARGEST_DENSE = 2000  # rows or columns of a sparse matrix that a method may ask for as an array
 LARGEST_KEPT = 200  # coordinates of a system whose numbers stay with it, and with its contacts
 KEPT: WeakKeyDictionary[Any, dict[str, Any]] = WeakKeyDictionary()  # numbers of both, which never change
-LATEST = threading.local()  # .scene, .model: the last one made in this thread, of few coordinates
+LATEST = threading.local()  # .scene, .model, .joints: the last ones made in this thread, of few coordinates
 TRIALS = 20  # evaluations of a callback at one state
 ABSENT = 0  # in place of a callback that the scene does not have
 TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tangents stand for normals
@@ -68,9 +68,15 @@ def looked_at(scene: Scene) -> kernels.Model:
     return model(scene) if made is None or made.carried else made
 
 
-def _latest(scene: Scene, made: kernels.Model) -> kernels.Model:
+def joints_looked_at(scene: Scene) -> kernels.Model:
+    """The same of its joints."""
+    made = getattr(LATEST, "joints", None) if at_hand(scene) is not None else None
+    return joint_model(scene) if made is None else cast(kernels.Model, made)
+
+
+def _latest(scene: Scene, made: kernels.Model, joints: kernels.Model | None = None) -> kernels.Model:
     few = scene.n_q <= LARGEST_KEPT
-    LATEST.scene, LATEST.model = (scene, made) if few else (None, None)
+    LATEST.scene, LATEST.model, LATEST.joints = (scene, made, joints) if few else (None, None, None)
     return made
 
 
@@ -90,7 +96,8 @@ def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
         parts["friction"] = _tangents(scene)
     made = dict(zip(parts, _models(scene, own, **parts), strict=True))
     nothing = _empty(scene.n_q)
-    return _latest(scene, made["contacts"]), made.get("joints", nothing), made.get("friction", nothing)
+    contacts = _latest(scene, made["contacts"], made.get("joints"))
+    return contacts, made.get("joints", nothing), made.get("friction", nothing)
 
 
 @functools.cache
@@ -103,7 +110,10 @@ def _empty(n_q: int) -> kernels.Model:
 
 def joint_model(scene: Scene) -> kernels.Model:
     """The scene's model with its joints in the place of the contacts, for the same kernels to evaluate."""
-    return _models(scene, _system(scene), joints=_joints(scene))[0]
+    made = _models(scene, _system(scene), joints=_joints(scene))[0]
+    if at_hand(scene) is not None:
+        LATEST.joints = made
+    return made
 
 
 def tangent_model(scene: Scene) -> kernels.Model:

@@ -13,10 +13,12 @@ from lagrangian.relations import check_derivatives
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
+from lcpstep.outrun import outrun
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
 from lcpstep.resolution import unresolved
 from lcpstep.trajectory import Status
+from lcpstep.turned import turned
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -80,7 +82,8 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, where steps are too long for the forces that it meets, or lose energy
+        obstacle leaves no room to it, where steps are too long for the forces that it meets, lose energy, turn by
+        more than a radian what holds the motion, or make it faster than forces and obstacles could
 
     Raises
     ------
@@ -148,7 +151,7 @@ def _looked_over(run: Trajectory) -> Trajectory:
     try:
         _compare_derivatives(run)
         _warn_of_fast_gaps(run)
-        doubt = _no_room(run) or too_deep(run) or unresolved(run)
+        doubt = _no_room(run) or too_deep(run) or unresolved(run) or turned(run) or outrun(run)
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
         raise SimulationInterrupted(lambda: unseen) from None

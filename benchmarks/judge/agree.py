@@ -46,7 +46,11 @@ def disturbed(d: Description, share: float, size: float, seed: int) -> Descripti
     def off(values: Any) -> Any:
         return numbers(np.asarray(values) * (1.0 + share * rng.uniform(-1.0, 1.0, np.shape(values))))
 
-    q0 = np.array(d.q0) + share * size * rng.uniform(-1.0, 1.0, d.n)
+    own = np.abs(np.concatenate([d.row("q0"), d.row("offset", d.contacts), d.length * d.row("v0")])).max(
+        initial=0.0
+    )
+    moved = min(share * size, 0.1 * own) if own > 0.0 else share * size  # a motion may have gone to 1e36 m
+    q0 = np.array(d.q0) + moved * rng.uniform(-1.0, 1.0, d.n)
     t, faster = d.t_span[0], 1.0 + share * rng.uniform(-1.0, 1.0)
     new = replace(
         d, q0=numbers(q0), v0=numbers(faster * np.array(d.v0)), constant=off(d.constant), cosine=off(d.cosine),

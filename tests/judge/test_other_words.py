@@ -6,6 +6,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
+from benchmarks.judge.agree import disturbed
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
 from tests.judge.kept_recently import RECENTLY
@@ -79,3 +80,13 @@ def test_contacts_collapse_alike_at_another_zero_of_time():
     )  # fmt: skip
     at_zero, later = (run(x, "located-4").motion for x in (d, moved))
     np.testing.assert_allclose(later.q[-1], at_zero.q[-1], rtol=0, atol=1e-11)
+
+
+def test_a_motion_that_left_all_bounds_has_companions_near_its_start():
+    """Order 4 had gone to 1e36 m beside a round joint; 1e-12 of that is no start of the scene."""
+    rod = Description(
+        M=((1.0, 0.0), (0.0, 1.0)), q0=(0.6, 0.8), v0=(0.8, -0.6), t_span=(0.0, 1.0), h=0.1, J=((0.0, 0.0),),
+        joint_offset=(-0.5,), joint_bend=(1.0,), family="jointed",
+    )  # fmt: skip
+    near = disturbed(rod, 1e-12, 1e36, 1).scene()
+    assert 0.0 < np.max(np.abs(near.q0 - np.array(rod.q0))) < 0.1

@@ -1,0 +1,101 @@
+"""The kinetic energy that a step of a finished run may have by its start, forces and obstacles: `lcpstep.outrun`.
+
+The steps are divided into so many parts, one after the other, and the one in which the velocities grow most is looked
+at of each.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from math import sqrt
+
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.dynamics import gap_rates, total_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import Doubles, abs, after, max
+
+
+def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
+    """Of steps no longer than that the one whose energy is the largest multiple of what it may be; masses constant.
+
+    impulse : (n, n_c)   of every contact since the state before
+
+    Returns
+    -------
+    energy at its end over what it may be, the number of the state before it, and the energies at both its ends
+    """
+    count, work, found = len(t), np.zeros(m.n_c * (m.n_q + 2) + 3 * m.n_q), np.zeros(4)
+    at, x, x_t, pushes = doubles(t), doubles(q), doubles(v), doubles(impulse)
+    own, out = doubles(work), doubles(found)
+    find_steepest(m, count, at, x, x_t, pushes, longest, parts, own, out)
+    return found
+
+
+def find_steepest(
+    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, longest: float, parts: int,
+    work: Doubles, out: Doubles,
+) -> None:  # fmt: skip
+    """Kernel of `steepest`."""
+    n, steps = m.n_q, count - 1
+    with cython.nogil:
+        for i in range(parts):
+            most, best, x_t = 0.0, -1, after(v, i * steps // parts * n)
+            speed = product(x_t, x_t, 0, n)
+            for k in range(i * steps // parts, (i + 1) * steps // parts):
+                x_t, before = after(v, (k + 1) * n), speed
+                speed = product(x_t, x_t, 0, n)
+                if not speed - before <= most and 0.0 < t[k + 1] - t[k] <= longest:
+                    most, best = speed - before, k
+            if best >= 0:
+                weigh(m, best, t, q, v, impulse, work, out)
+
+
+def weigh(
+    m: Model, k: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, work: Doubles, out: Doubles
+) -> None:
+    """The step after the state k, into `out` where its energy is a larger multiple of what it may be than before."""
+    n, n_c, h, strongest, pushed = m.n_q, m.n_c, t[k + 1] - t[k], 0.0, 0.0
+    G, rate, fastest = work, after(work, n_c * n), after(work, n_c * n + n_c)
+    x, f = after(work, n_c * (n + 2)), after(work, n_c * (n + 2) + 2 * n)
+    x_t = after(x, n)
+    for c in range(n_c):
+        fastest[c] = 0.0
+    for i in range(3):
+        share = 0.5 * i
+        for j in range(n):
+            x[j] = (1.0 - share) * q[k * n + j] + share * q[(k + 1) * n + j]
+            x_t[j] = (1.0 - share) * v[k * n + j] + share * v[(k + 1) * n + j]
+        total_force(m, t[k] + share * h, x, x_t, f)
+        strongest = max(strongest, response(m, f))
+        gap_rates(m, t[k] + share * h, x, x_t, G, rate)
+        for c in range(n_c):
+            fastest[c] = max(fastest[c], abs(rate[c]))
+    for c in range(n_c):
+        pushed += abs(impulse[(k + 1) * n_c + c]) * fastest[c]
+    start, end = kinetic(m, after(v, k * n)), kinetic(m, after(v, (k + 1) * n))
+    speed = sqrt(2.0 * start) + h * sqrt(strongest)
+    allowed = 0.5 * speed * speed + pushed
+    if not end <= out[0] * allowed:
+        out[0], out[1], out[2], out[3] = end / allowed, k, start, end
+
+
+def response(m: Model, f: Doubles) -> float:
+    """f^T M^-1 f of a constant matrix."""
+    total = 0.0
+    for i in range(m.n_q):
+        total += f[i] * product(m.M_inverse, f, i, m.n_q)
+    return total
+
+
+def kinetic(m: Model, v: Doubles) -> float:
+    """v^T M v / 2 of a constant matrix."""
+    total = 0.0
+    for i in range(m.n_q):
+        total += 0.5 * v[i] * product(m.M, v, i, m.n_q)
+    return total

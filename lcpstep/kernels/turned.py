@@ -1,0 +1,106 @@
+"""How far what is pressed turns within steps of a finished run; see `lcpstep.turned`.
+
+The steps are divided into so many parts, one after the other, and the fastest that fits is looked at of each.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+if not cython.compiled:
+    from math import sqrt
+
+    from lcpstep.arrays import doubles
+    from lcpstep.kernels.acceleration import factor_mass
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.linear import solve_definite
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, after
+
+
+def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
+    """Which row turns farthest in steps no longer than that at both of whose ends it is pressed, and where.
+
+    impulse : (n, n_c)   of every row since the state before; None where all are pressed always, as joints are
+
+    Returns
+    -------
+    cosine of the angle, the number of the state before the step, and the row; 1, 0 and 0 where there is none
+    """
+    count, work, found = len(t), np.zeros((2 * m.n_q + 1) * m.n_c + (m.n_q + 1) * m.n_q), np.zeros(3)
+    at, x, x_t, own, out = doubles(t), doubles(q), doubles(v), doubles(work), doubles(found)
+    pushed = own if impulse is None else doubles(impulse)
+    find_turned(m, count, at, x, x_t, pushed, impulse is None, longest, parts, own, out)
+    return found
+
+
+def find_turned(
+    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, always: bool, longest: float,
+    parts: int, work: Doubles, out: Doubles,
+) -> None:  # fmt: skip
+    """Kernel of `farthest_turn`."""
+    n, steps = m.n_q, count - 1
+    with cython.nogil:
+        out[0], out[1], out[2] = 1.0, 0.0, 0.0
+        for i in range(parts):
+            fastest, best, x_t = -1.0, -1, after(v, i * steps // parts * n)
+            speed = product(x_t, x_t, 0, n)
+            for k in range(i * steps // parts, (i + 1) * steps // parts):
+                x_t, before = after(v, (k + 1) * n), speed
+                speed = product(x_t, x_t, 0, n)
+                if before + speed > fastest and 0.0 < t[k + 1] - t[k] <= longest:
+                    for c in range(m.n_c):
+                        if always or pressed(impulse, k * m.n_c + c, m.n_c):
+                            fastest, best = before + speed, k
+            if best >= 0:
+                look(m, best, t, q, v, impulse, always, work, out)
+
+
+def pressed(impulse: Doubles, i: int, n_c: int) -> bool:
+    """Whether a row presses at both ends of a step; i : of its impulse at the start."""
+    return impulse[i] > 0.0 and impulse[i + n_c] > 0.0
+
+
+def look(
+    m: Model,
+    k: int,
+    t: Doubles,
+    q: Doubles,
+    v: Doubles,
+    impulse: Doubles,
+    always: bool,
+    work: Doubles,
+    out: Doubles,
+) -> None:
+    """The step after the state k, into `out` where a row turns farther in it than in those before."""
+    n, n_c, x, x_t = m.n_q, m.n_c, after(q, k * m.n_q), after(v, k * m.n_q)
+    start, end, M = work, after(work, n_c * n), after(work, 2 * n_c * n)
+    y, rates = after(M, n * n), after(M, n * n + n)
+    gap_rates(m, t[k], x, x_t, start, rates)
+    gap_rates(m, t[k + 1], after(x, n), after(x_t, n), end, rates)
+    if not factor_mass(m, t[k], x, x_t, M):
+        return
+    for c in range(n_c):
+        if always or pressed(impulse, k * n_c + c, n_c):
+            before, later = after(start, c * n), after(end, c * n)
+            size = sqrt(form(m, M, y, before, before)) * sqrt(form(m, M, y, later, later))
+            along = form(m, M, y, before, later)
+            if along < out[0] * size:
+                out[0], out[1], out[2] = along / size, k, c
+
+
+def form(m: Model, M: Doubles, y: Doubles, a: Doubles, b: Doubles) -> float:
+    """A M^-1 b, with few terms where a has few; M: factor of a mass matrix that changes, y (n_q,): work space."""
+    total = 0.0
+    if m.mass.given:
+        copy(y, b, m.n_q)
+        solve_definite(M, y, m.n_q)
+        return product(a, y, 0, m.n_q)
+    for i in range(m.n_q):
+        if a[i] != 0.0:
+            total += a[i] * product(m.M_inverse, b, i, m.n_q)
+    return total
