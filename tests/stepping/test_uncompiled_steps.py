@@ -5,7 +5,7 @@ import pytest
 
 from lagrangian import scenes
 from lcpstep import Moreau, model, room, simulate
-from lcpstep.kernels import looks, record, states, surplus
+from lcpstep.kernels import looks, outrun, record, states, surplus, turned
 from lcpstep.stepping import moreau_run
 from tests.uncompiled import kernels
 
@@ -27,6 +27,8 @@ def uncompiled(monkeypatch):
             monkeypatch.setattr(looks, name, getattr(plain.looks, name))
         monkeypatch.setattr(room, "lies_inside", plain.looks.lies_inside)
         monkeypatch.setattr(surplus, "surplus", plain.surplus.surplus)
+        monkeypatch.setattr(turned, "farthest_turn", plain.turned.farthest_turn)
+        monkeypatch.setattr(outrun, "steepest", plain.outrun.steepest)
         monkeypatch.setattr(record, "Record", plain.record.Record)
         monkeypatch.setattr(moreau_run, "loop", plain.theta_loop)
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)
