@@ -183,7 +183,7 @@ def test_the_nearest_of_a_million_impacts_is_found_at_once():
 
 @pytest.mark.slow
 def test_impacts_are_told_until_companions_strike_in_another_order():
-    """A body that comes to rest in the apex of four walls, a millimetre off, between two times at which places are looked at."""
+    """A body that comes to rest in the apex of four walls, from a millimetre off, between two looks at its places."""
     d = Description(
         M=((0.433, 0.144, 0.159), (0.144, 2.07, 0.347), (0.159, 0.347, 2.5)), q0=(0.646, -0.932, -0.0594),
         v0=(-0.839, 0.249, -0.0372), t_span=(0.0, 60.0), h=0.0628, G=((0.227, -0.578, 0.784),
