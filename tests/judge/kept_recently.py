@@ -172,4 +172,14 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located-4", "located-4-tolerance"),
     ),
+    # The judge measured the last hops by the rows of one pair of coordinates, a run in others by its own
+    "hops of a contact among six that the tolerance leaves out, in other units": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(1.24, -0.0443), v0=(0.0, 0.0), t_span=(0.0, 0.140297), h=0.0104,
+            G=((1.5, -1.1), (1.0, 0.1), (2.5, -0.5), (3.5, -0.9), (11.0, -3.9), (15.5, -4.2)), offset=(-1.5027300000000001,
+            -1.2188700000000001, -3.07905, -3.7048700000000006, -13.78527, -19.39066), restitution=0.065,
+            K=((2.86, 1.82), (1.82, 6.72)), constant=(-0.396, -0.284), general=True, family='redundant',
+        ),
+        ("event-driven-loose",),
+    ),
 }  # fmt: skip
