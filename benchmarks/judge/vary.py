@@ -200,7 +200,8 @@ def _alone(b: Base, other: Run, v: Variant, until: float) -> tuple[float, int, f
     fast = max(fast, 1e-6 * sizes.reach / sizes.time)
     end = until * (1.0 - 1e-12) - 1e-9 * b.d.length
     far = np.sum(np.abs(rows), axis=-1)
-    beside = np.sum(np.abs(jacobians(v.scene, np.array(v.scene.q0))), axis=-1)  # a tolerance is one of coordinates
+    # A tolerance is one of coordinates
+    beside = np.sum(np.abs(jacobians(v.scene, np.array(v.scene.q0))), axis=-1)
     if len(beside) == len(far):  # else of a scene with other contacts
         far = np.maximum(far, beside if v.order is None else beside[np.argsort(v.order)])
     left_out = b.run.tolerance * (1.0 + sizes.travel) if b.run.method.startswith("event-driven") else 0.0
