@@ -29,6 +29,7 @@ FACTOR, NOISE = 30.0, 100.0
 CONVERGED, TOLD = 0.02, 1e-3  # of the size of the motion
 COMPANIONS = 6
 MANY = 20_000  # steps of the finest run
+DEAR = 200_000  # steps that a tolerance has taken: a smaller one may take any number
 EARLY, CLEAR = (
     8,
     30.0,
@@ -142,7 +143,7 @@ def finer_by(r: Run) -> float:
 
 def agrees(reference: Reference, r: Run) -> list[Finding]:
     """Findings where the method has converged to another motion, misses its tolerance, or does not converge."""
-    if not r.usable or r.method == reference.run.method:
+    if not r.usable or r.method == reference.run.method or r.motion.counts.steps > DEAR:
         return []
     ref, d = reference, reference.d
     finer = run(d, r.method, finer_by(r))

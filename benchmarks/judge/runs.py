@@ -57,11 +57,13 @@ class Clock:
     limit = 0.0  # seconds of a run, and of every so many steps of a long one; 0: none
     steps = 1e5
     evaluations = 0  # of forces by the reference: as many steps may be asked for by a tolerance
+    longest = 2.0  # times the limit of a run by a tolerance: it keeps up to 1e7 states in a second
     deaf = 2.0  # seconds that it may take to hear the interrupt
 
-    def __init__(self, steps: float) -> None:
+    def __init__(self, steps: float, chosen: bool = False) -> None:
+        """`chosen`: whether the steps are, by a tolerance."""
         asked = max(1.0, steps / Clock.steps, Clock.evaluations / Clock.steps)
-        self.seconds, self.rang = Clock.limit * asked, False
+        self.seconds, self.rang = Clock.limit * (min(asked, Clock.longest) if chosen else asked), False
 
     def __enter__(self) -> Clock:
         if Clock.limit:
@@ -187,7 +189,8 @@ class Run:
 
 def run(d: Description, name: str, factor: float = 1.0, keep: Any = 1) -> Run:
     """One run; an exception that the library does not announce is an ending of its own, "raised"."""
-    scene, way, clock = d.scene(), WAYS[name], Clock(d.length / (d.h * factor))
+    scene, way = d.scene(), WAYS[name]
+    clock = Clock(d.length / (d.h * factor), way.tolerance > 0.0)
     started = time.process_time()
     try:
         with clock:
