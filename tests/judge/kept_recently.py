@@ -182,4 +182,13 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven-loose",),
     ),
+    # The judge asked `Moreau` for hops of 1e-9 m within a step, at which it sees a body at rest
+    "hops of a shaken body within a step": (
+        Description(
+            M=((1.0,),), q0=(-1.43,), v0=(0.0,), t_span=(0.0, 0.119415), h=0.00229, G=((1.0,),), offset=(1.43,),
+            restitution=1.0, constant=(4.17,), cosine=(-3.77,), force_omega=0.899, frame=(-0.241,), omega=22.3,
+            family='wall',
+        ),
+        ("moreau",),
+    ),
 }  # fmt: skip
