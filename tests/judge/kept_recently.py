@@ -191,4 +191,14 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("moreau",),
     ),
+    # Order 4 let go, and closed again without end, what two nearly opposite walls hold by forces of rounding
+    "at rest without forces between two walls that enclose three degrees": (
+        Description(
+            M=((1.0, 0.0), (0.0, 1.0)), q0=(0.586, 0.0512), v0=(0.0, 0.0), t_span=(0.0, 9.0), h=0.118,
+            G=((0.881, 0.241), (0.168, -0.418)), offset=(0.2220312063519435, 0.9530468200456423), restitution=0.74,
+            K=((0.0862, -0.0462), (-0.0462, 0.0445)), constant=(0.04814775999999999, -0.02479480000000045),
+            bend=(-0.647, -1.56), round=(1.0, 0.3), family='curved',
+        ),
+        ("located-4", "located-4-tolerance"),
+    ),
 }  # fmt: skip

@@ -53,6 +53,15 @@ def test_a_force_that_begins_at_zero_lets_go_once():
     assert len(motion.impacts) < 10
 
 
+@pytest.mark.parametrize("method", ["located-4", "located-4-tolerance"])
+def test_walls_between_which_rounding_is_the_only_force_keep_a_body_at_rest(method):
+    """Nearly opposite normals make a large force of it, which has no sign to let go by."""
+    d = RECENTLY["at rest without forces between two walls that enclose three degrees"][0]
+    motion = run(d, method).motion
+    assert motion.status == Status.DONE
+    assert np.max(np.abs(motion.q - np.array(d.q0))) < 1e-14
+
+
 def test_a_contact_that_opens_at_the_start_does_not_open_before_it():
     """Far from time zero a step's end less its length is not its beginning."""
     d = LATELY["a contact that the forces at the start press with nothing to rounding"][0]

@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.kernels.linear cimport solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport clear, copy, product
@@ -16,6 +17,7 @@ cdef Py_ssize_t answered(Plan plan, Work w, Py_ssize_t place) noexcept nogil
 cdef Py_ssize_t choose_resting(Work w) noexcept nogil
 cdef double leaving(Model m, Work w, double* W, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil
 cdef bint pulls(Model m, Work w, Py_ssize_t c) noexcept nogil
+cdef double force_rounding(Model m, Work w, Py_ssize_t c) noexcept nogil
 cdef double jerked(Work w, double* W, Py_ssize_t c) noexcept nogil
 @cython.locals(more=bint)
 cdef double largest_connected(Work w, Py_ssize_t c) noexcept nogil

@@ -12,6 +12,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.kernels.linear import solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import clear, copy, product
@@ -127,7 +128,8 @@ def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
 def pulls(m: Model, w: Work, c: int) -> bool:
     """Whether the negative force in w.p of closed contact c is more than rounding of what it balances.
 
-    It may balance but the rounding of the next force, as in a row of bodies of which the last alone is pressed.
+    The factor of the closed contacts is that of these forces. What they balance may be but the rounding of the next
+    force, as in a row of bodies of which the last alone is pressed.
     """
     alpha, size = -w.W[c * w.n_c + c] * w.p[c], 0.0
     if alpha <= jerked(w, w.W, c):
@@ -135,7 +137,22 @@ def pulls(m: Model, w: Work, c: int) -> bool:
     for d in range(w.n_c):
         if w.status[d] == CLOSED:
             size += abs(w.W[c * w.n_c + d] * w.p[d])
-    return alpha > ROUNDING * (size + acceleration_terms(m, w, c))
+    return alpha > ROUNDING * (size + acceleration_terms(m, w, c)) and -w.p[c] > force_rounding(m, w, c)
+
+
+def force_rounding(m: Model, w: Work, c: int) -> float:
+    """Rounding of the force of contact c, sum_d |W^-1|_cd |terms_d|: much of it where normals are nearly parallel."""
+    n_k, error = w.pivots[w.n_c], 0.0
+    for k in range(n_k):
+        w.change[k] = 1.0 if w.held[k] == c else 0.0
+    solve_factored(w.problem, w.n_c, n_k, w.change)
+    for k in range(n_k):
+        d = w.held[k]
+        size = acceleration_terms(m, w, d)
+        for j in range(n_k):
+            size += abs(w.W[d * w.n_c + w.held[j]] * w.p[w.held[j]])
+        error += abs(w.change[k]) * size
+    return ROUNDING * error
 
 
 def jerked(w: Work, W: Doubles, c: int) -> float:

@@ -151,6 +151,7 @@ def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
         for c in range(w.n_c):
             if w.status[c] == CLOSED and z.rate_to[c] < 0.0 and pulls(m, w, c):
                 tau = vanishing(m, plan, w, z, t, a, b, c)
+                copy(w.p, z.rate_to, w.n_c)  # forces were asked for at other times
                 if tau < first or found == NOBODY:
                     found, first = c, tau
         if found != NOBODY:
