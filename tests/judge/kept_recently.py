@@ -201,4 +201,18 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4", "located-4-tolerance"),
     ),
+    # Newton's iteration went to and fro between two speeds of 1e-15 m/s, of which places tell nothing, and failed
+    "at rest by forces that cancel, with masses from 0.06 g to 26 t": (
+        Description(
+            M=((25900.0, 0.0, 0.0, 0.0), (0.0, 0.307, 0.0, 0.0), (0.0, 0.0, 8460.0, 0.0), (0.0, 0.0, 0.0, 5.88e-05)),
+            q0=(-0.34, 1.45, 0.15, -0.116), v0=(0.0, 0.0, 0.0, 0.0), t_span=(0.0, 24.7863), h=0.0407,
+            G=((-1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, -1.0), (0.0, -1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0)),
+            offset=(-0.34, 1.1139999999999999, 1.45, -0.12129999999999999), restitution=1.0,
+            K=((0.00229, -0.00114, 0.0, 0.0), (-0.00114, 0.00229, -0.00114, 0.0), (0.0, -0.00114, 0.00229, -0.00114),
+            (0.0, 0.0, -0.00114, 0.00229)), spread=0.674, pendulum=0.82, b=(0.412, -0.609, -1.64, -0.689),
+            constant=(-0.3159719771538221, 0.46699848273394645, 1.2468960859514482, 0.5239063693656636),
+            general=True, family='chain',
+        ),
+        ("moreau",),
+    ),
 }  # fmt: skip

@@ -13,6 +13,7 @@ cdef class State:
     cdef object work, order
     cdef readonly Py_ssize_t n_q, n_c
     cdef public Py_ssize_t steps, problems, forces, iteration
+    cdef double moved
     cdef double* q
     cdef double* v
     cdef double* force

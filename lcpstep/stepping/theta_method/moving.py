@@ -30,6 +30,7 @@ class State:
     q_between, v_between                  a state within it
     R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
+    moved    by how much more than rounding of q the last iteration has moved it
 
     Parameters
     ----------
@@ -46,6 +47,7 @@ class State:
         self.closed, self.impulse = indices(self.arrays["marks"]), doubles(self.arrays["impulse"])
         self.sticks = indices_after(self.closed, n_c)
         self.steps = self.problems = self.forces = self.iteration = 0
+        self.moved = 0.0
         self.force = doubles(self.work)
         self.next_force = after(self.force, n_q)
         self.next_q = after(self.next_force, n_q)

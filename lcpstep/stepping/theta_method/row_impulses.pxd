@@ -15,7 +15,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
-cdef double CONVERGED, CANCELLED, ROUNDING, NO_APPROACH
+cdef double CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(

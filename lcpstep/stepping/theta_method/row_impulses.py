@@ -29,6 +29,7 @@ if not cython.compiled:
 
 CONVERGED = 1e-12  # change of the velocity, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
+EPS = 2.0**-52
 ROUNDING = 1e-13  # of these terms: what is left of it is no motion
 NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
@@ -200,7 +201,7 @@ def apply(plan: Plan, s: State, c: Rows, n_f: int, n_k: int) -> bool:
     Where friction acts, a velocity that is nothing but rounding is zero: what sticks is at rest.
     """
     n_q, ids, X, p = s.n_q, c.problem.ids, plan.X, c.p
-    change = size = 0.0
+    change = size = moved = 0.0
     for i in range(n_q):
         total, terms = s.v_free[i], abs(s.v_free[i])
         for k in range(n_k):
@@ -210,8 +211,10 @@ def apply(plan: Plan, s: State, c: Rows, n_f: int, n_k: int) -> bool:
         if n_f > 0 and abs(total) <= ROUNDING * terms:
             total = 0.0
         change = max(change, abs(total - s.next_v[i]))
+        moved = max(moved, plan.h * abs(total - s.next_v[i]) - EPS * abs(s.q[i]))
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
+    s.moved = moved
     return change <= CONVERGED * size
 
 

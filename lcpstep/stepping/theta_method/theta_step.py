@@ -152,7 +152,9 @@ def step(
             break
         s.iteration += 1
         if s.iteration >= MAX_ITERATIONS:
-            return NEWTON_FAILED
+            if s.moved > 0.0:
+                return NEWTON_FAILED
+            break  # forces that cancel, at places which rounding does not tell apart
     if c.coefficients.two or n_f > 1:
         note_sticking(s, c, n_a, n_f)
     position(plan, s)
