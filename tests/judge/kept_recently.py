@@ -182,4 +182,30 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven-loose",),
     ),
+    # Let go for less than can be told, the plastic one took part in the elastic one's impact, which had no end then
+    "an elastic and a plastic contact that collapse on two joints": (
+        Description(
+            M=((0.385, 0.134, 0.104, 0.129, 0.0682), (0.134, 2.36, 0.258, 0.318, 0.169), (0.104, 0.258, 1.43, 0.248,
+            0.131), (0.129, 0.318, 0.248, 2.18, 0.162), (0.0682, 0.169, 0.131, 0.162, 0.614)),
+            q0=(0.39, -0.909, -0.108, 0.269, 1.56), v0=(0.0, 0.0, 0.0, 0.0, 0.0), t_span=(-236.0, -229.9845),
+            h=0.0265, G=((1.69, -1.83, -0.454, -1.38, 1.21), (0.705, 1.21, 1.51, 0.63, -0.582), (-1.22, 0.162, 0.604,
+            0.546, 0.236)), offset=(-2.979982, 1.7741700000000002, 1.243256), restitution=(1.0, 0.44, 0.0),
+            constant=(0.0, 0.0, 0.0, 0.0, -6.02), force_omega=5.33, J=((-0.5, -0.4, -0.1, -0.8, -0.1), (0.8, 2.5,
+            -0.9, -0.1, -1.2)), joint_offset=(0.19180000000000003, 3.7622), general=True, pendulum=0.23,
+            b=(0.547, -1.56, -2.1, -0.276, -0.232), family='jointed',
+        ),
+        ("located-4", "located-4-tolerance"),
+    ),
+    # One of two walls in one place was settled, the other was left open by rounding, and closed when that wanted it
+    "four walls, two of them in one place, that are settled at an instant": (
+        Description(
+            M=((0.328, 0.0, 0.0), (0.0, 0.444, 0.0), (0.0, 0.0, 1.27)), q0=(-0.33, 0.477, -0.346),
+            v0=(0.40243478260869703, -0.008048695652173943, -0.4587756521739146), t_span=(0.0, 1.092), h=0.003,
+            G=((0.7, 0.8, 0.6), (-0.1, 0.7, -0.1), (0.6, 1.5, 0.5), (1.2, 3.0, 1.0)), restitution=(0.53, 0.77, 0.0,
+            0.77), offset=(1.9569999999999999, -0.4015, -0.3445000000000001, -0.6890000000000002), K=((2.65, 1.37,
+            -2.22), (1.37, 4.92, -2.3), (-2.22, -2.3, 2.93)), constant=(0.00294, 0.0877, 0.143),
+            cosine=(-1.02, 1.16, 2.32), force_omega=7.14, family='redundant',
+        ),
+        ("located",),
+    ),
 }  # fmt: skip
