@@ -8,6 +8,7 @@ import pytest
 
 from benchmarks.judge import agree, checks
 from benchmarks.judge.agree import Reference, agrees
+from benchmarks.judge.case import LONG, beginning
 from benchmarks.judge.checks import check, depth, finite, gain, given_by_the_law, penetration
 from benchmarks.judge.describe import Description
 from benchmarks.judge.physics import gaps, rates, room, swinging
@@ -256,3 +257,25 @@ def test_damping_of_hops_within_a_step_is_not_asked_of_order_two_and_places_beyo
     other = replace(HOPS, amplitude=(-0.0007, 0.0014 + more))
     monkeypatch.setattr(agree, "run", lambda d, *given: run(other if d is HOPS else d, *given))
     assert kinds(agrees(reference, run(other, "located"))) == found
+
+
+def test_of_a_long_scene_methods_by_a_tolerance_are_asked_the_beginning():
+    """A ball that is let fall, and its steps by a tolerance: four times the span takes eight times as many."""
+    d = Description(
+        M=((1.0,),),
+        q0=(1.0,),
+        v0=(0.0,),
+        t_span=(-3.0, 3.0),
+        h=0.01,
+        K=((25.0,),),
+        G=((1.0,),),
+        offset=(2.0,),
+    )
+    steps = [
+        run(replace(d, t_span=(-3.0, end)), "moreau-tolerance").motion.counts.steps for end in (0.0, 9.0)
+    ]
+    assert steps[1] > 6 * steps[0]
+    long = replace(d, t_span=(-3.0, 4.0 * LONG * d.h))
+    assert beginning(long, "moreau") == long
+    assert beginning(d, "moreau-tolerance") == d
+    assert beginning(long, "moreau-tolerance") == replace(long, t_span=(-3.0, -3.0 + LONG * d.h))
