@@ -279,3 +279,18 @@ def test_of_a_long_scene_methods_by_a_tolerance_are_asked_the_beginning():
     assert beginning(long, "moreau") == long
     assert beginning(d, "moreau-tolerance") == d
     assert beginning(long, "moreau-tolerance") == replace(long, t_span=(-3.0, -3.0 + LONG * d.h))
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9])
+def test_a_run_begins_anew_without_places_that_are_rounding(off):
+    """Pressed by 5.75 m/s^2 between two walls in one place; begun 1e-9 m off, it is a step's way off, and so told."""
+    d = Description(
+        M=((0.00577,),), q0=(0.0,), v0=(0.0,), t_span=(0.0, 2.0), h=0.0682, G=((1.0,), (-1.0,)), offset=(0.0, 0.0),
+        restitution=(0.58, 0.0), K=((0.000155,),), constant=(0.0332,), family="slit",
+    )  # fmt: skip
+    motion = SimpleNamespace(
+        q=np.zeros((2, 1)), v=np.zeros((2, 1)), at=lambda t: (np.array([-5e-16 - off]), np.zeros(1))
+    )
+    v = rest(replace(d, offset=(off, 0.0)), np.random.default_rng(1), motion)
+    found = list(same(base(d, run(d, "moreau")), run(v.scene, "moreau"), v))
+    assert bool(found) is (off > 0.0)
