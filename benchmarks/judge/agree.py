@@ -150,7 +150,7 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
         return []
     look_up(d, finer, ref.looks)
     until = min([ref.until, *(told_until(d, x) for x in (r, finer))])
-    own, distances = apart(r, finer, ref.looks) + _scatter(d, r), [ref.apart(x) for x in (r, finer)]
+    own, distances = apart(r, finer, ref.looks) + _scatter(ref, r), [ref.apart(x) for x in (r, finer)]
     rounding = 1e-7 * ref.size + 1e3 * EPS * float(np.max(np.abs(ref.q))) + NOISE * ref.noise
     promised = 10.0 * r.tolerance * (1.0 + ref.size) * np.maximum(1.0, ref.noise / (SMALL * ref.size))
     told = (ref.noise < TOLD * ref.size) & (ref.looks < until)
@@ -168,7 +168,7 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
         & (distances[1] > finer_by(r) * promised + rounding),
         "no order": settled
         & (r.tolerance == 0.0)
-        & (distances[1] > 0.7 * distances[0] + rounding + _scatter(d, r)),
+        & (distances[1] > 0.7 * distances[0] + rounding + _scatter(ref, r)),
     }
     before = np.where(np.isfinite(own), own, 0.0)  # of a graze, which magnifies it
     before[1:] = before[:-1]
@@ -181,15 +181,16 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
     return []
 
 
-def _scatter(d: Description, r: Run) -> float:
+def _scatter(ref: Reference, r: Run) -> float:
     """What a method leaves of places open, in whichever steps.
 
-    Impacts rounded to a grid fall where they happen to. Hops that are shorter than a step have the one acceleration
-    of a piece of order two: what damping takes from them is known to no digit, and places but for their height.
+    Impacts rounded to a grid fall where they happen to, and hops between two of its times are rest. Hops that are
+    shorter than a step have the one acceleration of a piece of order two: what damping takes from them is known to no
+    digit, and places but for their height.
     """
     if r.method == "moreau":
-        return 0.25 * d.h * float(np.max(np.abs(r.motion.v)))
-    return highest_hop(d, r.motion) if r.method == "located" else 0.0
+        return 0.25 * ref.d.h * max(float(np.max(np.abs(x.motion.v))) for x in (r, ref.run))
+    return highest_hop(ref.d, r.motion) if r.method == "located" else 0.0
 
 
 def highest_hop(d: Description, m: Any) -> float:
