@@ -227,4 +227,29 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4",),
     ),
+    # The forces at the start parted a bead at rest before the blow of the wall that sets out came through to it
+    "beads at rest on each other between walls that set out": (
+        Description(
+            M=((2.77, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.604, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.424, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.477, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.855, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 2.13)),
+            q0=(-0.258, 1.3, 0.135, 0.551, 0.00771, -0.0823), v0=(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), t_span=(1.2, 3.2),
+            h=0.0339, G=((-1.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, -1.0, 1.0, 0.0, 0.0, 0.0), (0.0, 0.0, -1.0, 1.0, 0.0,
+            0.0), (0.0, 0.0, 0.0, -1.0, 1.0, 0.0), (0.0, 0.0, 0.0, 0.0, -1.0, 1.0), (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+            offset=(-1.563794201153878, 1.165, -0.41600000000000004, 0.54329, 0.0929158005786715, 0.2609058005786715),
+            restitution=(1.0, 0.034, 0.0, 0.73, 0.36, 0.19), C=((0.15, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0327, 0.0,
+            0.0, 0.0, 0.0), (0.0, 0.0, 0.0229, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0258, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0,
+            0.0463, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.115)), constant=(-2.02, 0.0202, -0.225, 0.236, -0.207, 0.612),
+            amplitude=(0.0333, 0.0, 0.0, 0.0, -0.0167, -0.0167), phase=(4.88, 0.0, 0.0, 4.88, 4.88, 4.88),
+            omega=1.05, form=1, family='beads',
+        ),
+        ("located", "located-4", "located-tolerance", "located-4-tolerance"),
+    ),
+    # The force pulls for 8 ms of a period, which the samples of it had on both sides: events missed nine of ten
+    "a mass pulled off its wall for a moment of every period": (
+        Description(
+            M=((2.4,),), q0=(2.5,), v0=(0.0,), t_span=(0.0, 10.9721), h=0.00882, G=((-1.0,),), offset=(2.5,),
+            constant=(20.3,), cosine=(-20.3,), sine=(0.493,), force_omega=6.2, family='wall',
+        ),
+        ("event-driven", "located-4", "located-exact"),
+    ),
 }  # fmt: skip
