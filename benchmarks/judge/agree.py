@@ -185,12 +185,12 @@ def agrees(reference: Reference, r: Run) -> list[Finding]:
 def _scatter(ref: Reference, r: Run) -> float:
     """What a method leaves of places open, in whichever steps.
 
-    Impacts rounded to a grid fall where they happen to, and hops within a step are none: the reference tells of their
-    speeds. Hops that are shorter than a step have the one acceleration of a piece of order two: what damping takes
-    from them is known to no digit, and places but for their height.
+    Impacts rounded to a grid fall where they happen to, and hops between two of its times are rest. Hops that are
+    shorter than a step have the one acceleration of a piece of order two: what damping takes from them is known to no
+    digit, and places but for their height.
     """
     if r.method == "moreau":
-        return 0.25 * ref.d.h * float(max(np.max(np.abs(x.motion.v)) for x in (r, ref.run)))
+        return 0.25 * ref.d.h * max(float(np.max(np.abs(x.motion.v))) for x in (r, ref.run))
     return highest_hop(ref.d, r.motion) if r.method == "located" else 0.0
 
 

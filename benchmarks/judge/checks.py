@@ -70,11 +70,16 @@ def slowness() -> float:
 
 
 def between(d: Description, r: Run) -> Iterator[Finding]:
-    """States between the kept ones are told, right up to the end of what was computed."""
+    """States between the kept ones are told, right up to the end of what was computed.
+
+    Where a run breaks down its last step has led nowhere, and what is between may be as far from what is kept.
+    """
     try:
         q, _ = r.at(whole(r))
     except (IndexError, ValueError) as error:
         yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
+        return
+    if r.motion.t[-1] > judged_until(d, r):
         return
     if not np.allclose(q[-1], r.motion.q[-1], rtol=1e-12, atol=1e-9 * r.scales(d).length):
         text = f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"

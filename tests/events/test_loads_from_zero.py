@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from lcpstep.trajectory import Kind
 
 METHODS = {"events": (EventDriven(), 1e-9), "2": (Located(2e-3), 2e-3), "4": (Located(5e-3, 4), 1e-5)}
 SOME = settings(max_examples=8, deadline=None)
@@ -207,3 +208,15 @@ def test_a_joint_shares_the_pull(name, mu, share, sign):
     x, _, z = end(scene, method)
     assert abs(x - z) < 1e-9
     assert abs(x - 0.5 * slid(mu, a, 3.0 - math.sin(3.0))) < 10.0 * close
+
+
+@pytest.mark.parametrize("share", [0.3, 0.0243, 3e-3, 1e-4])
+@pytest.mark.parametrize("omega", [5.0, 5.4, 6.2, 6.9])
+def test_a_force_that_pulls_for_a_moment_lets_go_wherever_samples_of_it_fall(share, omega):
+    """1 - cos x + b sin x = 2 sin(x/2) (sin(x/2) + b cos(x/2)), x = omega t, is negative from 2 pi k - 2 atan b."""
+    block = LinearSystem(M=2.4, force=Harmonic(constant=20.3, cosine=-20.3, sine=20.3 * share, omega=omega))
+    wall = LinearContacts(G=-1.0, offset=2.5, restitution=0.0)
+    scene = Scene(block, q0=2.5, v0=0.0, t_span=(0.0, 10.9), contacts=wall, name="pulled for a moment")
+    log = simulate(scene, EventDriven()).impacts
+    expected = (2.0 * np.pi * np.arange(1, 20) - 2.0 * np.arctan(share)) / omega
+    np.testing.assert_allclose(log.time[log.kind == Kind.RELEASE], expected[expected < 10.9], atol=1e-9)

@@ -9,6 +9,7 @@ import pytest
 from benchmarks.judge.agree import disturbed
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
+from lcpstep import Status
 from tests.judge.kept_recently import RECENTLY
 
 # Thrown off together by an elastic wall, two plastic ones are met again one after the other, at 0.85 of the speeds
@@ -90,3 +91,17 @@ def test_a_motion_that_left_all_bounds_has_companions_near_its_start():
     )  # fmt: skip
     near = disturbed(rod, 1e-12, 1e36, 1).scene()
     assert 0.0 < np.max(np.abs(near.q0 - np.array(rod.q0))) < 0.1
+
+
+def test_a_collapse_on_joints_ends_for_steps_of_order_four_as_event_by_event():
+    """The plastic contact, let go between the impacts of one instant, had taken part in those of the elastic one."""
+    d = RECENTLY["an elastic and a plastic contact that collapse on two joints"][0]
+    exact = run(d, "event-driven").motion
+    errors = []
+    for factor in (1.0, 0.5, 0.25):
+        motion = run(d, "located-4", factor).motion
+        assert motion.status == Status.DONE
+        np.testing.assert_array_equal(motion.impacts.kind, exact.impacts.kind)
+        errors.append(np.max(np.abs(motion.q - exact.at(motion.t)[0])))
+    assert errors[0] < 2e-7
+    assert errors[2] < errors[1] / 8.0 < errors[0] / 64.0

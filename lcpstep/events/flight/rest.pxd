@@ -1,5 +1,5 @@
 from lcpstep.events.flight.motion cimport Flight, on_obstacle
-from lcpstep.pointers cimport abs
+from lcpstep.pointers cimport abs, inf, min
 
 cdef Py_ssize_t PROBES, NODES
 cdef double NONE, RESOLUTION

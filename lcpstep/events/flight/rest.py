@@ -14,7 +14,7 @@ from lcpstep.events.flight.contact import NONE, RESOLUTION
 
 if not cython.compiled:
     from lcpstep.events.flight.motion import Flight, on_obstacle
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, inf, min
 
 PROBES = 4  # samples of alpha per interval while the contact is closed
 NODES = 8  # and weights of Gauss on [0, 1], for the impulse of the contact force
@@ -50,17 +50,25 @@ def contact_impulse(s: Flight, a: float, b: float) -> float:
 
 
 def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
-    """First time in (a, b] at which alpha turns positive, or NONE."""
+    """First time in (a, b] at which alpha turns positive, or NONE.
+
+    It may do so for a moment between two samples; at the ends of the interval those beyond it tell.
+    """
     h = (b - a) / PROBES
-    t_0, f_0, t_1, f_1 = a - h, 2.0 * alpha_a, a, alpha_a
-    for k in range(1, PROBES + 1):
+    t_0, f_0, t_1, f_1 = a - h, inf, a, alpha_a
+    for k in range(1, PROBES + 2):
         t_2 = b if k == PROBES else a + k * h
+        if k == PROBES + 1 and not (f_0 < f_1 and t_2 <= min(s.high, s.t_end)):
+            break
         f_2 = alpha_at(s, t_2)
-        if k > 1 and f_0 < f_1 and f_2 <= f_1 and f_1 <= 0.0:
+        if k == 1 and f_2 <= f_1 and t_0 >= s.low:
+            f_0 = alpha_at(s, t_0)
+        if f_0 < f_1 and f_2 <= f_1 and f_1 <= 0.0:
             top, f_top = summit(s, t_1, h, f_0, f_1, f_2)
-            if f_top > 0.0:
-                return alpha_root(s, t_0, f_0, top, f_top)
-        if f_2 > 0.0:
+            start, f_start = (t_0, f_0) if k > 1 else (a, alpha_a)
+            if f_top > 0.0 and start < top <= b:
+                return alpha_root(s, start, f_start, top, f_top)
+        if k <= PROBES and f_2 > 0.0:
             return t_1 if f_1 >= 0.0 else alpha_root(s, t_1, f_1, t_2, f_2)
         t_0, f_0, t_1, f_1 = t_1, f_1, t_2, f_2
     return NONE

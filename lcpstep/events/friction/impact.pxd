@@ -3,6 +3,7 @@ from lcpstep.events.friction.cycle cimport look_back, recurs, sum_up
 from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure, measure_velocities, size_of, speed_tolerance
 from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
 from lcpstep.events.friction.keep cimport put_on_account
+from lcpstep.events.friction.parting cimport let_go, rejoin
 from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
 from lcpstep.events.friction.state cimport NOISE, Rubbing
 from lcpstep.kernels.clock cimport RESOLUTION

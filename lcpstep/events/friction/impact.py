@@ -31,6 +31,7 @@ if not cython.compiled:
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import put_on_account
+    from lcpstep.events.friction.parting import let_go, rejoin
     from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
@@ -55,6 +56,7 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """
     while s.rounds < 2 * ROUNDS:
         if not approaches(s):
+            rejoin(s)
             find_free(s)
             return DONE
         if record.full(4 * s.n_c + 4):
@@ -65,6 +67,8 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         else:
             if looks_back(s.rounds):
                 look_back(s)
+            if s.rounds > 0 and not s.in_turn and not let_go(s, t):
+                return NOT_FINITE
             s.rounds += 1
             if not strike(s, record, tally, t, s.rounds > ROUNDS):
                 return NO_IMPULSES
@@ -78,7 +82,7 @@ def approaches(s: Rubbing) -> bool:
         u = s.velocity[s.n_j + c]
         if s.mode[c] == OPEN and s.touches[c] == 1:
             hit = hit or u < -s.terms[c]
-            if abs(u) <= s.terms[c]:
+            if abs(u) <= s.terms[c] and s.parting[c] == 0:
                 s.mode[c] = SLIDES
     return hit
 
@@ -90,7 +94,8 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) ->
         s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
         if s.mode[c] == STICKS:
             s.velocity[i + s.n_c] = 0.0
-        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= s.terms[c]):
+        least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
             s.mode[c] = SLIDES
         s.free[c] = 1
     s.coefficients.use(s.problem.mu)
@@ -284,4 +289,6 @@ def forget_terms(s: Rubbing) -> None:
     s.rounds = 0
     copy(s.instant, s.impulse, s.n_r)
     clear(s.terms, 2 * s.n_c)
+    for c in range(s.n_c):
+        s.parting[c] = 0
     measure_velocities(s, after(s.y, s.n_q))

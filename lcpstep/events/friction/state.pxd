@@ -84,6 +84,7 @@ cdef class Rubbing(RungeKutta):
     cdef Py_ssize_t* new_loaded
     cdef Py_ssize_t* free
     cdef Py_ssize_t* touches
+    cdef Py_ssize_t* parting
     cdef Py_ssize_t* held
     cdef double* value
     cdef double* band

@@ -7,6 +7,7 @@ from lcpstep.events.friction.impact cimport forget_terms, still
 from lcpstep.events.friction.keep cimport keep
 from lcpstep.events.friction.modes cimport decide, undecided
 from lcpstep.events.friction.moments cimport locate
+from lcpstep.events.friction.parting cimport part_before
 from lcpstep.events.friction.state cimport GUARDS, Rubbing
 from lcpstep.events.friction.surfaces cimport find_touching, lift, project
 from lcpstep.kernels.record cimport Record

@@ -18,6 +18,7 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.moments import locate
+    from lcpstep.events.friction.parting import part_before
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.friction.surfaces import find_touching, lift, project
     from lcpstep.kernels.record import Record
@@ -109,6 +110,8 @@ def meet(s: Rubbing, c: int) -> None:
     lift(s, c)
     s.touches[c] = 1
     forget_terms(s)
+    if not s.in_turn:
+        part_before(s)
     s.next = JUMP
 
 

@@ -44,6 +44,7 @@ def copy_state(to: Work, w: Work, n_numbers: int, n_marks: int, n_matrices: int)
     to.sigma, to.end, to.low, to.high = w.sigma, w.end, w.low, w.high
     to.stalled, to.settled, to.ahead, to.blind, to.goal = w.stalled, w.settled, w.ahead, w.blind, w.goal
     to.under_way, to.unchanged, to.touching, to.pausing = w.under_way, w.unchanged, w.touching, w.pausing
+    to.fresh = w.fresh
     to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
     to.steps, to.lcp_calls, to.force_evaluations = w.steps, w.lcp_calls, w.force_evaluations
     to.events_left, to.cut, to.members, to.idle = w.events_left, w.cut, w.members, w.idle

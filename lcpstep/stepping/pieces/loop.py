@@ -47,6 +47,7 @@ if not cython.compiled:
 def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
     """Forces, gaps and status of the initial state, which is kept where states are."""
     w.low, w.high = find_corners(plan, t)
+    w.fresh = True
     if plan.trapezoidal:
         external_force(m, within(plan, w, t), w.q, w.v, w.force)
     elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
@@ -193,7 +194,7 @@ class Steps(Stepwise):
     def begin_interval(self, t: float) -> int:
         """The smooth interval from w.sigma to the next corner or the end of the step.
 
-        `found` is CORNER if it begins at one at which velocities of gaps may jump.
+        `found` is CORNER if it begins at one at which velocities of gaps may jump, a contact if the start strikes it.
         """
         now, self.found = t + self.w.sigma, NOBODY
         if now >= self.w.high - self.plan.margin:
@@ -206,6 +207,10 @@ class Steps(Stepwise):
         if t + self.plan.h > self.w.high + self.plan.margin:
             self.w.end = max(self.w.high - t, self.w.sigma)
         self.next_forces(t + self.w.end)
+        if self.w.fresh:
+            self.w.fresh = False
+            if self.found == NOBODY:
+                self.found = struck_at_start(self.w)
         return FINISHED
 
     # --- what the orders differ in -----------------------------------------------------------------------------
@@ -232,6 +237,21 @@ class Steps(Stepwise):
     def strike(self, t: float, c: int) -> int:
         """The event of contact c at w.sigma, or that of a corner, and what it changes."""
         return NOT_FINITE
+
+
+def struck_at_start(w: Work) -> int:
+    """The contact that comes nearer fastest of those that touch at the very start, where others rest; or NOBODY.
+
+    These take part in its impact: there was no time in which the forces could have parted them.
+    """
+    first = NOBODY
+    if w.closed_now == 0:
+        return first
+    for c in range(w.n_c):
+        touches = w.status[c] == OPEN and w.grounded[c] == GROUND and w.gap[c] == 0.0
+        if touches and w.rate[c] < 0.0 and (first == NOBODY or w.rate[c] < w.rate[first]):
+            first = c
+    return first
 
 
 def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:

@@ -4,7 +4,7 @@ from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport max, min
+from lcpstep.pointers cimport abs, max, min
 from lcpstep.stepping.pieces.codes cimport (
     ACCUMULATION, CLOSED, FINISHED, GROUND, IMPACT, INERTIA, LCP_FAILED, NOT_FINITE, ROUNDING
 )

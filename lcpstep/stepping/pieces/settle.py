@@ -22,7 +22,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import max, min
+    from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
         CLOSED,
@@ -135,6 +135,9 @@ def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float
             release(m, plan, w, record, c, end, w.rate[c])
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
+        elif touches and abs(w.rate[c]) <= ROUNDING * speed_terms(plan, w, c):  # at rest: the forces decide
+            w.gap[c] = w.rate[c] = 0.0
+            w.grounded[c], w.touching = GROUND, True
         else:
             w.gap[c] = max(0.0, w.gap[c] + span * w.rate[c])
             w.grounded[c] = GROUND if w.gap[c] == 0.0 else 0

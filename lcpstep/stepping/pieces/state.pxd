@@ -98,7 +98,7 @@ cdef class Work:
     cdef Py_ssize_t* last_contact
     cdef Py_ssize_t* pivots
     cdef public double sigma, end, low, high, stalled, settled, ahead, blind, goal
-    cdef public bint under_way, unchanged, touching, pausing
+    cdef public bint under_way, unchanged, touching, pausing, fresh
     cdef public Py_ssize_t events, closed_now, made_with
     cdef public Py_ssize_t steps, lcp_calls, force_evaluations, events_left, cut, members, idle
     cdef void place_vectors(self, double* x)
