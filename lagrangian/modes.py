@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,7 +36,7 @@ class Guard(Pickled):
     def __post_init__(self) -> None:
         if not callable(self.value):
             raise ValueError(f"guard.value: expected a function f(t, x, p, out), got {self.value!r}")
-        if self.direction not in (RISING, FALLING, BOTH):
+        if not isinstance(self.direction, Hashable) or self.direction not in (RISING, FALLING, BOTH):
             raise ValueError(f"guard.direction: expected 1, -1 or 0, got {self.direction!r}")
         if self.reset is not None and not callable(self.reset):
             raise ValueError(f"guard.reset: expected a function f(t, x, p, out) or None, got {self.reset!r}")

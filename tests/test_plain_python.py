@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -133,7 +133,7 @@ def test_a_changed_global_is_seen_by_the_next_run(monkeypatch):
 RUN = """
 import numpy as np
 from lagrangian import Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 import sys
 
 def swing(t, q, v, p, out):
@@ -206,3 +206,45 @@ def test_the_environment_can_ask_for_plain_python():
         (q, *counts), (q_fast, *counts_fast) = a.split(), b.split()
         assert counts == counts_fast
         assert float.fromhex(q) == pytest.approx(float.fromhex(q_fast), abs=1e-13)
+
+
+# --- what a callback keeps, and what it writes into later
+
+
+def test_states_that_a_callback_keeps_stay_as_they_were():
+    kept = []
+
+    def force(t, q, v, p, out):
+        kept.append((t, q, v, p, out))
+        out[0] = -p[0]
+
+    scene = Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.4), p=[8.0])
+    with pytest.warns(UncompiledCallback):
+        simulate(scene, Located(1e-2))
+    assert len(kept) >= 40
+    for t, q, v, p, out in kept:
+        assert (p[0], out[0]) == (8.0, -8.0)
+        assert q[0] == pytest.approx(1.0 - 4.0 * t * t, abs=1e-3)
+        assert v[0] == pytest.approx(-8.0 * t, abs=0.1)  # velocity Verlet asks with one foretold
+    for *_, out in kept:
+        out[0] = 7.0  # nobody else's memory
+
+
+@pytest.mark.parametrize("way", ["flags", "base"])
+@pytest.mark.parametrize("method", [Moreau(1e-2), EventDriven()], ids=["moreau", "event-driven"])
+def test_no_way_leads_to_the_numbers_of_the_run(way, method):
+    def force(t, q, v, p, out):
+        out[0] = -8.0
+        if t > 0.2 and way == "flags":
+            q.flags.writeable = True
+        if t > 0.2:
+            x = q if way == "flags" or q.base is None else q.base
+            x[0] = 5.0
+
+    with (
+        pytest.warns(UncompiledCallback),
+        pytest.raises(SimulationError, match=r"ValueError|TypeError") as caught,
+    ):
+        simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.4)), method)
+    run = caught.value.trajectory
+    np.testing.assert_allclose(run.q[:, 0], 1.0 - 4.0 * run.t**2, atol=0.02)
