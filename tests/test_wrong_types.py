@@ -3,7 +3,17 @@
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, Coulomb, Guard, HybridSystem, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Guard,
+    HybridSystem,
+    LinearContacts,
+    LinearSystem,
+    Mode,
+    Scene,
+    scenes,
+)
 from lcpstep import EventDriven, Located, Moreau, continued, energy, load, simulate, solve_lcp, study
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.basins import basins
@@ -58,6 +68,11 @@ def scene(**more):
             "friction.law: expected one of",
         ),
         (lambda: Guard(lambda t, x, p, out: None, "a", np.array([1, 0])), "guard.direction: expected"),
+        (lambda: Mode(lambda t, x, p, out: None, 3), "mode.guards: expected guards in a list"),
+        (lambda: Mode(lambda t, x, p, out: None, [3]), "mode.guards: expected guards in a list"),
+        (lambda: continued(RUN, t_end=None), "t_end: expected a finite number"),
+        (lambda: continued(RUN, t_end=np.inf), "t_end: expected a finite number"),
+        (lambda: continued(RUN, t_end=True), "t_end: expected a number"),
         (lambda: Moreau(lcp=["qp"]), "unknown LCP solver"),
         (lambda: solve_lcp([[1.0]], [1.0], ["qp"]), "unknown LCP solver"),
         (lambda: EventDriven(max_events=1e30), "max_events: expected an integer of at most"),
