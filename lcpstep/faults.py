@@ -42,8 +42,8 @@ def name_of(f: Callback) -> str:
 
 
 def note(noted: Fault) -> None:
-    """Keep the first exception of this thread; those that follow may follow from it."""
-    if fault() is None:
+    """Keep the first exception of this thread, for those that follow may follow from it; an interrupt does not."""
+    if fault() is None or isinstance(noted.error, KeyboardInterrupt):
         LOCAL.fault = noted
 
 
@@ -55,6 +55,12 @@ def fault() -> Fault | None:
 def forget() -> None:
     """Leave out of account what callbacks have raised up to here."""
     LOCAL.fault = None
+
+
+def interrupted() -> bool:
+    """Whether a callback has heard an interrupt of the keyboard that its run has yet to hear."""
+    noted = fault()
+    return noted is not None and isinstance(noted.error, KeyboardInterrupt)
 
 
 def cause() -> BaseException | None:

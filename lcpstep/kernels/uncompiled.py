@@ -13,7 +13,7 @@ import numpy as np
 
 from lagrangian.checks import said
 from lagrangian.plain import python
-from lcpstep.faults import Callback, Fault, name_of, note
+from lcpstep.faults import Callback, Fault, interrupted, name_of, note
 from lcpstep.functions import require
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
@@ -32,6 +32,9 @@ class CalledBack:
     def call(self, t: float, q: int, v: int, p: int, out: int, sizes: Any) -> None:
         """The function on copies of the numbers that C points to: what it keeps of them outlives the run."""
         n_q, n_v, n_p, rows, columns = sizes[:5]
+        if interrupted():  # a method that has passed over it is to meet no other number
+            ctypes.memset(out, ALL_ONES, ITEM * rows * (columns or 1))
+            return
         x, x_t, own = numbers(q, n_q), numbers(v, n_v), numbers(p, n_p)
         given = (x, own) if self.first_order else (x, x_t, own)
         room = bytearray(ctypes.string_at(out, ITEM * rows * (columns or 1)))
