@@ -64,9 +64,10 @@ def interrupted() -> bool:
 
 
 def cause() -> BaseException | None:
-    """The exception itself, where Python has raised it; an interrupt of the keyboard goes on its way."""
+    """The exception itself, where Python has raised it; an interrupt of the keyboard goes on its way, once."""
     noted = fault()
     error = None if noted is None else noted.error
     if isinstance(error, KeyboardInterrupt):
+        forget()
         raise error
     return error

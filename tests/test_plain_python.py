@@ -8,6 +8,7 @@ import pytest
 
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationError, SimulationInterrupted, simulate
+from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -160,6 +161,7 @@ class Missing:
 
 sys.meta_path.insert(0, Missing)
 warnings.simplefilter("always")
+from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 
 def push(t, x, p, out):
@@ -297,3 +299,20 @@ def test_an_interrupt_that_a_callback_hears_is_the_last_of_its_run(which, method
             with pytest.raises(SimulationInterrupted):
                 simulate(scene, method)
             assert after == ["interrupt"]
+
+
+def test_an_interrupt_is_heard_once():
+    """Not again by maps that follow, in which no run is begun."""
+    heard = []
+
+    def force(t, q, v, p, out):
+        out[0] = -9.81
+        if t > 0.1 and not heard:
+            heard.append(t)
+            raise KeyboardInterrupt
+
+    with pytest.warns(UncompiledCallback), pytest.raises(SimulationInterrupted):
+        simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 1.0)), Moreau(1e-2))
+    cam = scenes.cam_follower(rpm=700.0)
+    found = periods(cam, Moreau(1e-4), np.array([[1.33, -66.2]]), 1)
+    assert np.all(np.isfinite(found.states))
