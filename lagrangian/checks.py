@@ -16,6 +16,7 @@ from lagrangian.plain import python
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
 MANY = 50  # numbers in a message
+LARGEST = 2**62  # whole number: kernels count in 64 bits
 ASYMMETRY = 1e-12  # of the largest entry: what rounding may leave
 
 
@@ -117,13 +118,15 @@ def restitution(value: ArrayLike, n_c: int) -> Array:
 
 
 def count(name: str, value: Any) -> int:
-    """A positive integer."""
+    """A positive integer that kernels can count to."""
     try:
         result = operator.index(value)
     except TypeError:
         result = 0
     if result < 1 or isinstance(value, bool):
         raise ValueError(f"{name}: expected a positive integer, got {value!r}")
+    if result > LARGEST:
+        raise ValueError(f"{name}: expected an integer of at most {LARGEST}, got {value!r}")
     return result
 
 
@@ -176,15 +179,20 @@ def symmetric(name: str, value: Array) -> Array:
 
 def mass_matrix(name: str, value: Array) -> Array:
     """A symmetric positive definite matrix, or an error that says which of the two it is not."""
-    scale = np.max(np.abs(value), initial=0.0)
-    if not np.allclose(value, value.T, rtol=0.0, atol=ASYMMETRY * scale):
-        raise ValueError(f"{name}: the mass matrix must be symmetric, got\n{value}")
+    symmetric_mass(name, value)
     lowest = float(np.linalg.eigvalsh(value)[0])
     if lowest <= 0.0:
         raise ValueError(
             f"{name}: the mass matrix must be positive definite, its lowest eigenvalue is {lowest:g}"
         )
     return value
+
+
+def symmetric_mass(name: str, value: Array) -> None:
+    """ValueError unless a matrix is symmetric up to rounding."""
+    scale = np.max(np.abs(value), initial=0.0)
+    if not np.allclose(value, value.T, rtol=0.0, atol=ASYMMETRY * scale):
+        raise ValueError(f"{name}: the mass matrix must be symmetric, got\n{value}")
 
 
 def evaluate(

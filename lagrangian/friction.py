@@ -99,7 +99,7 @@ class Coulomb(Pickled):
         elif not callable(slip) and not callable(tangent):
             slip = checks.per_contact("friction.slip", 0.0 if slip is None else slip, n_c)
         r = None if self.restitution is None else checks.restitution(self.restitution, n_c)
-        if self.law not in LAWS:
+        if not isinstance(self.law, str) or self.law not in LAWS:
             raise ValueError(f"friction.law: expected one of {', '.join(map(repr, LAWS))}, got {self.law!r}")
         if r is not None and self.law != "moreau":
             raise ValueError(

@@ -236,8 +236,14 @@ def evaluate(name: str, f: Function, at: tuple[float, Array, Array], n: int) -> 
         return f(t, q, p, out)
 
     try:
-        return checks.evaluate(name, with_velocities, (t, x, np.zeros(0), p), (n,))
+        return checks.evaluate(name, with_velocities, (t, x, x, p), (n,))
     except ValueError as error:
-        raise ValueError(
-            str(error).replace("f(t, q, v, p, out) with q, v of shape", "f(t, x, p, out) with x of shape")
-        ) from error
+        said, state = str(error), checks.shown(x)
+        for of_second_order, own in (
+            ("f(t, q, v, p, out)", "f(t, x, p, out)"),
+            ("q, v of shape", "x of shape"),
+            (f"q = {state}, v = {state}", f"x = {state}"),
+            ("q, v and p are not", "x and p are not"),
+        ):
+            said = said.replace(of_second_order, own)
+        raise ValueError(said) from error

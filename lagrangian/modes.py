@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,7 +36,7 @@ class Guard(Pickled):
     def __post_init__(self) -> None:
         if not callable(self.value):
             raise ValueError(f"guard.value: expected a function f(t, x, p, out), got {self.value!r}")
-        if self.direction not in (RISING, FALLING, BOTH):
+        if not isinstance(self.direction, Hashable) or self.direction not in (RISING, FALLING, BOTH):
             raise ValueError(f"guard.direction: expected 1, -1 or 0, got {self.direction!r}")
         if self.reset is not None and not callable(self.reset):
             raise ValueError(f"guard.reset: expected a function f(t, x, p, out) or None, got {self.reset!r}")
@@ -58,7 +58,7 @@ class Mode(Pickled):
     def __post_init__(self) -> None:
         if not callable(self.field):
             raise ValueError(f"mode.field: expected a function f(t, x, p, out), got {self.field!r}")
-        object.__setattr__(self, "guards", tuple(self.guards))
+        object.__setattr__(self, "guards", _guards("mode.guards", self.guards))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,4 +84,12 @@ class Surface(Pickled):
             raise ValueError(f"surface.value: expected a function f(t, x, p, out), got {self.value!r}")
         if self.below == self.above:
             raise ValueError(f"surface: expected two different modes, got {self.below!r} on both sides")
-        object.__setattr__(self, "guards", tuple(self.guards))
+        object.__setattr__(self, "guards", _guards("surface.guards", self.guards))
+
+
+def _guards(name: str, values: Any) -> tuple[Guard, ...]:
+    """Guards in a tuple."""
+    guards = tuple(values) if isinstance(values, Iterable) else (values,)
+    if not all(isinstance(guard, Guard) for guard in guards):
+        raise TypeError(f"{name}: expected guards in a list, got {values!r}")
+    return guards

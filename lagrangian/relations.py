@@ -3,7 +3,7 @@
 Contacts, Joints              gap: jacobian and gap_t;   G v + g_t along the motion: bias
 LinearContacts, LinearJoints  motion: s, s', s''
 LinearSystem                  frame: c, c', c''
-System                        force: force_q and force_v
+System                        force: force_q and force_v;   mass: its own transpose
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lagrangian import checks
 from lagrangian.checks import Array, Callback, read_only
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.derivatives import Direction, Known, Relation, State, compare
@@ -43,6 +44,7 @@ def check_derivatives(scene: Scene, states: Iterable[State], run: bool = False) 
         return
     with np.errstate(all="ignore"):
         for at in states:
+            _check_mass(scene, at)
             for relation in _relations(scene, at):
                 compare(relation)
     known.shapes.add(shape)
@@ -54,13 +56,24 @@ def _functions(scene: Scene) -> list[Any]:
     system = scene.system
     if isinstance(system, LinearSystem):
         found += [system.frame]
-    elif system.force_q is not None or system.force_v is not None:
-        found += [system.force, system.force_q, system.force_v]
+    else:
+        found += [system.mass] if callable(system.mass) else []
+        if system.force_q is not None or system.force_v is not None:
+            found += [system.force, system.force_q, system.force_v]
     for _, c in _constraints(scene):
         found += [c.motion] if isinstance(c, LinearContacts) else [c.gap, c.gap_t, c.bias]
     for c in (scene.contacts, scene.joints):
         found += [getattr(c, "jacobian", None)]
     return found
+
+
+def _check_mass(scene: Scene, at: State) -> None:
+    """ValueError where the mass is not symmetric: kernels that read one half of it do not notice."""
+    mass: Any = getattr(scene.system, "mass", None)
+    if callable(mass):
+        M = _evaluated(mass, scene, (scene.n_q, scene.n_q))(at)
+        if np.all(np.isfinite(M)):
+            checks.symmetric_mass("system.mass", M)
 
 
 def _constraints(scene: Scene) -> Iterator[tuple[str, Any]]:

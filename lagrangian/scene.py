@@ -189,6 +189,8 @@ class Scene(Pickled):
         if not callable(self.exact):
             raise ValueError(f"exact: expected a function of times, got {self.exact!r}")
         start = self.exact(np.array([self.t_span[0]]))
+        if not isinstance(start, (tuple, list)) or len(start) != 2:
+            raise ValueError(f"exact: expected a function of times that gives q and v, got {start!r} from it")
         near = []
         for name, x, mine in zip(("q", "v"), start, (self.q0, self.v0), strict=True):
             given = checks.array(f"exact: {name}", x, (1, self.n_q))[0]

@@ -57,7 +57,7 @@ def _surplus(run: Trajectory, m: Model, h: float, looks: int) -> tuple[float, fl
         return 0.0, 0.0
     both = np.column_stack([k, k + 1]).ravel()
     gained, work, kinetic, pushed, placed = surplus(m, run.t[both], run.q[both], run.v[both], NEAR * h)
-    if kinetic < (STILL * h) ** 2 * pushed + (ROUNDING / h) ** 2 * placed:
+    if kinetic < (STILL * h) ** 2 * pushed + (ROUNDING / h) * (ROUNDING / h) * placed:
         return 0.0, 0.0
     times = max(1.0, (len(run.t) - 1) / looks)
     return times * gained, kinetic + times * work

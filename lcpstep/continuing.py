@@ -74,6 +74,7 @@ def continued(run: Trajectory | HybridTrajectory, *, t_end: float) -> Scene | Hy
     """
     if not isinstance(run, Answer):
         raise TypeError(f"run: expected a Trajectory, got {run!r}")
+    t_end = checks.number("t_end", t_end)
     if isinstance(run.scene, HybridScene):
         return _continued_modes(run, t_end)
     if len(run.t) == 0:
@@ -86,7 +87,7 @@ def continued(run: Trajectory | HybridTrajectory, *, t_end: float) -> Scene | Hy
 
 
 def _after(t: float, t_end: float) -> float:
-    if not float(t_end) > t:
+    if not t_end > t:
         raise ValueError(f"t_end: expected a time after the end of the run, {t:.9g} s, got {t_end!r}")
     return float(t)
 
@@ -95,7 +96,7 @@ def _continued_modes(run: Any, t_end: float) -> HybridScene:
     """From the last step of a run with modes, which is known whatever was kept."""
     names, last = run.scene.system.names, run.pieces
     t = _after(last.t[-1], t_end)
-    return run.scene.started(last.x[-1], names[last.mode[-1]], (t, float(t_end)))
+    return run.scene.started(last.x[-1], names[last.mode[-1]], (t, t_end))
 
 
 def _resting(run: Trajectory) -> NDArray[np.bool_]:

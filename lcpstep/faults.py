@@ -42,8 +42,8 @@ def name_of(f: Callback) -> str:
 
 
 def note(noted: Fault) -> None:
-    """Keep the first exception of this thread; those that follow may follow from it."""
-    if fault() is None:
+    """Keep the first exception of this thread, for those that follow may follow from it; an interrupt does not."""
+    if fault() is None or isinstance(noted.error, KeyboardInterrupt):
         LOCAL.fault = noted
 
 
@@ -57,10 +57,17 @@ def forget() -> None:
     LOCAL.fault = None
 
 
+def interrupted() -> bool:
+    """Whether a callback has heard an interrupt of the keyboard that its run has yet to hear."""
+    noted = fault()
+    return noted is not None and isinstance(noted.error, KeyboardInterrupt)
+
+
 def cause() -> BaseException | None:
-    """The exception itself, where Python has raised it; an interrupt of the keyboard goes on its way."""
+    """The exception itself, where Python has raised it; an interrupt of the keyboard goes on its way, once."""
     noted = fault()
     error = None if noted is None else noted.error
     if isinstance(error, KeyboardInterrupt):
+        forget()
         raise error
     return error

@@ -50,7 +50,7 @@ class Kept:
         if isinstance(keep, (int, np.integer)):
             if isinstance(keep, bool) or keep < 1:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
-            return cls(int(keep), False, NOTHING)
+            return cls(checks.count("keep", int(keep)), False, NOTHING)
         try:
             times = np.array(checks.vector("keep", keep))
         except ValueError:

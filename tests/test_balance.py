@@ -130,6 +130,12 @@ def test_states_that_are_no_step_apart_say_nothing(keep):
     assert simulate(wavy(60.0, 4.0), Located(1e-2), keep=keep).doubt == ""
 
 
+def test_the_shortest_spans_have_a_balance():
+    m = simulate(Scene(LinearSystem(1.0, force=-9.81), 1.0, 0.0, (0.0, 1e-300)), Located(1e-302, 4))
+    assert m.doubt == ""
+    assert m.v[-1, 0] == pytest.approx(-9.81e-300)
+
+
 @pytest.mark.parametrize("order", [2, 4])
 def test_a_pendulum_is_balanced(order):
     assert simulate(scenes.pendulum_stop(), Located(1e-2, order)).doubt == ""

@@ -1,12 +1,14 @@
 """The same kernels in plain Python: for callbacks that cannot be compiled, and with NUMBA_DISABLE_JIT=1."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, SimulationInterrupted, simulate
+from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -133,7 +135,7 @@ def test_a_changed_global_is_seen_by_the_next_run(monkeypatch):
 RUN = """
 import numpy as np
 from lagrangian import Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, SimulationInterrupted, simulate
 import sys
 
 def swing(t, q, v, p, out):
@@ -159,6 +161,7 @@ class Missing:
 
 sys.meta_path.insert(0, Missing)
 warnings.simplefilter("always")
+from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 
 def push(t, x, p, out):
@@ -206,3 +209,110 @@ def test_the_environment_can_ask_for_plain_python():
         (q, *counts), (q_fast, *counts_fast) = a.split(), b.split()
         assert counts == counts_fast
         assert float.fromhex(q) == pytest.approx(float.fromhex(q_fast), abs=1e-13)
+
+
+# --- what a callback keeps, and what it writes into later
+
+
+def test_states_that_a_callback_keeps_stay_as_they_were():
+    kept = []
+
+    def force(t, q, v, p, out):
+        kept.append((t, q, v, p, out))
+        out[0] = -p[0]
+
+    scene = Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.4), p=[8.0])
+    with pytest.warns(UncompiledCallback):
+        simulate(scene, Located(1e-2))
+    assert len(kept) >= 40
+    for t, q, v, p, out in kept:
+        assert (p[0], out[0]) == (8.0, -8.0)
+        assert q[0] == pytest.approx(1.0 - 4.0 * t * t, abs=1e-3)
+        assert v[0] == pytest.approx(-8.0 * t, abs=0.1)  # velocity Verlet asks with one foretold
+    for *_, out in kept:
+        out[0] = 7.0  # nobody else's memory
+
+
+@pytest.mark.parametrize("way", ["flags", "base"])
+@pytest.mark.parametrize("method", [Moreau(1e-2), EventDriven()], ids=["moreau", "event-driven"])
+def test_no_way_leads_to_the_numbers_of_the_run(way, method):
+    def force(t, q, v, p, out):
+        out[0] = -8.0
+        if t > 0.2 and way == "flags":
+            q.flags.writeable = True
+        if t > 0.2:
+            x = q if way == "flags" or q.base is None else q.base
+            x[0] = 5.0
+
+    with (
+        pytest.warns(UncompiledCallback),
+        pytest.raises(SimulationError, match=r"ValueError|TypeError") as caught,
+    ):
+        simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.4)), method)
+    run = caught.value.trajectory
+    np.testing.assert_allclose(run.q[:, 0], 1.0 - 4.0 * run.t**2, atol=0.02)
+
+
+@pytest.mark.parametrize("which", ["force", "gap", "jacobian"])
+@pytest.mark.parametrize(
+    "method",
+    [
+        Located(1e-2, tolerance=1e-6),
+        Located(1e-2, order=4, tolerance=1e-6),
+        Moreau(1e-2),
+        EventDriven(1e-9, 1e-9),
+    ],
+    ids=["located", "order four", "moreau", "event-driven"],
+)
+def test_an_interrupt_that_a_callback_hears_is_the_last_of_its_run(which, method):
+    """Attempts that the control takes back had taken the interrupt back with them."""
+    calls = {"force": 0, "gap": 0, "jacobian": 0}
+    first, after = [0], []
+
+    def called(name):
+        calls[name] += 1
+        if after:
+            after.append(name)
+        elif name == which and calls[name] == first[0]:
+            after.append("interrupt")
+            raise KeyboardInterrupt
+
+    def force(t, q, v, p, out):
+        called("force")
+        out[0] = -9.81
+
+    def gap(t, q, v, p, out):
+        called("gap")
+        out[0] = q[0]
+
+    def jacobian(t, q, v, p, out):
+        called("jacobian")
+        out[0, 0] = 1.0
+
+    contacts = Contacts(1, gap, jacobian, restitution=0.8)
+    scene = Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 3.0), contacts=contacts)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UncompiledCallback)
+        for number in (30, 151, 302):
+            first[0] = calls[which] + number
+            after.clear()
+            with pytest.raises(SimulationInterrupted):
+                simulate(scene, method)
+            assert after == ["interrupt"]
+
+
+def test_an_interrupt_is_heard_once():
+    """Not again by maps that follow, in which no run is begun."""
+    heard = []
+
+    def force(t, q, v, p, out):
+        out[0] = -9.81
+        if t > 0.1 and not heard:
+            heard.append(t)
+            raise KeyboardInterrupt
+
+    with pytest.warns(UncompiledCallback), pytest.raises(SimulationInterrupted):
+        simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 1.0)), Moreau(1e-2))
+    cam = scenes.cam_follower(rpm=700.0)
+    found = periods(cam, Moreau(1e-4), np.array([[1.33, -66.2]]), 1)
+    assert np.all(np.isfinite(found.states))

@@ -3,8 +3,18 @@
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, HybridSystem, LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Moreau, continued, energy, load, simulate, study
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Guard,
+    HybridSystem,
+    LinearContacts,
+    LinearSystem,
+    Mode,
+    Scene,
+    scenes,
+)
+from lcpstep import EventDriven, Located, Moreau, continued, energy, load, simulate, solve_lcp, study
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.basins import basins
 from lcpstep.analysis.orbits import periodic_orbit
@@ -50,6 +60,24 @@ def scene(**more):
         (lambda: RUN.save(3), "path: expected the name of a file"),
         (lambda: RUN.animate(3), "path: expected the name of a file"),
         (lambda: RUN.at("now"), "t: expected real numbers"),
+        (lambda: scene(exact=lambda t: t), "exact: expected a function of times that gives q and v"),
+        (lambda: Located(order=np.array([2, 4])), "order: expected 2, 4"),
+        (lambda: EventDriven(jamming=np.array([1, 2])), "jamming: expected"),
+        (
+            lambda: Coulomb(0.3, [[1.0]], law=np.array(["newton", "moreau"])).fitted(1),
+            "friction.law: expected one of",
+        ),
+        (lambda: Guard(lambda t, x, p, out: None, "a", np.array([1, 0])), "guard.direction: expected"),
+        (lambda: Mode(lambda t, x, p, out: None, 3), "mode.guards: expected guards in a list"),
+        (lambda: Mode(lambda t, x, p, out: None, [3]), "mode.guards: expected guards in a list"),
+        (lambda: continued(RUN, t_end=None), "t_end: expected a finite number"),
+        (lambda: continued(RUN, t_end=np.inf), "t_end: expected a finite number"),
+        (lambda: continued(RUN, t_end=True), "t_end: expected a number"),
+        (lambda: Moreau(lcp=["qp"]), "unknown LCP solver"),
+        (lambda: solve_lcp([[1.0]], [1.0], ["qp"]), "unknown LCP solver"),
+        (lambda: EventDriven(max_events=1e30), "max_events: expected an integer of at most"),
+        (lambda: Located(max_per_step=10**30), "max_per_step: expected an integer of at most"),
+        (lambda: simulate(BALL, Moreau(1e-2), keep=2**63), "keep: expected an integer of at most"),
     ],
 )
 def test_wrong_kinds_are_named(wrong, said):

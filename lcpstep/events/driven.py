@@ -69,9 +69,9 @@ class EventDriven:
         most = checks.number("max_events", self.max_events, least=1)
         if most != int(most):
             raise ValueError(f"max_events: expected a whole number, got {self.max_events!r}")
-        object.__setattr__(self, "max_events", int(most))
+        object.__setattr__(self, "max_events", checks.count("max_events", int(most)))
         checks.instance("audit", self.audit, bool)
-        if self.jamming not in ("stop", "impact"):
+        if not isinstance(self.jamming, str) or self.jamming not in ("stop", "impact"):
             raise ValueError(f'jamming: expected "stop" or "impact", got {self.jamming!r}')
 
     def run_hybrid(

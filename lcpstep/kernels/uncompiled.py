@@ -11,12 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.checks import read_only, said
+from lagrangian.checks import said
 from lagrangian.plain import python
-from lcpstep.faults import Callback, Fault, name_of, note
+from lcpstep.faults import Callback, Fault, interrupted, name_of, note
 from lcpstep.functions import require
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
+ITEM, ALL_ONES = 8, 0xFF  # bytes of a number; of a not-a-number
 
 
 class CalledBack:
@@ -29,20 +30,24 @@ class CalledBack:
         self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
 
     def call(self, t: float, q: int, v: int, p: int, out: int, sizes: Any) -> None:
-        """Views of the numbers that C points to, and the function on them."""
+        """The function on copies of the numbers that C points to: what it keeps of them outlives the run."""
         n_q, n_v, n_p, rows, columns = sizes[:5]
-        filled = numbers(out, rows * (columns or 1))
-        x, x_t, own = (read_only(numbers(a, n)) for a, n in ((q, n_q), (v, n_v), (p, n_p)))
+        if interrupted():  # a method that has passed over it is to meet no other number
+            ctypes.memset(out, ALL_ONES, ITEM * rows * (columns or 1))
+            return
+        x, x_t, own = numbers(q, n_q), numbers(v, n_v), numbers(p, n_p)
         given = (x, own) if self.first_order else (x, x_t, own)
+        room = bytearray(ctypes.string_at(out, ITEM * rows * (columns or 1)))
+        filled = np.frombuffer(room)
         try:
             self.f(t, *given, filled.reshape(rows, columns) if columns else filled)
         except BaseException as error:  # C passes none on
-            filled[:] = np.nan
+            ctypes.memset(out, ALL_ONES, len(room))
             note(Fault(self.name, t, x.copy(), x_t.copy(), said(error), error))
+        else:
+            ctypes.memmove(out, bytes(room), len(room))
 
 
 def numbers(address: int, n: int) -> Any:
-    """The n doubles at an address."""
-    return (
-        np.ctypeslib.as_array((ctypes.c_double * n).from_address(address)) if n and address else np.zeros(0)
-    )
+    """The n doubles at an address, in an array of their own that nobody can make writeable."""
+    return np.frombuffer(ctypes.string_at(address, ITEM * n)) if n and address else np.zeros(0)

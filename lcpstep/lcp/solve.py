@@ -74,7 +74,7 @@ def solve_lcp(
     if n == 0:
         check_method(method)
         return Solution(z, z.copy(), Status.SOLVED, 0, 0.0, method)
-    solver = METHODS.get(method) or find_method(method)
+    solver = (METHODS.get(method) if isinstance(method, str) else None) or find_method(method)
     if type(W) is not np.ndarray and method in NEEDS_DENSE:
         W = dense(W)
     return solver(W, b, z, tol, max_iterations)
@@ -82,7 +82,7 @@ def solve_lcp(
 
 def check_method(method: str) -> None:
     """UnknownName or MissingSolver unless `solve_lcp` can use this method."""
-    if method not in METHODS:
+    if not isinstance(method, str) or method not in METHODS:
         find_method(method)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -70,7 +70,8 @@ class Located:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "h", checks.positive("h", self.h))
-        if self.order not in ORDERS or isinstance(self.order, (bool, float)):
+        known = isinstance(self.order, Hashable) and self.order in ORDERS
+        if not known or isinstance(self.order, (bool, float)):
             raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
         object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
         object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))

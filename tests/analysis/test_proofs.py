@@ -126,9 +126,9 @@ def test_more_bits_give_more_digits_and_fewer_give_the_same_orbit(cam_orbit):
     assert wide.stability == narrow.stability == "stable"
 
 
-@pytest.mark.parametrize("bits", [0, 53, math.nan, "many"])
+@pytest.mark.parametrize("bits", [0, 53, math.nan, "many", 2**40])
 def test_a_precision_that_is_none_is_refused(cam_orbit, bits):
-    with pytest.raises(ValueError, match="bits"):
+    with pytest.raises(ValueError, match=r"^bits: "):
         prove(cam_orbit, bits=bits)
 
 

@@ -188,3 +188,18 @@ def test_what_is_wrong_is_so_every_time():
     for _ in range(2):
         with pytest.raises(ValueError, match="differences of"):
             made(wrong)
+
+
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-2), Located(1e-2), EventDriven()], ids=["moreau", "located", "event"]
+)
+def test_a_mass_matrix_that_is_not_symmetric_later_is_found_by_the_run(method):
+    def mass(t, q, v, p, out):
+        out[0, 0], out[0, 1], out[1, 0], out[1, 1] = 1.0, t, 0.0, 1.0
+
+    def force(t, q, v, p, out):
+        out[0], out[1] = 0.0, -9.81
+
+    with pytest.raises(SimulationError, match=r"^system\.mass: the mass matrix must be symmetric") as caught:
+        simulate(made(system=System(2, mass, force)), method)
+    assert caught.value.trajectory.t[-1] == 2.0

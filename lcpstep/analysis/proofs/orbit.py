@@ -20,6 +20,7 @@ from lcpstep.analysis.proofs.obstacles import stretch
 from lcpstep.analysis.proofs.report import Enclosure, Proof, Unique, down, verdict
 from lcpstep.analysis.proofs.shooting import Node, Struck, closing, flown, nodes_of, rebound
 
+MOST_BITS = 1_000_000  # of what flint counts in an int
 NEAR = 1e-6  # relative: how far what is proved may lie from what was given
 
 
@@ -31,7 +32,7 @@ def prove(orbit: PeriodicOrbit, *, bits: int = 128) -> Proof:
     Parameters
     ----------
     orbit : from `lcpstep.analysis.orbits.periodic_orbit`
-    bits : precision of the arithmetic, at least 64
+    bits : precision of the arithmetic, 64 to a million
 
     Raises
     ------
@@ -40,7 +41,7 @@ def prove(orbit: PeriodicOrbit, *, bits: int = 128) -> Proof:
         one that is none
     """
     checks.instance("orbit", orbit, PeriodicOrbit)
-    checks.number("bits", bits, least=64)
+    checks.number("bits", bits, least=64, most=MOST_BITS)
     with ctx.workprec(int(bits)):
         f = formulas(orbit.scene)
         refuse(orbit)

@@ -30,7 +30,7 @@ from lcpstep.analysis.proofs.formulas import Formulas, formulas
 from lcpstep.analysis.proofs.jets import Jet
 from lcpstep.analysis.proofs.newton import improved, zero
 from lcpstep.analysis.proofs.obstacles import Stretch, beside
-from lcpstep.analysis.proofs.orbit import impacts_of, in_place, refuse, scales, unique
+from lcpstep.analysis.proofs.orbit import MOST_BITS, impacts_of, in_place, refuse, scales, unique
 from lcpstep.analysis.proofs.report import Enclosure, ProvedSpeed, down
 from lcpstep.analysis.proofs.shooting import Node, Struck, closing, nodes_of
 from lcpstep.errors import UnknownName
@@ -58,7 +58,7 @@ def prove_speed(orbit: PeriodicOrbit | CornerImpact, kind: str = "corner", *, bi
     ----------
     orbit : near the speed sought, from `periodic_orbit`, `continue_orbit` or `lcpstep.analysis.corners.corner_impact`
     kind : "corner" (of the impact and the corner that are nearest to each other), "flip" or "fold"
-    bits : precision of the arithmetic, at least 64
+    bits : precision of the arithmetic, 64 to a million
 
     Raises
     ------
@@ -66,7 +66,7 @@ def prove_speed(orbit: PeriodicOrbit | CornerImpact, kind: str = "corner", *, bi
     NotProved   the reason in words, as in `prove`
     """
     checks.instance("orbit", orbit, PeriodicOrbit, CornerImpact)
-    checks.number("bits", bits, least=64)
+    checks.number("bits", bits, least=64, most=MOST_BITS)
     if kind not in KINDS:
         raise UnknownName("kind", kind, KINDS)
     given = _given(orbit)
