@@ -13,10 +13,9 @@ from lcpstep.audit.limits import SLACK
 if not cython.compiled:
     from math import sqrt
 
-    from lcpstep.audit.clear import same_time
     from lcpstep.audit.swing import Swing
     from lcpstep.events.flight.motion import Flight
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.pointers import abs, inf, max, min
 
 DEEP = 4  # halvings in a row of windows that are above the obstacle
 
@@ -34,6 +33,15 @@ def swung(g: Swing, o: Flight, least: float) -> float:
     if least < rest or damped > 0.0:
         m = (least - share * max(rest, least) - share / o.w2 * damped) / (1.0 - share)
     return o.w2 * (rest - m) + damped + SLACK * (g.bound + o.w2 * (abs(rest) + abs(least)))
+
+
+def opens(g: Swing, rate: float, low: float, kick: float) -> bool:
+    """Whether a gap that begins to open at this rate is open up to the end, under accelerations of at least `low`.
+
+    It is at least (u - kick) tau + low tau^2 / 2.
+    """
+    least = rate - kick - SLACK * (abs(rate) + g.cells.whole_fast[0])
+    return least > 0.0 and 2.0 * least + min(low, 0.0) * g.length > 0.0
 
 
 def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, high: float) -> bool:
@@ -98,30 +106,24 @@ def above(g: Swing, t: float, high: float, most: int) -> bool:
     return True
 
 
-def above_at_ends(
-    g: Swing, o: Flight, t: float, y: float, y_b: float, w: float, cuts: Doubles, i: int, n_cuts: int
-) -> bool:
+def above_at_ends(g: Swing, o: Flight, t: float, y: float, y_b: float, w: float) -> bool:
     """The same of a piece from t on, without corners where the gap parts from zero.
 
-    y, y_b, w : absolute places at both ends, and the velocity at the start;  i : the first of the cuts after t
+    y, y_b, w : absolute places at both ends, and the velocity at the start
     """
     low, high = g.middle - g.bound, g.middle + g.bound
     begin, end = o.offset + o.G * y, o.offset + o.G * y_b
     high = min(high, swung(g, o, min(begin, end)))
     if not parts_at_ends(g, begin, end, o.G * w, low, high):
         return False
-    if g.left > 0.0 and not smooth(g, t, t + g.left, cuts, i, n_cuts):
+    if g.left > 0.0 and not smooth(g, t, t + g.left):
         return False
-    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length, cuts, i, n_cuts):
+    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length):
         return False
     return above(g, t, high, DEEP)
 
 
-def smooth(g: Swing, a: float, b: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
-    """Whether what moves is smooth between two times; i : the first of the cuts that may lie there."""
-    while i < n_cuts and cuts[i] <= same_time(a):
-        i += 1
-    if i < n_cuts and same_time(cuts[i]) < b:
-        return False
+def smooth(g: Swing, a: float, b: float) -> bool:
+    """Whether what moves is smooth between two times."""
     g.cells.find(0, a, b)
-    return not g.cells.rough
+    return g.cells.kick == 0.0

@@ -153,12 +153,8 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     method = run.method
     if isinstance(dense, Flights):
         s = dense.s
-        y, w = s.q[:, 0], s.v[:, 0]
-        if m.frame.given:
-            c = np.zeros((len(y), 1, 3))
-            m.frame.sample(np.ascontiguousarray(s.t), np.zeros(1), np.zeros(1), c)
-            y, w = y + c[:, 0, 0], w + c[:, 0, 1]
-        return motion.Oscillation(oscillator_of(m), s.t, y, w), s.t, s.mode[:-1], (0.0, ROUNDING)
+        found = motion.Oscillation(oscillator_of(m), s.t, s.q[:, 0], s.v[:, 0], m.frame)
+        return found, s.t, s.mode[:-1], (0.0, ROUNDING)
     if isinstance(dense, Moved):
         s = dense.s
         error = (
