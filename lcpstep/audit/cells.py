@@ -11,12 +11,11 @@ if not cython.compiled:
     from math import floor
 
     from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import after, inf, max, min, whole
+    from lcpstep.pointers import Doubles, after, inf, max, min, whole
 
 BINS = 4  # parts of the table for each of its cells, by which a time finds its own
 NEXT = 4  # cells in a row that are looked at first
-KINDS = 7  # numbers of a cell, see `packed`
-LEAST, SUM = [0, 2, 3], 5  # of several cells: which of them are the least, and which is their sum
+KINDS = 8  # numbers of a cell, see `packed`
 SLACK = 1e-13  # of the table's length: a window that is longer meets all of it
 
 
@@ -24,7 +23,7 @@ class Cells:
     """Bounds of what flat contacts meet, in cells of time: see `obstacle.Table`; what repeats is there twice.
 
     bottom, top     the lowest and highest place found for the window last asked for
-    slow            its lowest speed;  low, high : its acceleration, but where its speed jumps
+    slow, quick     its lowest and highest speed;  low, high : its acceleration, but where its speed jumps
     kick            what jumps of its speed come to, see `obstacle.Table`; infinite of windows longer than the table
     rough           whether there may be any but at corners
     whole_top, whole_low, whole_high, whole_fast, whole_kick   the same of all times, and the largest speed
@@ -40,11 +39,11 @@ class Cells:
         own = packed(table) if self.given else np.zeros((1, n_c, KINDS))
         ends = table.ends if self.given else np.array([-inf, inf])
         self.length = float(ends[-1] - ends[0])
-        bottom, top, slow, low, high, kick, rough = np.moveaxis(own, 2, 0)
-        fast = np.maximum(-slow, table.hi[0, ..., 1] if self.given else 0.0)
+        bottom, slow, low, top, quick, high, rough, kick = np.moveaxis(own, 2, 0)
+        fast = np.maximum(slow, quick)
         self.bounds = np.concatenate(
-            [top.max(axis=0), low.min(axis=0), high.max(axis=0), fast.max(axis=0), bottom.min(axis=0),
-             np.maximum(-bottom, top).max(axis=0), kick.sum(axis=0)]
+            [top.max(axis=0), -low.max(axis=0), high.max(axis=0), fast.max(axis=0), -bottom.max(axis=0),
+             np.maximum(bottom, top).max(axis=0), kick.sum(axis=0)]
         )  # fmt: skip
         self.whole_top = doubles(self.bounds)
         self.whole_low, self.whole_high = after(self.whole_top, n_c), after(self.whole_top, 2 * n_c)
@@ -59,7 +58,7 @@ class Cells:
         self.per = self.n_bins / (ends[-1] - ends[0]) if self.given else 0.0
         self.starts = first_cells(ends, self.per, self.n_bins)
         self.bins = indices(self.starts)
-        self.bottom = self.top = self.slow = self.low = self.high = self.kick = self.turn = 0.0
+        self.bottom = self.top = self.slow = self.quick = self.low = self.high = self.kick = self.turn = 0.0
         self.rough, self.here = False, 0  # the latter: the cell last found
 
     def find(self, c: int, a: float, b: float) -> None:
@@ -68,7 +67,7 @@ class Cells:
             return
         if not b - a <= (1.0 + SLACK) * self.length:
             self.top, self.low, self.high = self.whole_top[c], self.whole_low[c], self.whole_high[c]
-            self.bottom, self.slow = self.whole_bottom[c], -inf
+            self.bottom, self.slow, self.quick = self.whole_bottom[c], -inf, inf
             self.kick, self.rough = inf, True
             return
         if self.period < inf:
@@ -85,13 +84,15 @@ class Cells:
             level += 1
             size *= 2
         x = after(self.levels, KINDS * ((level * self.n + i) * self.n_c + c))
-        self.bottom, self.top, self.slow = x[0], x[1], x[2]
-        self.low, self.high, self.kick, self.rough = x[3], x[4], x[5], x[6] != 0.0
+        self.bottom, self.slow, self.low = -x[0], -x[1], -x[2]
+        self.top, self.quick, self.high = x[3], x[4], x[5]
+        self.rough, self.kick = x[6] != 0.0, x[7]
         if j - size + 1 > i:
             x = after(self.levels, KINDS * ((level * self.n + j - size + 1) * self.n_c + c))
-            self.bottom, self.top, self.slow = min(self.bottom, x[0]), max(self.top, x[1]), min(self.slow, x[2])
-            self.low, self.high = min(self.low, x[3]), max(self.high, x[4])
-            self.kick, self.rough = self.kick + x[5], self.rough or x[6] != 0.0
+            self.bottom, self.top = min(self.bottom, -x[0]), max(self.top, x[3])
+            self.slow, self.quick = min(self.slow, -x[1]), max(self.quick, x[4])
+            self.low, self.high = min(self.low, -x[2]), max(self.high, x[5])
+            self.rough, self.kick = self.rough or x[6] != 0.0, self.kick + x[7]
 
     def cell(self, t: float, i: int) -> int:
         """The cell in which a time lies, or the next one to it; sought from the cell i on."""
@@ -112,29 +113,36 @@ class Cells:
 
 
 def packed(table: Any) -> Any:
-    """Lowest and highest place, lowest speed, both accelerations, kick, and whether it is rough, (n, n_c, KINDS).
+    """Of every cell the lowest place, speed and acceleration, times -1, the highest ones, whether it is rough, and its
+    kick, (n, n_c, KINDS).
 
     Where there is a kick, accelerations may as well be zero.
     """
-    lo, hi, kicks = table.lo[0], table.hi[0], table.kicks
+    lo, hi, branched = table.own
+    kicks = table.kicks
     low = np.where(kicks > 0.0, np.minimum(lo[..., 2], 0.0), lo[..., 2])
     high = np.where(kicks > 0.0, np.maximum(hi[..., 2], 0.0), hi[..., 2])
-    rough = np.broadcast_to(table.branched[0][:, None], kicks.shape)
-    return np.stack([lo[..., 0], hi[..., 0], lo[..., 1], low, high, kicks, rough], axis=2)
+    rough = np.broadcast_to(branched[:, None], kicks.shape)
+    return np.stack([-lo[..., 0], -lo[..., 1], -low, hi[..., 0], hi[..., 1], high, rough, kicks], axis=2)
 
 
 def together(own: Any) -> Any:
-    """The same of 1, 2, 4, ... neighbours."""
-    levels, step = [own], 1
-    while 2 * step <= len(own):
-        x = levels[-1]
-        y = x[np.minimum(np.arange(len(x)) + step, len(x) - 1)]
-        made = np.maximum(x, y)
-        made[..., LEAST] = np.minimum(x, y)[..., LEAST]
-        made[..., SUM] = x[..., SUM] + y[..., SUM]
-        levels.append(made)
-        step *= 2
-    return np.stack(levels)
+    """The same of 1, 2, 4, ... neighbours: the largest of all but the kicks, and the sums of these."""
+    found = np.empty((len(own).bit_length(), *own.shape))
+    found[0] = own
+    n, row, levels, x = len(own), own.shape[1] * KINDS, len(found), doubles(found)
+    with cython.nogil:
+        for level in range(1, levels):
+            fill_level(after(x, (level - 1) * n * row), after(x, level * n * row), n, row, 1 << (level - 1))
+    return found
+
+
+def fill_level(x: Doubles, y: Doubles, n: int, row: int, step: int) -> None:
+    """Unite every cell of a level x with that which is a step further."""
+    for i in range((n - step) * row):
+        y[i] = x[i] + x[i + step * row] if i % KINDS == KINDS - 1 else max(x[i], x[i + step * row])
+    for i in range((n - step) * row, n * row):  # no window asks for these
+        y[i] = x[i]
 
 
 def first_cells(ends: Any, per: float, n_bins: int) -> Any:

@@ -35,6 +35,7 @@ class Gap:
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
     error, own, small    of the gap: all of it; without what steps have added up; below the third it is nothing
+    rate        how fast it opens where the piece begins, or no number
     begin_known, end_known    whether place, gap and bend are known where the piece begins and ends: begin_place, ...
     since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
         where events of other pieces do not matter
@@ -62,7 +63,7 @@ class Gap:
         self.place = self.bend = self.fourth = self.loose = self.error = self.own = self.small = (
             self.length
         ) = 0.0
-        self.since = self.until = inf
+        self.since, self.until, self.rate = inf, inf, nan
         self.begin_place = self.end_place = self.begin_gap = self.end_gap = 0.0
         self.begin_bend = self.end_bend = 0.0
         self.first = self.last = self.begin_known = self.end_known = False
@@ -141,6 +142,15 @@ def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float, kick: float) 
     return lowest - g.own > -ERRORS * g.small
 
 
+def rise(g: Gap, c: int, h: float, low: float, kick: float) -> float:
+    """How much a gap opens within h after the start of a piece, at least; no number where its rate there is unknown.
+
+    Under accelerations of at least `low` it is at least (u - kick) tau + low tau^2 / 2, which is least at an end.
+    """
+    least = g.rate - kick - SLACK * (abs(g.rate) + g.cells.whole_fast[c])
+    return (least + 0.5 * min(low, 0.0) * h) * h
+
+
 def beside(g: Gap, a: float, b: float, time: float) -> bool:
     """Whether a window is as near as that to an event at an end of the piece."""
     return (g.first and b < time) or (g.last and g.length - a < time)
@@ -189,6 +199,8 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
                 good = shallow(g, gap, g.gaps[k], h, high, kick) or open_between(
                     gap, g.gaps[k], h, low, high, kick, begins, ends, g.own
                 )
+                if not good and begins:
+                    good = rise(g, c, h, low, kick) - g.own > -ERRORS * g.small
         if good or beside(g, tau, g.times[k], g.moment):
             tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
             n = k

@@ -13,11 +13,20 @@ if not cython.compiled:
     from math import sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import DEEPEST, MOST, beside, between_corners, late, open_between, same_time
-    from lcpstep.audit.parting import above, above_at_ends, opens, parts_at_ends, swung
+    from lcpstep.audit.clear import (
+        DEEPEST,
+        MOST,
+        beside,
+        between_corners,
+        late,
+        open_between,
+        rise,
+        same_time,
+    )
+    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, rises, swung
     from lcpstep.audit.swing import Swing, driven
     from lcpstep.events.flight.motion import Flight, leave_from
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
 
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
@@ -73,55 +82,69 @@ def at_once(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, w
 
     t, t_b, q, v : of both ends, the velocities those after events;  whole : whether no corner lies within
     """
-    begin, end = o.offset + o.G * q[0], o.offset + o.G * q[1]
-    lowest = lowest_place(g, o, t, t_b, q[0], v[0], min(begin, end))
-    if lowest - ROUNDING * g.cells.whole_size[0] > g.cells.whole_top[0]:
-        return True
+    begin, end, g.rate = o.offset + o.G * q[0], o.offset + o.G * q[1], o.G * v[0]
+    note_error(g, o, t, t_b, q[0], v[0])
+    g.low, g.high, g.met = g.middle - g.bound, g.middle + g.bound, ROUNDING * g.cells.whole_size[0]
+    g.begin_gap, g.end_gap = begin, end
     kick = 0.0 if whole and not g.cells.whole_rough else g.cells.whole_kick[0]
-    if g.alone:
-        g.met = ROUNDING * g.cells.whole_size[0]
-        low, high = g.cells.whole_low[0], g.cells.whole_high[0]
-        if g.length <= g.cells.length and stays(g, begin, end, o.G * v[0], low, high, kick):
+    if g.alone and g.length <= g.cells.length:
+        if stays(g, g.cells.whole_low[0], g.cells.whole_high[0], kick):
             return True
-    elif kick == 0.0 and not g.frame.given:
-        if parts_at_ends(g, begin, end, o.G * v[0], g.low, g.high) and above(g, t, g.high, 0):
+    lowest = lowest_place(g, o, min(begin, end))
+    if lowest - g.met > g.cells.whole_top[0]:
+        return True
+    if kick == 0.0 and not (g.alone or g.frame.given):
+        if parts_at_ends(g, begin, end, g.rate, g.low, g.high) and above(g, t, g.high, 0):
             return True
     g.cells.find(0, t, t_b)
     g.met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
     if lowest - g.met > g.cells.top:
         return True
-    g.begin_gap = 0.0 if g.first else begin - g.own_motion(0, t)
-    g.end_gap = 0.0 if g.last else end - g.own_motion(0, t_b)
-    kick = 0.0 if whole and not g.cells.rough else g.cells.kick
-    return stays(g, g.begin_gap, g.end_gap, o.G * v[0], g.cells.low, g.cells.high, kick)
+    if not g.alone:
+        look(g, t, t_b)
+    return stays(g, g.cells.low, g.cells.high, 0.0 if whole and not g.cells.rough else g.cells.kick)
 
 
-def lowest_place(g: Swing, o: Flight, t: float, t_b: float, q: float, v: float, least: float) -> float:
-    """A bound of `place` in a piece, less its error, from the smaller of offset + G q at both ends.
+def look(g: Swing, t: float, t_b: float) -> None:
+    """Ask where the obstacle is at both ends of a piece, and how fast at its start, unless nobody wants to know."""
+    if g.first and g.last:
+        g.rate = nan
+        return
+    g.begin_gap -= g.own_motion(0, t)
+    g.rate -= g.moving[1]
+    if not g.last:
+        g.end_gap -= g.own_motion(0, t_b)
 
-    Bounds of its acceleration go into g.low and g.high. A frame is not asked where it is: `place` is above offset + G q
-    by no less than the least that it ever adds.
-    """
-    h, size = g.length, g.most
+
+def note_error(g: Swing, o: Flight, t: float, t_b: float, q: float, v: float) -> None:
+    """What a piece may be off by in which the motion is as large as this state says, and the flight."""
+    size = g.most
     if not g.swings:
         g.stand(t, q, v)
-        size = abs(g.y) + abs(g.w) * h + 0.5 * abs(o.f0) * h * h + g.forced
+        size = abs(g.y) + abs(g.w) * g.length + 0.5 * abs(o.f0) * g.length * g.length + g.forced
     g.error = ROUNDING * (abs(o.G) * (size + abs(q)) + abs(o.offset)) + late(max(abs(t), abs(t_b)), g.fast)
+
+
+def lowest_place(g: Swing, o: Flight, least: float) -> float:
+    """A bound of `place` in a piece, less its error, from the smaller of offset + G q at both ends; see `swung`.
+
+    A frame is not asked where it is: `place` is above offset + G q by no less than the least that it ever adds.
+    """
     if g.frame.given:
-        least += g.cells.whole_bottom[0] - ROUNDING * g.cells.whole_size[0]
-    g.low, g.high = g.middle - g.bound, min(g.middle + g.bound, swung(g, o, least))
-    return least - 0.125 * max(g.high, 0.0) * h * h - g.error
+        least += g.cells.whole_bottom[0] - g.met
+    g.high = min(g.high, swung(g, o, least))
+    return least - 0.125 * max(g.high, 0.0) * g.length * g.length - g.error
 
 
-def stays(g: Swing, begin: float, end: float, rate: float, low: float, high: float, kick: float) -> bool:
-    """Whether the gap stays open, by its values at both ends and, where that is known, the rate at which it opens.
+def stays(g: Swing, low: float, high: float, kick: float) -> bool:
+    """Whether the gap stays open, by its values at both ends and the rate at which it opens.
 
     low, high, kick : of what moves
     """
-    high, low = g.high - low, g.low - high
-    if open_between(begin, end, g.length, low, high, kick, g.first, g.last, g.error + g.met):
+    high, low, error = g.high - low, g.low - high, g.error + g.met
+    if open_between(g.begin_gap, g.end_gap, g.length, low, high, kick, g.first, g.last, error):
         return True
-    return g.alone and g.first and opens(g, rate, low, kick)
+    return not g.last and rises(g, low, kick)
 
 
 def by_states(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, whole: bool) -> bool:
@@ -134,7 +157,8 @@ def by_states(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles,
     g.error += g.met
     if min(begin, end) - 0.125 * max(g.high, 0.0) * h * h - g.error > g.cells.top:
         return True
-    g.own, g.small = g.error, min(g.error, g.negligible)
+    g.met, g.own, g.small = 0.0, g.error, min(g.error, g.negligible)
+    g.begin_gap, g.end_gap = 0.0 if g.first else g.begin_gap, 0.0 if g.last else g.end_gap
     g.first, g.last = g.first or abs(g.begin_gap) <= g.small, g.last or abs(g.end_gap) <= g.small
     g.begin_known = g.end_known = False
     kick = 0.0 if whole and not g.cells.rough else g.cells.kick
@@ -157,9 +181,16 @@ def by_equation(g: Swing, o: Flight, t: float, t_b: float, y: float, w: float, k
     if not (g.swings and g.end_known):
         return False
     fourth = abs(o.G) * (g.amplitude * o.w2 * o.w2 + g.turning * o.Omega * o.Omega)
-    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bound
-    low, high = min(a, b) - margin - g.cells.high, max(a, b) + margin - g.cells.low
-    return open_between(g.begin_gap, g.end_gap, h, low, high, kick, first, last, g.error)
+    bulge, loose = (1.0 + SLACK) * 0.125 * fourth * h * h, SLACK * g.bound
+    low, high = min(a, b) - bulge - loose - g.cells.high, max(a, b) + bulge + loose - g.cells.low
+    if open_between(g.begin_gap, g.end_gap, h, low, high, kick, first, last, g.error):
+        return True
+    if last:
+        return False
+    if b - a > 4.0 * bulge + 2.0 * loose:  # it is least at the start: a + (b - a) s - 4 bulge s (1 - s)
+        low = a - loose - g.cells.high
+    shallow = g.first and beside(g, 0.0, h, g.near) and rise(g, 0, h, low, kick) - g.own > -ERRORS * g.small
+    return shallow or rises(g, low, kick)
 
 
 def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:

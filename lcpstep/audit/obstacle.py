@@ -8,6 +8,7 @@ divide the span, or a period of a ready scene, by the smallest and largest of th
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any
 
@@ -26,6 +27,7 @@ Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
 LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
 LEVELS, FINER = 6, 8  # how often cells beside releases are divided, and in how many parts
+APART = 1e-9  # of the table: releases that are as good as one
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
 BESIDE = 1e-11  # of the table: how wide the cells are at both sides of a corner
@@ -125,6 +127,7 @@ class Obstacle:
         ends = self._ends(windows)
         if math.isfinite(self.period):
             t = t - np.floor(t / self.period) * self.period
+        t = t[np.unique(np.rint(t / (APART * (ends[-1] - ends[0]))), return_index=True)[1]]
         for _ in range(LEVELS):
             met = np.zeros(len(ends) + 1, dtype=bool)  # a cell more at both sides
             met[np.searchsorted(ends[1:-1], t, side="right") + 1] = True
@@ -172,15 +175,19 @@ class Table:
         jump = KICK * (np.maximum(hi[left], hi[right])[..., 1] - np.minimum(lo[left], lo[right])[..., 1])
         np.maximum.at(self.kicks, left, jump)
         np.maximum.at(self.kicks, right, jump)
-        self.levels = [(lo, hi, branched)]
-        while len(lo) >= 2 ** len(self.levels):
-            step = 2 ** (len(self.levels) - 1)
-            lo, hi, branched = self.levels[-1]
+        self.own = lo, hi, branched
+
+    @functools.cached_property
+    def levels(self) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Bounds of 1, 2, 4, ... neighbours together."""
+        levels = [self.own]
+        while len(self.own[0]) >= 2 ** len(levels):
+            step = 2 ** (len(levels) - 1)
+            lo, hi, branched = levels[-1]
             later = np.minimum(np.arange(len(lo)) + step, len(lo) - 1)
-            self.levels.append(
-                (np.minimum(lo, lo[later]), np.maximum(hi, hi[later]), branched | branched[later])
-            )
-        self.lo, self.hi, self.branched = (np.stack(x) for x in zip(*self.levels, strict=True))
+            levels.append((np.minimum(lo, lo[later]), np.maximum(hi, hi[later]), branched | branched[later]))
+        lo, hi, branched = (np.stack(x) for x in zip(*levels, strict=True))
+        return lo, hi, branched
 
     def bounds(self, c: Any, a: Array, b: Array) -> tuple[Bounds, NDArray[np.bool_]]:
         """Bounds over windows, from the cells that they meet."""
@@ -189,9 +196,10 @@ class Table:
         j = np.clip(np.searchsorted(self.ends, b, side="left") - 1, i, last)
         level = np.frexp((j - i + 1).astype(float))[1] - 1
         k = j - 2**level + 1
-        lo = np.minimum(self.lo[level, i, c], self.lo[level, k, c])
-        hi = np.maximum(self.hi[level, i, c], self.hi[level, k, c])
-        return _bounds(lo, hi), self.branched[level, i] | self.branched[level, k]
+        lo, hi, branched = self.levels
+        return _bounds(
+            np.minimum(lo[level, i, c], lo[level, k, c]), np.maximum(hi[level, i, c], hi[level, k, c])
+        ), branched[level, i] | branched[level, k]
 
 
 def _bounds(lo: Array, hi: Array) -> Bounds:

@@ -27,7 +27,8 @@ class Swing(Gap):
     """The gap of a flight in closed form.
 
     amplitude   of the oscillation that is left of a flight, a bound from its start on; with `most`, how large the
-        numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go
+        numbers are that its positions are made of, `bound` and `middle`, between which and beyond G y'' does not go,
+        and `damped`, which a damper's part of it does not exceed;  root : of w2
     fast        the largest velocity of what moves by itself
     alone       whether the obstacle rests in the frame: the gap is known without asking for either
     low, high   bounds of G y'' in the piece at hand;  met : what rounding makes of what moves there
@@ -55,17 +56,14 @@ class Swing(Gap):
         self.middle, self.turning = 0.0 if self.swings else s.G * s.f0, s.Omega * s.Omega * self.forced
         self.most, self.bound = 0.0, (1.0 + SLACK) * abs(s.G) * self.turning
         self.alone, self.low, self.high, self.met = not motion.given, 0.0, 0.0, 0.0
+        self.damped = 0.0
+        self.root = sqrt(s.w2) if self.swings else 0.0
         self.fast = self.cells.whole_fast[0] + abs(s.G * s.Omega) * self.forced
 
     def at(self, tau: float) -> None:
         """Ask for the motion."""
         absolute(self.s, tau)
         self.place, self.bend = self.s.offset + self.s.G * self.s.y_tau, self.s.G * self.s.a_tau
-
-    def size(self, z: float, w: float) -> float:
-        """How large an oscillation is that has this place and velocity."""
-        rate = (w + self.s.delta * z) * self.per_root
-        return sqrt(z * z + rate * rate)
 
     def stand(self, t: float, q: float, v: float) -> None:
         """The absolute state at time t, from that relative to the frame."""
@@ -74,16 +72,30 @@ class Swing(Gap):
             self.frame_at, self.shift, self.drag = t, self.moving[0], self.moving[1]
         self.y, self.w = q + self.shift, v + self.drag
 
+    def about(self, t: float, q: float, v: float) -> tuple[float, float]:
+        """The same as far as cells tell, without asking the frame; by how much it may be off."""
+        if not (self.frame.given and self.alone):
+            self.stand(t, q, v)
+            return 0.0, 0.0
+        self.cells.find(0, t, t)
+        half = 0.5 / self.s.G
+        self.y = q + half * (self.cells.bottom + self.cells.top)
+        self.w = v + half * (self.cells.slow + self.cells.quick)
+        return abs(half) * (self.cells.top - self.cells.bottom), abs(half) * (self.cells.quick - self.cells.slow)
+
     def begin(self, t: float, q: float, v: float) -> None:
         """A flight begins at time t with this state."""
         if self.swings:
-            self.stand(t, q, v)
+            off, fast = self.about(t, q, v)
             turn(self, t)
-            rest = self.s.X * self.cosine + self.s.Y * self.sine
-            rate = self.s.Omega * (self.s.Y * self.cosine - self.s.X * self.sine)
-            self.amplitude = (1.0 + SLACK) * self.size(self.y - rest - self.height, self.w - rate)
+            z = self.y - self.s.X * self.cosine - self.s.Y * self.sine - self.height
+            rate = self.w - self.s.Omega * (self.s.Y * self.cosine - self.s.X * self.sine)
+            rate = (abs(rate + self.s.delta * z) + fast + self.s.delta * off) * self.per_root
+            z = abs(z) + off
+            self.amplitude = (1.0 + SLACK) * sqrt(z * z + rate * rate)
             self.most = self.amplitude + self.forced + abs(self.height)
             self.bound = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
+            self.damped = 2.0 * self.s.delta * abs(self.s.G) * self.root * self.amplitude
 
 
 def turn(g: Swing, t: float) -> None:
