@@ -26,7 +26,7 @@ cdef class Cells:
     cdef double* whole_bottom
     cdef double* whole_size
     cdef double* whole_kick
-    cdef readonly double bottom, top, slow, quick, low, high, kick
+    cdef readonly double bottom, top, slow, low, high, kick
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
     @cython.locals(low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
     cdef Py_ssize_t cell(self, double t, Py_ssize_t i) noexcept nogil

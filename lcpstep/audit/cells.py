@@ -15,7 +15,7 @@ if not cython.compiled:
 
 BINS = 4  # parts of the table for each of its cells, by which a time finds its own
 NEXT = 4  # cells in a row that are looked at first
-KINDS = 8  # numbers of a cell, see `packed`
+KINDS = 7  # numbers of a cell, see `packed`
 SLACK = 1e-13  # of the table's length: a window that is longer meets all of it
 
 
@@ -23,7 +23,7 @@ class Cells:
     """Bounds of what flat contacts meet, in cells of time: see `obstacle.Table`; what repeats is there twice.
 
     bottom, top     the lowest and highest place found for the window last asked for
-    slow, quick     its lowest and highest speed;  low, high : its acceleration, but where its speed jumps
+    slow            its lowest speed;  low, high : its acceleration, but where its speed jumps
     kick            what jumps of its speed come to, see `obstacle.Table`; infinite of windows longer than the table
     rough           whether there may be any but at corners
     whole_top, whole_low, whole_high, whole_fast, whole_kick   the same of all times, and the largest speed
@@ -39,8 +39,8 @@ class Cells:
         own = packed(table) if self.given else np.zeros((1, n_c, KINDS))
         ends = table.ends if self.given else np.array([-inf, inf])
         self.length = float(ends[-1] - ends[0])
-        bottom, slow, low, top, quick, high, rough, kick = np.moveaxis(own, 2, 0)
-        fast = np.maximum(slow, quick)
+        bottom, slow, low, top, high, rough, kick = np.moveaxis(own, 2, 0)
+        fast = np.maximum(slow, table.own[1][..., 1] if self.given else 0.0)
         self.bounds = np.concatenate(
             [top.max(axis=0), -low.max(axis=0), high.max(axis=0), fast.max(axis=0), -bottom.max(axis=0),
              np.maximum(bottom, top).max(axis=0), kick.sum(axis=0)]
@@ -58,7 +58,7 @@ class Cells:
         self.per = self.n_bins / (ends[-1] - ends[0]) if self.given else 0.0
         self.starts = first_cells(ends, self.per, self.n_bins)
         self.bins = indices(self.starts)
-        self.bottom = self.top = self.slow = self.quick = self.low = self.high = self.kick = self.turn = 0.0
+        self.bottom = self.top = self.slow = self.low = self.high = self.kick = self.turn = 0.0
         self.rough, self.here = False, 0  # the latter: the cell last found
 
     def find(self, c: int, a: float, b: float) -> None:
@@ -67,7 +67,7 @@ class Cells:
             return
         if not b - a <= (1.0 + SLACK) * self.length:
             self.top, self.low, self.high = self.whole_top[c], self.whole_low[c], self.whole_high[c]
-            self.bottom, self.slow, self.quick = self.whole_bottom[c], -inf, inf
+            self.bottom, self.slow = self.whole_bottom[c], -inf
             self.kick, self.rough = inf, True
             return
         if self.period < inf:
@@ -85,14 +85,13 @@ class Cells:
             size *= 2
         x = after(self.levels, KINDS * ((level * self.n + i) * self.n_c + c))
         self.bottom, self.slow, self.low = -x[0], -x[1], -x[2]
-        self.top, self.quick, self.high = x[3], x[4], x[5]
-        self.rough, self.kick = x[6] != 0.0, x[7]
+        self.top, self.high, self.rough, self.kick = x[3], x[4], x[5] != 0.0, x[6]
         if j - size + 1 > i:
             x = after(self.levels, KINDS * ((level * self.n + j - size + 1) * self.n_c + c))
             self.bottom, self.top = min(self.bottom, -x[0]), max(self.top, x[3])
-            self.slow, self.quick = min(self.slow, -x[1]), max(self.quick, x[4])
-            self.low, self.high = min(self.low, -x[2]), max(self.high, x[5])
-            self.rough, self.kick = self.rough or x[6] != 0.0, self.kick + x[7]
+            self.slow, self.low = min(self.slow, -x[1]), min(self.low, -x[2])
+            self.high, self.kick = max(self.high, x[4]), self.kick + x[6]
+            self.rough = self.rough or x[5] != 0.0
 
     def cell(self, t: float, i: int) -> int:
         """The cell in which a time lies, or the next one to it; sought from the cell i on."""
@@ -113,8 +112,8 @@ class Cells:
 
 
 def packed(table: Any) -> Any:
-    """Of every cell the lowest place, speed and acceleration, times -1, the highest ones, whether it is rough, and its
-    kick, (n, n_c, KINDS).
+    """Of every cell the lowest place, speed and acceleration times -1, the highest place and acceleration, whether
+    it is rough, and its kick, (n, n_c, KINDS).
 
     Where there is a kick, accelerations may as well be zero.
     """
@@ -123,7 +122,7 @@ def packed(table: Any) -> Any:
     low = np.where(kicks > 0.0, np.minimum(lo[..., 2], 0.0), lo[..., 2])
     high = np.where(kicks > 0.0, np.maximum(hi[..., 2], 0.0), hi[..., 2])
     rough = np.broadcast_to(branched[:, None], kicks.shape)
-    return np.stack([-lo[..., 0], -lo[..., 1], -low, hi[..., 0], hi[..., 1], high, rough, kicks], axis=2)
+    return np.stack([-lo[..., 0], -lo[..., 1], -low, hi[..., 0], high, rough, kicks], axis=2)
 
 
 def together(own: Any) -> Any:

@@ -108,8 +108,9 @@ def same_time(t: float) -> float:
 
 
 def open_between(
-    g_a: float, g_b: float, h: float, low: float, high: float, kick: float, first: bool, last: bool, error: float
-) -> bool:
+    g_a: float, g_b: float, h: float, low: float, high: float, kick: float, first: bool, last: bool,
+    error: float,
+) -> bool:  # fmt: skip
     """Whether a gap stays open in a window of length h, with these values at its ends and bounds of its acceleration.
 
     kick : how much its speed may jump in all, which bends it by kick tau (h - tau) / h at most
@@ -200,7 +201,7 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
                     gap, g.gaps[k], h, low, high, kick, begins, ends, g.own
                 )
                 if not good and begins:
-                    good = rise(g, c, h, low, kick) - g.own > -ERRORS * g.small
+                    good = rise(g, c, h, low, g.cells.kick) - g.own > -ERRORS * g.small
         if good or beside(g, tau, g.times[k], g.moment):
             tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
             n = k

@@ -86,23 +86,23 @@ def at_once(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, w
     note_error(g, o, t, t_b, q[0], v[0])
     g.low, g.high, g.met = g.middle - g.bound, g.middle + g.bound, ROUNDING * g.cells.whole_size[0]
     g.begin_gap, g.end_gap = begin, end
-    kick = 0.0 if whole and not g.cells.whole_rough else g.cells.whole_kick[0]
-    if g.alone and g.length <= g.cells.length:
-        if stays(g, g.cells.whole_low[0], g.cells.whole_high[0], kick):
-            return True
+    low, high, kick = g.cells.whole_low[0], g.cells.whole_high[0], g.cells.whole_kick[0]
+    even = whole and not g.cells.whole_rough
+    if g.alone and g.length <= g.cells.length and stays(g, low, high, kick, even):
+        return True
     lowest = lowest_place(g, o, min(begin, end))
     if lowest - g.met > g.cells.whole_top[0]:
         return True
-    if kick == 0.0 and not (g.alone or g.frame.given):
-        if parts_at_ends(g, begin, end, g.rate, g.low, g.high) and above(g, t, g.high, 0):
-            return True
+    plain = even and not (g.alone or g.frame.given)
+    if plain and parts_at_ends(g, begin, end, g.rate, g.low, g.high) and above(g, t, g.high, 0):
+        return True
     g.cells.find(0, t, t_b)
     g.met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
     if lowest - g.met > g.cells.top:
         return True
     if not g.alone:
         look(g, t, t_b)
-    return stays(g, g.cells.low, g.cells.high, 0.0 if whole and not g.cells.rough else g.cells.kick)
+    return stays(g, g.cells.low, g.cells.high, g.cells.kick, whole and not g.cells.rough)
 
 
 def look(g: Swing, t: float, t_b: float) -> None:
@@ -136,13 +136,14 @@ def lowest_place(g: Swing, o: Flight, least: float) -> float:
     return least - 0.125 * max(g.high, 0.0) * g.length * g.length - g.error
 
 
-def stays(g: Swing, low: float, high: float, kick: float) -> bool:
+def stays(g: Swing, low: float, high: float, kick: float, even: bool) -> bool:
     """Whether the gap stays open, by its values at both ends and the rate at which it opens.
 
-    low, high, kick : of what moves
+    low, high, kick : of what moves;  even : whether it has no corner within, but for one at the very start, on the
+        other side of which the rate may have been taken
     """
-    high, low, error = g.high - low, g.low - high, g.error + g.met
-    if open_between(g.begin_gap, g.end_gap, g.length, low, high, kick, g.first, g.last, error):
+    high, low, error, within = g.high - low, g.low - high, g.error + g.met, 0.0 if even else kick
+    if open_between(g.begin_gap, g.end_gap, g.length, low, high, within, g.first, g.last, error):
         return True
     return not g.last and rises(g, low, kick)
 
@@ -189,6 +190,7 @@ def by_equation(g: Swing, o: Flight, t: float, t_b: float, y: float, w: float, k
         return False
     if b - a > 4.0 * bulge + 2.0 * loose:  # it is least at the start: a + (b - a) s - 4 bulge s (1 - s)
         low = a - loose - g.cells.high
+    kick = g.cells.kick  # see `stays`
     shallow = g.first and beside(g, 0.0, h, g.near) and rise(g, 0, h, low, kick) - g.own > -ERRORS * g.small
     return shallow or rises(g, low, kick)
 

@@ -37,7 +37,7 @@ def swung(g: Swing, o: Flight, least: float) -> float:
 
 
 def rises(g: Swing, low: float, kick: float) -> bool:
-    """Whether a gap stays open by how fast it opens at the start of a piece, under accelerations of at least `low`."""
+    """Whether a gap stays open by how fast it opens where a piece begins, under accelerations of at least `low`."""
     opened = rise(g, 0, g.length, low, kick)
     if g.first:
         return opened > 0.0  # so is the rate

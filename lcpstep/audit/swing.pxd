@@ -16,7 +16,6 @@ cdef class Swing(Gap):
     cdef double left, right, begin_above, end_above
     cdef double y, w, wave_at, cosine, sine, frame_at, shift, drag
     cdef void stand(self, double t, double q, double v) noexcept nogil
-    cdef (double, double) about(self, double t, double q, double v) noexcept nogil
     cdef void begin(self, double t, double q, double v) noexcept nogil
 
 cdef void turn(Swing g, double t) noexcept nogil

@@ -72,26 +72,14 @@ class Swing(Gap):
             self.frame_at, self.shift, self.drag = t, self.moving[0], self.moving[1]
         self.y, self.w = q + self.shift, v + self.drag
 
-    def about(self, t: float, q: float, v: float) -> tuple[float, float]:
-        """The same as far as cells tell, without asking the frame; by how much it may be off."""
-        if not (self.frame.given and self.alone):
-            self.stand(t, q, v)
-            return 0.0, 0.0
-        self.cells.find(0, t, t)
-        half = 0.5 / self.s.G
-        self.y = q + half * (self.cells.bottom + self.cells.top)
-        self.w = v + half * (self.cells.slow + self.cells.quick)
-        return abs(half) * (self.cells.top - self.cells.bottom), abs(half) * (self.cells.quick - self.cells.slow)
-
     def begin(self, t: float, q: float, v: float) -> None:
         """A flight begins at time t with this state."""
         if self.swings:
-            off, fast = self.about(t, q, v)
+            self.stand(t, q, v)
             turn(self, t)
             z = self.y - self.s.X * self.cosine - self.s.Y * self.sine - self.height
             rate = self.w - self.s.Omega * (self.s.Y * self.cosine - self.s.X * self.sine)
-            rate = (abs(rate + self.s.delta * z) + fast + self.s.delta * off) * self.per_root
-            z = abs(z) + off
+            rate = (rate + self.s.delta * z) * self.per_root
             self.amplitude = (1.0 + SLACK) * sqrt(z * z + rate * rate)
             self.most = self.amplitude + self.forced + abs(self.height)
             self.bound = (1.0 + SLACK) * abs(self.s.G) * (self.s.w2 * self.amplitude + self.turning)
