@@ -1,10 +1,10 @@
 cimport cython
 from libc.math cimport floor
-from lcpstep.arrays cimport doubles, indices, small_numbers
+from lcpstep.arrays cimport doubles, indices
 from lcpstep.pointers cimport after, inf, max, min, whole
 
 cdef double SLACK
-cdef Py_ssize_t BINS
+cdef Py_ssize_t BINS, NEXT, KINDS
 
 
 @cython.final
@@ -15,19 +15,22 @@ cdef class Cells:
     cdef Py_ssize_t here, n_bins
     cdef object starts
     cdef Py_ssize_t* bins
-    cdef readonly double period
-    cdef double per
+    cdef readonly double period, length
+    cdef double per, turn
     cdef double* ends
-    cdef double* lo
-    cdef double* hi
-    cdef unsigned char* branched
+    cdef double* levels
     cdef double* whole_top
     cdef double* whole_low
     cdef double* whole_high
     cdef double* whole_fast
     cdef double* whole_bottom
     cdef double* whole_size
-    cdef readonly double bottom, top, slow, low, high
+    cdef double* whole_kick
+    cdef readonly double bottom, top, slow, low, high, kick
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
-    @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
-    cdef Py_ssize_t cell(self, double t) noexcept nogil
+    @cython.locals(low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)
+    cdef Py_ssize_t cell(self, double t, Py_ssize_t i) noexcept nogil
+
+@cython.locals(n=Py_ssize_t, row=Py_ssize_t, level=Py_ssize_t, levels=Py_ssize_t)
+cdef object together(object own)
+cdef void fill_level(double* x, double* y, Py_ssize_t n, Py_ssize_t row, Py_ssize_t step) noexcept nogil

@@ -35,6 +35,7 @@ class Gap:
     fourth, loose   bound of |G y''''| in the piece, and what rounding makes of G y''
     length, first, last     of the piece, and whether it begins and ends with an event of the run
     error, own, small    of the gap: all of it; without what steps have added up; below the third it is nothing
+    rate        how fast it opens where the piece begins, or no number
     begin_known, end_known    whether place, gap and bend are known where the piece begins and ends: begin_place, ...
     since, until    from the last event of the contact to the start of the piece, from its end to the next; infinite
         where events of other pieces do not matter
@@ -62,7 +63,7 @@ class Gap:
         self.place = self.bend = self.fourth = self.loose = self.error = self.own = self.small = (
             self.length
         ) = 0.0
-        self.since = self.until = inf
+        self.since, self.until, self.rate = inf, inf, nan
         self.begin_place = self.end_place = self.begin_gap = self.end_gap = 0.0
         self.begin_bend = self.end_bend = 0.0
         self.first = self.last = self.begin_known = self.end_known = False
@@ -107,17 +108,19 @@ def same_time(t: float) -> float:
 
 
 def open_between(
-    g_a: float, g_b: float, h: float, low: float, high: float, first: bool, last: bool, error: float
-) -> bool:
+    g_a: float, g_b: float, h: float, low: float, high: float, kick: float, first: bool, last: bool,
+    error: float,
+) -> bool:  # fmt: skip
     """Whether a gap stays open in a window of length h, with these values at its ends and bounds of its acceleration.
 
+    kick : how much its speed may jump in all, which bends it by kick tau (h - tau) / h at most
     first, last : whether it is zero there by an event of the run, so that only the open window counts
     """
-    if not (high - high == 0.0 and low - low == 0.0):
+    if not (high - high == 0.0 and low - low == 0.0 and kick < inf):
         return False
     if first and last:
-        return high <= 0.0 and low < 0.0
-    bent = 0.5 * max(high, 0.0) * h * h
+        return high <= 0.0 and low < 0.0 and kick == 0.0
+    bent = (0.5 * max(high, 0.0) * h + kick) * h
     if first:
         return g_b - bent > error
     if last:
@@ -129,15 +132,24 @@ def open_between(
     return not 0.0 < x < 1.0 or g_a + (g_b - g_a) * x - bent * x * (1.0 - x) > error
 
 
-def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float) -> bool:
+def shallow(g: Gap, g_a: float, g_b: float, h: float, high: float, kick: float) -> bool:
     """Whether a gap beside an event is as good as zero where it falls below: by its chord, as in `open_between`."""
-    if high - high != 0.0:
+    if not (high - high == 0.0 and kick < inf):
         return False
-    bent, lowest = 0.5 * max(high, 0.0) * h * h, min(g_a, g_b)
+    bent, lowest = (0.5 * max(high, 0.0) * h + kick) * h, min(g_a, g_b)
     if bent > abs(g_b - g_a):
         x = 0.5 - 0.5 * (g_b - g_a) / bent
         lowest = g_a + (g_b - g_a) * x - bent * x * (1.0 - x)
     return lowest - g.own > -ERRORS * g.small
+
+
+def rise(g: Gap, c: int, h: float, low: float, kick: float) -> float:
+    """How much a gap opens within h after the start of a piece, at least; no number where its rate there is unknown.
+
+    Under accelerations of at least `low` it is at least (u - kick) tau + low tau^2 / 2, which is least at an end.
+    """
+    least = g.rate - kick - SLACK * (abs(g.rate) + g.cells.whole_fast[c])
+    return (least + 0.5 * min(low, 0.0) * h) * h
 
 
 def beside(g: Gap, a: float, b: float, time: float) -> bool:
@@ -174,7 +186,8 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
         high, low = max(bend, g.bends[k]) + margin, min(bend, g.bends[k]) - margin
         g.cells.find(c, t0 + tau, t0 + g.times[k])
         good = min(place, g.places[k]) - 0.125 * max(high, 0.0) * h * h - g.cells.top > g.error
-        if not (good or g.cells.rough):
+        if not good:
+            kick = g.cells.kick if g.cells.rough else 0.0
             low -= g.cells.high
             high -= g.cells.low
             if gap != gap:
@@ -182,11 +195,13 @@ def clear(g: Gap, c: int, t0: float, a: float, b: float) -> bool:
             if g.gaps[k] != g.gaps[k]:
                 g.gaps[k] = g.places[k] - g.sigma(c, t0 + g.times[k])
             begins, ends = first and tau == a, last and k == 0
-            good = open_between(gap, g.gaps[k], h, low, high, begins, ends, g.error)
+            good = open_between(gap, g.gaps[k], h, low, high, kick, begins, ends, g.error)
             if not good and near(g, tau, g.times[k]):
-                good = shallow(g, gap, g.gaps[k], h, high) or open_between(
-                    gap, g.gaps[k], h, low, high, begins, ends, g.own
+                good = shallow(g, gap, g.gaps[k], h, high, kick) or open_between(
+                    gap, g.gaps[k], h, low, high, kick, begins, ends, g.own
                 )
+                if not good and begins:
+                    good = rise(g, c, h, low, g.cells.kick) - g.own > -ERRORS * g.small
         if good or beside(g, tau, g.times[k], g.moment):
             tau, place, gap, bend = g.times[k], g.places[k], g.gaps[k], g.bends[k]
             n = k

@@ -184,14 +184,15 @@ def at_once(g: Curve, c: int, t: float, size: float, s: float, s_b: float, whole
     g_a, g_b = g.x[0] - s, g.x[d] - s_b
     g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
     g.note_ends(g.x[0], g.x[d], g_a, g_b, g.second[0], g.second[d - 2])
-    if g.cells.whole_rough or not whole:
+    kick = 0.0 if whole and not g.cells.whole_rough else g.cells.whole_kick[c]
+    if kick > 0.0 and g.length > g.cells.length:
         return False
     low = high = g.second[0]
     for i in range(1, d - 1):
         low, high = min(low, g.second[i]), max(high, g.second[i])
     low -= g.cells.whole_high[c] + g.loose
     high += g.loose - g.cells.whole_low[c]
-    return open_between(g_a, g_b, g.length, low, high, g.first, g.last, g.error)
+    return open_between(g_a, g_b, g.length, low, high, kick, g.first, g.last, g.error)
 
 
 def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B: Any) -> None:

@@ -48,12 +48,12 @@ def finer_at_releases(p: Any, o: Obstacle) -> None:
 
 def by_flights(p: Any, o: Obstacle, found: Any) -> None:
     """Flights in closed form."""
-    m, motion = p.m, p.motion
+    m, motion, states = p.m, p.motion, p.run.dense.s
     flight = flight_of(p.scene, m, motion.o, p.run.dense.given)
     gap = Swing(o.cells(len(found)), m.motion, m.frame, o.state, limits(p), flight)
     if gap.known:
         touched, kind, cuts = marks(p, o)
-        clear_flights(gap, p.t, p.run.q, motion.y, motion.w, touched, kind, cuts, found)
+        clear_flights(gap, p.t, states.q, states.v, touched, kind, cuts, found)
 
 
 def by_curves(p: Any, o: Obstacle, found: Any) -> None:

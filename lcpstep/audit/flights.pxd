@@ -1,21 +1,31 @@
 cimport cython
 from libc.math cimport sqrt
 from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport DEEPEST, MOST, beside, between_corners, late, open_between, same_time
-from lcpstep.audit.parting cimport above, above_at_ends, parts_at_ends, swung
+from lcpstep.audit.clear cimport DEEPEST, MOST, beside, between_corners, late, open_between, rise, same_time
+from lcpstep.audit.parting cimport above, above_at_ends, parts_at_ends, rises, swung
 from lcpstep.audit.swing cimport Swing, driven
 from lcpstep.events.flight.motion cimport Flight, leave_from
-from lcpstep.pointers cimport abs, after, inf, max, min
+from lcpstep.pointers cimport abs, after, inf, max, min, nan
 
 cdef double SLACK, ROUNDING, PRESSING, BEFORE, HALF_TURN, ERRORS
 cdef Py_ssize_t UNKNOWN, PRESSED
 
 @cython.locals(whole=bint, good=bint, begins=bint, i=Py_ssize_t, n=Py_ssize_t, n_cuts=Py_ssize_t)
-cpdef object clear_flights(
-    Swing g, object t, object q, object y, object w, object touched, object kind, object cuts, object found
-)
-@cython.locals(good=bint, even=bint)
-cdef bint at_once(Swing g, Flight o, double t, double* q, double* x, double* w, bint whole) noexcept nogil
+cpdef object clear_flights(Swing g, object t, object q, object v, object touched, object kind, object cuts, object found)
+@cython.locals(even=bint, plain=bint)
+cdef bint at_once(Swing g, Flight o, double t, double t_b, double* q, double* v, bint whole) noexcept nogil
+@cython.locals(size=double)
+cdef void note_error(Swing g, Flight o, double t, double t_b, double q, double v) noexcept nogil
+cdef double lowest_place(Swing g, Flight o, double least) noexcept nogil
+cdef void look(Swing g, double t, double t_b) noexcept nogil
+@cython.locals(within=double)
+cdef bint stays(Swing g, double low, double high, double kick, bint even) noexcept nogil
+@cython.locals(kick=double)
+cdef bint by_states(Swing g, Flight o, double t, double t_b, double* q, double* v, bint whole) noexcept nogil
+@cython.locals(margin=double, low=double, first=bint, last=bint, shallow=bint)
+cdef bint by_equation(
+    Swing g, Flight o, double t, double t_b, double y, double w, double kick
+) noexcept nogil
 cdef double equation(Swing g, Flight o, double t, double y, double w) noexcept nogil
 cdef void leave(Swing g, Flight s, double t, double y, double w) noexcept nogil
 @cython.locals(good=bint)

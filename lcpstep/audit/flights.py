@@ -13,32 +13,38 @@ if not cython.compiled:
     from math import sqrt
 
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import DEEPEST, MOST, beside, between_corners, late, open_between, same_time
-    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, swung
+    from lcpstep.audit.clear import (
+        DEEPEST,
+        MOST,
+        beside,
+        between_corners,
+        late,
+        open_between,
+        rise,
+        same_time,
+    )
+    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, rises, swung
     from lcpstep.audit.swing import Swing, driven
     from lcpstep.events.flight.motion import Flight, leave_from
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
 
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it
 HALF_TURN = 3.0  # rad, and less than that
 
 
-def clear_flights(
-    g: Swing, t: Any, q: Any, y: Any, w: Any, touched: Any, kind: Any, cuts: Any, found: Any
-) -> None:
+def clear_flights(g: Swing, t: Any, q: Any, v: Any, touched: Any, kind: Any, cuts: Any, found: Any) -> None:
     """Which pieces are certified, (m,), into `found`; called from Python.
 
     Parameters
     ----------
-    t, q : (m + 1,)   states;  y, w : (m + 1,)   absolute ones
+    t, q, v : (m + 1,)   states
     touched : (m + 1,) uint8   whether an event of the run lies there
     kind : (m,) uint8   of the pieces: 0, or PRESSED for a closed contact, or UNKNOWN, which are left out
     cuts : (k,)   times at which the obstacle may have a corner
     """
     n, n_cuts = len(found), len(cuts)
-    times, places, position, speed = doubles(t), doubles(q), doubles(y), doubles(w)
-    corner = doubles(cuts)
+    times, places, speeds, corner = doubles(t), doubles(q), doubles(v), doubles(cuts)
     touch, left, out = small_numbers(touched), small_numbers(kind), small_numbers(found)
     with cython.nogil:
         i, begins = 0, True
@@ -58,77 +64,141 @@ def clear_flights(
                 out[k] = 1 if pressed_between_corners(g, g.s, times[k], corner, i, n_cuts) else 0
                 continue
             if begins:
-                g.begin(times[k], position[k], speed[k])
+                g.begin(times[k], places[k], speeds[k])
                 begins = False
-            good = at_once(g, g.s, times[k], after(places, k), after(position, k), after(speed, k), whole)
+            x, w = after(places, k), after(speeds, k)
+            good = at_once(g, g.s, times[k], times[k + 1], x, w, whole)
             if not good:
-                good = above_at_ends(
-                    g, g.s, times[k], position[k], position[k + 1], speed[k], corner, i, n_cuts
-                )
+                good = by_states(g, g.s, times[k], times[k + 1], x, w, whole)
             if not good:
-                leave(g, g.s, times[k], position[k], speed[k])
+                g.stand(times[k], places[k], speeds[k])
+                leave(g, g.s, times[k], g.y, g.w)
                 good = between_corners(g, 0, times[k], corner, i, n_cuts)
             out[k] = 1 if good else 0
 
 
-def at_once(g: Swing, o: Flight, t: float, q: Doubles, x: Doubles, w: Doubles, whole: bool) -> bool:
-    """Whether a piece from t on is certified by the states at its ends and the equation of motion.
+def at_once(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, whole: bool) -> bool:
+    """Whether a piece is certified by its states as they are kept, relative to the frame, and by bounds.
 
-    q, x : relative and absolute places;  w : velocities, after an event
-    whole : whether no corner lies within
+    t, t_b, q, v : of both ends, the velocities those after events;  whole : whether no corner lies within
     """
-    y, y_b, h, size = x[0], x[1], g.length, g.most
-    if not g.swings:
-        size = abs(y) + abs(w[0]) * h + 0.5 * abs(o.f0) * h * h + g.forced
-    g.error = ROUNDING * (abs(o.G) * (size + abs(q[0])) + abs(o.offset))
-    g.error += late(max(abs(t), abs(t + h)), g.fast)
-    begin, end, low, high = o.offset + o.G * y, o.offset + o.G * y_b, g.middle - g.bound, g.middle + g.bound
-    high = min(high, swung(g, o, min(begin, end)))
-    lowest = min(begin, end) - 0.125 * max(high, 0.0) * h * h - g.error
-    if lowest - ROUNDING * g.cells.whole_size[0] > g.cells.whole_top[0]:
-        return True
+    begin, end, g.rate = o.offset + o.G * q[0], o.offset + o.G * q[1], o.G * v[0]
+    note_error(g, o, t, t_b, q[0], v[0])
+    g.low, g.high, g.met = g.middle - g.bound, g.middle + g.bound, ROUNDING * g.cells.whole_size[0]
+    g.begin_gap, g.end_gap = begin, end
+    low, high, kick = g.cells.whole_low[0], g.cells.whole_high[0], g.cells.whole_kick[0]
     even = whole and not g.cells.whole_rough
-    if even and parts_at_ends(g, begin, end, o.G * w[0], low, high) and above(g, t, high, 0):
+    if g.alone and g.length <= g.cells.length and stays(g, low, high, kick, even):
         return True
-    g.cells.find(0, t, t + h)
-    met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
-    if lowest - met > g.cells.top:
+    lowest = lowest_place(g, o, min(begin, end))
+    if lowest - g.met > g.cells.whole_top[0]:
         return True
-    g.error += met
-    g.own, g.small = g.error, min(g.error, g.negligible)
+    plain = even and not (g.alone or g.frame.given)
+    if plain and parts_at_ends(g, begin, end, g.rate, g.low, g.high) and above(g, t, g.high, 0):
+        return True
+    g.cells.find(0, t, t_b)
+    g.met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
+    if lowest - g.met > g.cells.top:
+        return True
+    if not g.alone:
+        look(g, t, t_b)
+    return stays(g, g.cells.low, g.cells.high, g.cells.kick, whole and not g.cells.rough)
+
+
+def look(g: Swing, t: float, t_b: float) -> None:
+    """Ask where the obstacle is at both ends of a piece, and how fast at its start, unless nobody wants to know."""
+    if g.first and g.last:
+        g.rate = nan
+        return
+    g.begin_gap -= g.own_motion(0, t)
+    g.rate -= g.moving[1]
+    if not g.last:
+        g.end_gap -= g.own_motion(0, t_b)
+
+
+def note_error(g: Swing, o: Flight, t: float, t_b: float, q: float, v: float) -> None:
+    """What a piece may be off by in which the motion is as large as this state says, and the flight."""
+    size = g.most
+    if not g.swings:
+        g.stand(t, q, v)
+        size = abs(g.y) + abs(g.w) * g.length + 0.5 * abs(o.f0) * g.length * g.length + g.forced
+    g.error = ROUNDING * (abs(o.G) * (size + abs(q)) + abs(o.offset)) + late(max(abs(t), abs(t_b)), g.fast)
+
+
+def lowest_place(g: Swing, o: Flight, least: float) -> float:
+    """A bound of `place` in a piece, less its error, from the smaller of offset + G q at both ends; see `swung`.
+
+    A frame is not asked where it is: `place` is above offset + G q by no less than the least that it ever adds.
+    """
+    if g.frame.given:
+        least += g.cells.whole_bottom[0] - g.met
+    g.high = min(g.high, swung(g, o, least))
+    return least - 0.125 * max(g.high, 0.0) * g.length * g.length - g.error
+
+
+def stays(g: Swing, low: float, high: float, kick: float, even: bool) -> bool:
+    """Whether the gap stays open, by its values at both ends and the rate at which it opens.
+
+    low, high, kick : of what moves;  even : whether it has no corner within, but for one at the very start, on the
+        other side of which the rate may have been taken
+    """
+    high, low, error, within = g.high - low, g.low - high, g.error + g.met, 0.0 if even else kick
+    if open_between(g.begin_gap, g.end_gap, g.length, low, high, within, g.first, g.last, error):
+        return True
+    return not g.last and rises(g, low, kick)
+
+
+def by_states(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, whole: bool) -> bool:
+    """The same of what `at_once` has left, by absolute states at both ends."""
+    g.stand(t, q[0], v[0])
+    y, w = g.y, g.w
+    g.stand(t_b, q[1], v[1])
+    begin, end, h = o.offset + o.G * y, o.offset + o.G * g.y, g.length
+    g.high = min(g.high, swung(g, o, min(begin, end)))
+    g.error += g.met
+    if min(begin, end) - 0.125 * max(g.high, 0.0) * h * h - g.error > g.cells.top:
+        return True
+    g.met, g.own, g.small = 0.0, g.error, min(g.error, g.negligible)
+    g.begin_gap, g.end_gap = 0.0 if g.first else g.begin_gap, 0.0 if g.last else g.end_gap
+    g.first, g.last = g.first or abs(g.begin_gap) <= g.small, g.last or abs(g.end_gap) <= g.small
     g.begin_known = g.end_known = False
-    g_a = 0.0 if g.first else o.offset + o.G * q[0] - g.own_motion(0, t)
-    g_b = 0.0 if g.last else o.offset + o.G * q[1] - g.own_motion(0, t + h)
-    g.first, g.last = g.first or abs(g_a) <= g.small, g.last or abs(g_b) <= g.small
-    good = not g.cells.rough and whole
-    if good and open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error):
-        return True
-    if not good:
-        return False
-    a = equation(g, o, t, y, w[0])
-    if g.last and o.delta != 0.0:  # its velocity at the end is not that after the event
+    kick = 0.0 if whole and not g.cells.rough else g.cells.kick
+    return by_equation(g, o, t, t_b, y, w, kick) or above_at_ends(g, o, t, y, g.y, w)
+
+
+def by_equation(g: Swing, o: Flight, t: float, t_b: float, y: float, w: float, kick: float) -> bool:
+    """By the acceleration at both ends; y, w : absolute state at the start, that at the end being g.y, g.w."""
+    h, first, last = g.length, g.first, g.last
+    a = equation(g, o, t, y, w)
+    if last and o.delta != 0.0:  # its velocity at the end is not that after the event
         margin = h * (1.0 + SLACK) * abs(o.G) * (g.amplitude * o.w2 * sqrt(o.w2) + g.turning * abs(o.Omega))
         margin = margin + SLACK * g.bound + PRESSING * abs(o.G * o.f0) if g.swings else inf
         low, high = a - margin - g.cells.high, a + margin - g.cells.low
-        if open_between(g_a, g_b, h, low, high, g.first, g.last, g.error):
+        if open_between(g.begin_gap, g.end_gap, h, low, high, kick, first, last, g.error):
             return True
-    b = equation(g, o, t + h, y_b, w[1])
-    g.note_ends(begin, end, g_a, g_b, a, b)
-    g.end_known = not g.last or o.delta == 0.0
+    b = equation(g, o, t_b, g.y, g.w)
+    g.note_ends(o.offset + o.G * y, o.offset + o.G * g.y, g.begin_gap, g.end_gap, a, b)
+    g.end_known = not last or o.delta == 0.0
     if not (g.swings and g.end_known):
         return False
     fourth = abs(o.G) * (g.amplitude * o.w2 * o.w2 + g.turning * o.Omega * o.Omega)
-    margin = (1.0 + SLACK) * 0.125 * fourth * h * h + SLACK * g.bound
-    low, high = min(a, b) - margin, max(a, b) + margin
-    return open_between(g_a, g_b, h, low - g.cells.high, high - g.cells.low, g.first, g.last, g.error)
+    bulge, loose = (1.0 + SLACK) * 0.125 * fourth * h * h, SLACK * g.bound
+    low, high = min(a, b) - bulge - loose - g.cells.high, max(a, b) + bulge + loose - g.cells.low
+    if open_between(g.begin_gap, g.end_gap, h, low, high, kick, first, last, g.error):
+        return True
+    if last:
+        return False
+    if b - a > 4.0 * bulge + 2.0 * loose:  # it is least at the start: a + (b - a) s - 4 bulge s (1 - s)
+        low = a - loose - g.cells.high
+    kick = g.cells.kick  # see `stays`
+    shallow = g.first and beside(g, 0.0, h, g.near) and rise(g, 0, h, low, kick) - g.own > -ERRORS * g.small
+    return shallow or rises(g, low, kick)
 
 
 def equation(g: Swing, o: Flight, t: float, y: float, w: float) -> float:
-    """G y'' of a state; the force is known where the piece before has ended."""
-    if t != g.force_at:
-        g.force_at = t
-        g.force, _ = driven(o, t)
-    return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + g.force
+    """G y'' of a state."""
+    force, _ = driven(g, t)
+    return o.G * (o.f0 - 2.0 * o.delta * w - o.w2 * y) + force
 
 
 def leave(g: Swing, s: Flight, t: float, y: float, w: float) -> None:
@@ -169,9 +239,9 @@ def pressed(g: Swing, s: Flight, t0: float, a: float, b: float) -> bool:
     if g.last and g.length - b < g.moment:
         b = max(min(b, g.length - BEFORE * g.moment), a)
     tau, n, looked = a, 1, 0
-    force, turn = driven(s, t0 + a)
+    force, turn = driven(g, t0 + a)
     g.times[0] = b
-    g.bends[0], g.gaps[0] = driven(s, t0 + b)
+    g.bends[0], g.gaps[0] = driven(g, t0 + b)
     while n > 0:
         looked += 1
         k = n - 1
@@ -191,6 +261,6 @@ def pressed(g: Swing, s: Flight, t0: float, a: float, b: float) -> bool:
             return False
         else:
             g.times[n] = 0.5 * (tau + g.times[k])
-            g.bends[n], g.gaps[n] = driven(s, t0 + g.times[n])
+            g.bends[n], g.gaps[n] = driven(g, t0 + g.times[n])
             n += 1
     return True

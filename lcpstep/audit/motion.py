@@ -34,23 +34,31 @@ class Oscillation:
 
     Parameters
     ----------
-    o : Oscillator;  t : (m + 1,) times;  y, w : (m,) state at the start of each piece
+    o : Oscillator;  t : (m + 1,) times;  q, v : (m + 1,) states, relative to the frame;  frame : Function
     """
 
     absolute = True
 
-    def __init__(self, o: Any, t: Array, y: Array, w: Array) -> None:
-        self.o, self.t, self.y, self.w = o, t, y, w
+    def __init__(self, o: Any, t: Array, q: Array, v: Array, frame: Any) -> None:
+        self.o, self.t, self.q, self.v, self.frame = o, t, q, v, frame
+
+    def states(self, k: Any) -> tuple[Array, Array]:
+        """The absolute states at the start of the pieces k."""
+        if not self.frame.given:
+            return self.q[k], self.v[k]
+        c, still = np.zeros((len(k), 1, 3)), np.zeros(1)
+        self.frame.sample(np.ascontiguousarray(self.t[k]), still, still, c)
+        return self.q[k] + c[:, 0, 0], self.v[k] + c[:, 0, 1]
 
     def remainder(self, k: Any) -> tuple[Array, Array]:
         """The motion less the steady oscillation at the start of the pieces k, and its velocity."""
-        steady, rate = self.steady(self.t[k])
-        return self.y[k] - steady, self.w[k] - rate
+        (y, w), (steady, rate) = self.states(k), self.steady(self.t[k])
+        return y - steady, w - rate
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G y in the pieces k."""
         steady = math.hypot(self.o.X, self.o.Y)
-        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.y[k]) + 2.0 * steady))
+        return np.asarray(np.abs(G[:, 0]) * (np.abs(self.states(k)[0]) + 2.0 * steady))
 
     def steady(self, t: Array) -> tuple[Array, Array]:
         """The steady oscillation and its velocity."""

@@ -8,6 +8,7 @@ divide the span, or a period of a ready scene, by the smallest and largest of th
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any
 
@@ -26,8 +27,11 @@ Array = NDArray[np.float64]
 MANY = 2048  # windows, beyond which cells are worth it
 LEAST_CELLS, CELLS, MOST_CELLS = 64, 512, 1 << 14
 LEVELS, FINER = 6, 8  # how often cells beside releases are divided, and in how many parts
+APART = 1e-9  # of the table: releases that are as good as one
 PORTION = 1 << 15  # windows at a time
 WIDER = 1e-13  # of the times: by how much windows are wider than meant
+BESIDE = 1e-11  # of the table: how wide the cells are at both sides of a corner
+KICK = 4.0  # times the range of speeds in a cell: to its mean, and on from there, and what is off meanwhile
 
 
 class Obstacle:
@@ -112,7 +116,10 @@ class Obstacle:
     def _ends(self, windows: int) -> Array:
         start, end = (0.0, self.period) if math.isfinite(self.period) else self.scene.t_span
         n = min(CELLS if math.isfinite(self.period) else MOST_CELLS, max(windows // 16, LEAST_CELLS))
-        ends = np.unique(np.concatenate([np.linspace(start, end, n + 1), self.cuts]))
+        beside = BESIDE * (end - start)
+        corners = np.append(self.cuts, (start, end)) if math.isfinite(self.period) else self.cuts
+        ends = np.concatenate([np.linspace(start, end, n + 1), corners, corners - beside, corners + beside])
+        ends = np.unique(ends)
         return np.asarray(ends[(ends >= start) & (ends <= end)])
 
     def refine(self, t: Array, windows: int) -> None:
@@ -120,6 +127,7 @@ class Obstacle:
         ends = self._ends(windows)
         if math.isfinite(self.period):
             t = t - np.floor(t / self.period) * self.period
+        t = t[np.unique(np.rint(t / (APART * (ends[-1] - ends[0]))), return_index=True)[1]]
         for _ in range(LEVELS):
             met = np.zeros(len(ends) + 1, dtype=bool)  # a cell more at both sides
             met[np.searchsorted(ends[1:-1], t, side="right") + 1] = True
@@ -133,28 +141,53 @@ class Obstacle:
     def _in_cells(self, ends: Array) -> Table:
         """Where a branch makes no difference to the speed, the motion is smooth: the dwell of a cam."""
         lo, hi, branched = self._direct(ends[:-1], ends[1:])
-        return Table(ends, lo, hi, branched & np.any(hi[..., 1] > lo[..., 1], axis=1))
+        branched &= np.any(hi[..., 1] > lo[..., 1], axis=1)
+        return Table(ends, lo, hi, branched, self._corners(ends))
+
+    def _corners(self, ends: Array) -> NDArray[np.bool_]:
+        """At which ends of cells there may be a corner; those of a period are one, beyond the span there is none."""
+        found = np.isin(ends, self.cuts)
+        found[0] = found[-1] = math.isfinite(self.period)
+        return found
 
 
 class Table:
     """Bounds in cells, with those of 2, 4, 8, ... neighbours.
 
+    Between its ends e, f the motion may be far from smooth in a cell that holds a branch, or has an end that may be a
+    corner. It is off by no more than K min(t - e, f - t) from that with its mean speed there, K being the range of
+    speeds, to and from which speeds jump by 2 K in all: in a window [a, b] that is no more than a kick of 4 K, which
+    bends by 4 K (t - a) (b - t) / (b - a) at most.
+
+    kicks : (n, n_c)   4 K, or 0 of cells in which the motion is smooth
+
     Parameters
     ----------
-    ends : (n + 1,)   of the cells;  lo, hi : (n, n_c, 3);  branched : (n,)
+    ends : (n + 1,)   of the cells;  lo, hi : (n, n_c, 3);  branched : (n,);  corners : (n + 1,)   of the ends
     """
 
-    def __init__(self, ends: Array, lo: Array, hi: Array, branched: NDArray[np.bool_]) -> None:
-        self.ends = ends
-        self.levels = [(lo, hi, branched)]
-        while len(lo) > 2 ** len(self.levels):
-            step = 2 ** (len(self.levels) - 1)
-            lo, hi, branched = self.levels[-1]
+    def __init__(
+        self, ends: Array, lo: Array, hi: Array, branched: NDArray[np.bool_], corners: NDArray[np.bool_]
+    ) -> None:
+        self.ends, at = ends, np.flatnonzero(corners)
+        self.kicks = KICK * np.where(branched[:, None], hi[..., 1] - lo[..., 1], 0.0)
+        left, right = at - 1, at % len(lo)  # before the first end lies the last cell
+        jump = KICK * (np.maximum(hi[left], hi[right])[..., 1] - np.minimum(lo[left], lo[right])[..., 1])
+        np.maximum.at(self.kicks, left, jump)
+        np.maximum.at(self.kicks, right, jump)
+        self.own = lo, hi, branched
+
+    @functools.cached_property
+    def levels(self) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Bounds of 1, 2, 4, ... neighbours together."""
+        levels = [self.own]
+        while len(self.own[0]) >= 2 ** len(levels):
+            step = 2 ** (len(levels) - 1)
+            lo, hi, branched = levels[-1]
             later = np.minimum(np.arange(len(lo)) + step, len(lo) - 1)
-            self.levels.append(
-                (np.minimum(lo, lo[later]), np.maximum(hi, hi[later]), branched | branched[later])
-            )
-        self.lo, self.hi, self.branched = (np.stack(x) for x in zip(*self.levels, strict=True))
+            levels.append((np.minimum(lo, lo[later]), np.maximum(hi, hi[later]), branched | branched[later]))
+        lo, hi, branched = (np.stack(x) for x in zip(*levels, strict=True))
+        return lo, hi, branched
 
     def bounds(self, c: Any, a: Array, b: Array) -> tuple[Bounds, NDArray[np.bool_]]:
         """Bounds over windows, from the cells that they meet."""
@@ -163,9 +196,10 @@ class Table:
         j = np.clip(np.searchsorted(self.ends, b, side="left") - 1, i, last)
         level = np.frexp((j - i + 1).astype(float))[1] - 1
         k = j - 2**level + 1
-        lo = np.minimum(self.lo[level, i, c], self.lo[level, k, c])
-        hi = np.maximum(self.hi[level, i, c], self.hi[level, k, c])
-        return _bounds(lo, hi), self.branched[level, i] | self.branched[level, k]
+        lo, hi, branched = self.levels
+        return _bounds(
+            np.minimum(lo[level, i, c], lo[level, k, c]), np.maximum(hi[level, i, c], hi[level, k, c])
+        ), branched[level, i] | branched[level, k]
 
 
 def _bounds(lo: Array, hi: Array) -> Bounds:

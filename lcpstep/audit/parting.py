@@ -11,12 +11,10 @@ from lcpstep.audit.limits import ROUNDED as ROUNDING
 from lcpstep.audit.limits import SLACK
 
 if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.audit.clear import same_time
+    from lcpstep.audit.clear import rise
     from lcpstep.audit.swing import Swing
     from lcpstep.events.flight.motion import Flight
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.pointers import abs, inf, max, min
 
 DEEP = 4  # halvings in a row of windows that are above the obstacle
 
@@ -26,14 +24,24 @@ def swung(g: Swing, o: Flight, least: float) -> float:
 
     x'' <= w2 (x_0 - m) + D above its smallest value m, and m >= least - h^2/8 x''; x_0 : where it rests
     """
-    share = 0.125 * o.w2 * g.length * g.length
-    if not (g.swings and g.forced == 0.0 and share < 0.9):
+    if not g.swings or g.forced > 0.0:
         return inf
-    rest, damped = o.offset + o.G * g.height, 2.0 * o.delta * sqrt(o.w2) * abs(o.G) * g.amplitude
+    share = 0.125 * o.w2 * g.length * g.length
+    if not share < 0.9:
+        return inf
+    rest, damped = o.offset + o.G * g.height, g.damped
     m = least
     if least < rest or damped > 0.0:
-        m = (least - share * max(rest, least) - share / o.w2 * damped) / (1.0 - share)
+        m = (least - share * max(rest, least) - 0.125 * g.length * g.length * damped) / (1.0 - share)
     return o.w2 * (rest - m) + damped + SLACK * (g.bound + o.w2 * (abs(rest) + abs(least)))
+
+
+def rises(g: Swing, low: float, kick: float) -> bool:
+    """Whether a gap stays open by how fast it opens where a piece begins, under accelerations of at least `low`."""
+    opened = rise(g, 0, g.length, low, kick)
+    if g.first:
+        return opened > 0.0  # so is the rate
+    return g.begin_gap + min(opened, 0.0) > g.error + g.met
 
 
 def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, high: float) -> bool:
@@ -45,11 +53,11 @@ def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, h
     """
     h = g.length
     fast = (1.0 + SLACK) * g.cells.whole_fast[0] + SLACK * abs(rate)
+    if g.first and not rate > fast:
+        return False
     back, g.left, g.right = g.cells.whole_high[0] - low, 0.0, 0.0
     fall = (begin - end - g.error) / h - 0.5 * high * h  # the velocity at the end, at least
     if g.first:
-        if not rate > fast:
-            return False
         g.left = min(2.0 * (rate - fast) / back if back > 0.0 else h, h)
         begin += g.left * (rate + 0.5 * low * g.left)
     if g.last:
@@ -64,16 +72,17 @@ def parts_at_ends(g: Swing, begin: float, end: float, rate: float, low: float, h
 def above(g: Swing, t: float, high: float, most: int) -> bool:
     """Whether `place` is above all that the obstacle reaches meanwhile, from g.left to g.right before the end.
 
-    It is above its chord less A x (l - x) / 2. Where that does not suffice, windows are halved.
+    It is above its chord less A x (l - x) / 2, which is more than the chord if A is negative. Where that does not
+    suffice, windows are halved.
 
     t : of the start;  high : bound of the place's acceleration;  most : halvings in a row
     """
     length = g.length - g.left - g.right
     if length <= 0.0:
         return True
-    slope, bent = (g.end_above - g.begin_above) / length, 0.5 * max(high, 0.0)
+    slope, bent = (g.end_above - g.begin_above) / length, 0.5 * high
     least = min(g.begin_above, g.end_above) - g.error - ROUNDING * g.cells.whole_size[0]
-    if least - 0.25 * bent * length * length > g.cells.whole_top[0]:
+    if least - 0.25 * max(bent, 0.0) * length * length > g.cells.whole_top[0]:
         return True
     if most == 0:
         return False
@@ -82,10 +91,13 @@ def above(g: Swing, t: float, high: float, most: int) -> bool:
     while n > 0:
         y = g.times[n - 1]
         lowest = g.begin_above - g.error - ROUNDING * g.cells.whole_size[0] + min(slope * x, slope * y)
-        if x < 0.5 * length < y:
+        at_x, at_y = x * (length - x), y * (length - y)
+        if bent < 0.0:
+            lowest -= bent * min(at_x, at_y)
+        elif x < 0.5 * length < y:
             lowest -= 0.25 * bent * length * length
         else:
-            lowest -= bent * max(x * (length - x), y * (length - y))
+            lowest -= bent * max(at_x, at_y)
         g.cells.find(0, t + g.left + x, t + g.left + y)
         if lowest > g.cells.top:
             x = y
@@ -98,30 +110,24 @@ def above(g: Swing, t: float, high: float, most: int) -> bool:
     return True
 
 
-def above_at_ends(
-    g: Swing, o: Flight, t: float, y: float, y_b: float, w: float, cuts: Doubles, i: int, n_cuts: int
-) -> bool:
+def above_at_ends(g: Swing, o: Flight, t: float, y: float, y_b: float, w: float) -> bool:
     """The same of a piece from t on, without corners where the gap parts from zero.
 
-    y, y_b, w : absolute places at both ends, and the velocity at the start;  i : the first of the cuts after t
+    y, y_b, w : absolute places at both ends, and the velocity at the start
     """
     low, high = g.middle - g.bound, g.middle + g.bound
     begin, end = o.offset + o.G * y, o.offset + o.G * y_b
     high = min(high, swung(g, o, min(begin, end)))
     if not parts_at_ends(g, begin, end, o.G * w, low, high):
         return False
-    if g.left > 0.0 and not smooth(g, t, t + g.left, cuts, i, n_cuts):
+    if g.left > 0.0 and not smooth(g, t, t + g.left):
         return False
-    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length, cuts, i, n_cuts):
+    if g.right > 0.0 and not smooth(g, t + g.length - g.right, t + g.length):
         return False
     return above(g, t, high, DEEP)
 
 
-def smooth(g: Swing, a: float, b: float, cuts: Doubles, i: int, n_cuts: int) -> bool:
-    """Whether what moves is smooth between two times; i : the first of the cuts that may lie there."""
-    while i < n_cuts and cuts[i] <= same_time(a):
-        i += 1
-    if i < n_cuts and same_time(cuts[i]) < b:
-        return False
+def smooth(g: Swing, a: float, b: float) -> bool:
+    """Whether what moves is smooth between two times."""
     g.cells.find(0, a, b)
-    return not g.cells.rough
+    return g.cells.kick == 0.0

@@ -68,13 +68,13 @@ class Pieces:
         t = np.ascontiguousarray(self.t)
         names = "time", "contact", "kind", "after"
         time, contact, kind, rate = (np.array(run.impacts[x], dtype=float) for x in names)
-        if kind.any():
-            still = STILL * float(np.max(np.abs(run.v), initial=0.0))
-            pressed = (np.abs(run.impacts["before"]) <= still) & (np.abs(rate) <= still)
-            rate[pressed] = 0.0  # by another's impact
         if mode is not None:
             self.closed = (mode == CLOSED)[:, None]  # of one contact
         else:
+            if kind.any():
+                still = STILL * float(np.max(np.abs(run.v), initial=0.0))
+                pressed = (np.abs(run.impacts["before"]) <= still) & (np.abs(rate) <= still)
+                rate[pressed] = 0.0  # by another's impact
             self.closed = closed_from_the_start(run, self.m, t)
             close(t, time, contact, kind, rate, self.closed.view(np.uint8))
         if self.motion is None:
@@ -153,12 +153,8 @@ def moved(run: Trajectory, m: Model) -> tuple[Any, Array, Array | None, tuple[An
     method = run.method
     if isinstance(dense, Flights):
         s = dense.s
-        y, w = s.q[:, 0], s.v[:, 0]
-        if m.frame.given:
-            c = np.zeros((len(y), 1, 3))
-            m.frame.sample(np.ascontiguousarray(s.t), np.zeros(1), np.zeros(1), c)
-            y, w = y + c[:, 0, 0], w + c[:, 0, 1]
-        return motion.Oscillation(oscillator_of(m), s.t, y, w), s.t, s.mode[:-1], (0.0, ROUNDING)
+        found = motion.Oscillation(oscillator_of(m), s.t, s.q[:, 0], s.v[:, 0], m.frame)
+        return found, s.t, s.mode[:-1], (0.0, ROUNDING)
     if isinstance(dense, Moved):
         s = dense.s
         error = (
@@ -192,9 +188,10 @@ def repeated(stops: Array, period: float, t_span: tuple[float, float]) -> Array:
     if not np.isfinite(period):
         return np.asarray(stops)
     first, last = np.floor(t_span[0] / period), np.ceil(t_span[1] / period)
-    turn = np.arange(first, last + 1.0) * period
-    found = (turn[:, None] + np.unique(np.append(0.0, stops))).ravel()
-    return found if np.all(found[1:] > found[:-1]) else np.unique(found)
+    turn, own = np.arange(first, last + 1.0) * period, np.unique(np.append(0.0, stops))
+    found = (turn[:, None] + own).ravel()
+    apart = np.min(np.diff(own, append=period))  # rounding may make neighbours one, or change their order
+    return found if apart > ROUNDING * np.max(np.abs(turn)) else np.unique(found)
 
 
 def closed_from_the_start(run: Trajectory, m: Model, t: Array) -> Mask:

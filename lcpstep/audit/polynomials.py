@@ -92,12 +92,7 @@ class Polynomials:
 
     def size(self, G: Array, k: Any) -> Array:
         """How large the numbers are that make up G q in the pieces k."""
-        return np.asarray(np.sum(np.abs(G) * self.largest[k], axis=1))
-
-    @functools.cached_property
-    def largest(self) -> Array:
-        """The largest coefficients of every coordinate, (m, n_q)."""
-        return np.asarray(np.maximum(np.abs(self.B.min(axis=1)), np.abs(self.B.max(axis=1))))
+        return np.asarray(np.sum(np.abs(G) * np.max(np.abs(self.B[k]), axis=1), axis=1))
 
     def along(self, G: Array, k: Any, a: Array, b: Array) -> tuple[Bounds, Array, Array]:
         """Bounds of G q for a row G (n, n_q) of every window, and its values at a and b."""

@@ -2,7 +2,7 @@ cimport cython
 from libc.math cimport cos, hypot, sin, sqrt
 from lcpstep.audit.cells cimport Cells
 from lcpstep.audit.clear cimport Gap
-from lcpstep.events.flight.motion cimport Flight, absolute, steady
+from lcpstep.events.flight.motion cimport Flight, absolute
 from lcpstep.pointers cimport abs, nan
 
 cdef double SLACK
@@ -11,10 +11,12 @@ cdef double SLACK
 @cython.final
 cdef class Swing(Gap):
     cdef Flight s
-    cdef readonly bint swings, known
-    cdef double forced, height, per_root, amplitude, force, force_at, middle, turning, most, bound, fast
+    cdef readonly bint swings, known, alone
+    cdef double forced, height, per_root, amplitude, middle, turning, most, bound, damped, root, fast, low, high, met
     cdef double left, right, begin_above, end_above
-    cdef double size(self, double z, double w) noexcept nogil
-    cdef void begin(self, double t, double y, double w) noexcept nogil
+    cdef double y, w, wave_at, cosine, sine, frame_at, shift, drag
+    cdef void stand(self, double t, double q, double v) noexcept nogil
+    cdef void begin(self, double t, double q, double v) noexcept nogil
 
-cdef (double, double) driven(Flight s, double t) noexcept nogil
+cdef void turn(Swing g, double t) noexcept nogil
+cdef (double, double) driven(Swing g, double t) noexcept nogil
