@@ -64,7 +64,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
         if not told or _reach(found) < reach or (_reach(found) == reach and clear):
             continue
         bar, reach = against(run, every, found, wide=wide, look=look), _reach(found)
-        clear = group[0].tells(run, bar)
+        clear = all(c.tells(run, bar) for c in group)
         if reach >= end and clear:
             break
     return bar or unknown(run, "no companion")
