@@ -2,8 +2,10 @@
 
     run                          companion                                          error of the run
     Moreau, Located              EventDriven                                        the distance
-    EventDriven                  Located "exact" where the motion has that form,    the distance
-                                 of order 2 where accelerations are constant
+    EventDriven                  `Advancement` of an oscillator above a fixed       the distance
+                                 obstacle; else Located, of order 2 where
+                                 accelerations are constant, "exact" where the
+                                 motion has that form
     EventDriven, else            a smaller tolerance; and `Located` looks whether   the distance
                                  it sees the same events, in finer steps if not
 
@@ -25,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lcpstep.errorbar.advancement import Advancement, treats
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
@@ -99,6 +102,8 @@ def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Co
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
     span = float(run.t[-1] - run.t[0])
     step = span / max(run.counts.steps, 1)
+    if treats(scene):
+        yield (Companion(Advancement(), seen=True),)
     try:
         require_exact(scene)
         long = max(step, min(LONG * step, span / ROWS))

@@ -57,8 +57,9 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     for group in companions(run, error):
         for c in group:
             if c not in known:
-                look = look or (looks(run, run, every, end) if c.seen or not every else None)
-                known[c] = followed(c, scene, _kept(look, every), seconds)
+                if look is None and (c.seen or not every):
+                    look = looks(run, run, every, end)
+                known[c] = followed(c, scene, _kept(look if c.seen or not every else None, every), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
         told = len(found) > 0 and known[group[0]] is not None
         if not told or _reach(found) < reach or (_reach(found) == reach and clear):
