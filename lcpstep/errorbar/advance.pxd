@@ -5,7 +5,7 @@ from lcpstep.arrays cimport doubles
 from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t IMPACT, ACCUMULATION, STICK, RELEASE, DONE, BUFFER_FULL, STEP_TOO_SMALL, DEGREE, MOST, COLUMNS
-cdef double SHORT, BEGIN, LOW, SOON, EPS, TINY, ROUNDING
+cdef double SHORT, BEGIN, LOW, SOON, TOUCH, EPS, TINY, ROUNDING
 
 
 @cython.final
@@ -14,7 +14,8 @@ cdef class Advance:
     cdef readonly double t, g, u
     cdef readonly Py_ssize_t rows, events, steps
     cdef Py_ssize_t n, next, most
-    cdef double delta, w2, w_d, F0, Fc, Fs, Omega, s0, X, Y, fast, forced, bound, r, push, A, B, t0, t_end, size
+    cdef double delta, w2, w_d, F0, Fc, Fs, Omega, s0, X, Y, fast, forced, bound, r, push, A, B, x, y, t0, late, late0
+    cdef double t_end, size
     cdef bint resting, begun, series
     cdef double* times
     cdef double* states
@@ -27,6 +28,7 @@ cdef class Advance:
     cdef void by_series(self, double tau) noexcept nogil
     cdef bint fly(self) noexcept nogil
     cdef void land(self, double tau) noexcept nogil
+    cdef void go_to(self, double tau) noexcept nogil
     cdef void strike(self) noexcept nogil
     cdef void rest(self) noexcept nogil
     cdef void wait(self) noexcept nogil

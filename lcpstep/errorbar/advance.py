@@ -29,21 +29,22 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, inf, max, min
 
 IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])
-DEGREE, SHORT = 11, 0.1  # of the series, and the phase up to which it is taken
+DEGREE, SHORT = 16, 0.5  # of the series, and the phase up to which it is taken
 BEGIN = 1e-3  # phase of a flight without a velocity, after which its gap is looked at first
 LOW, SOON = 1e-14, 1e-5  # height of a hop [size], and phase of all that follow: then these are summed up
+TOUCH = 2e-16  # [size] what falls deeper by so little and rises again has touched the obstacle, to rounding
 MOST = 2000  # steps of a flight
 EPS, TINY = 2.220446049250313e-16, 1e-300
 ROUNDING = 1e-9  # of a phase
 
 
 class Advance:
-    """Where the motion is: at the time t with gap g and its velocity u, flying or at rest.
+    """Where the motion is: at the time t + late with gap g and its velocity u, flying or at rest.
 
     delta, w2, F0, Fc, Fs, Omega    of the equation;  s0, X, Y  of its steady oscillation
     fast, bound     the larger of both frequencies; of the gap acceleration of the flight at hand
     r, push         restitution, and the impulse for a change of velocity
-    A, B, T         of the flight at hand, as above; its series (DEGREE + 1,), where it is made
+    A, B, x, y, T   of the flight that began at t0 + late0, as above; its forced part; its series (DEGREE + 1,)
     n, next         times asked for, and the first that is to come;  rows  of the log
 
     Parameters
@@ -66,7 +67,7 @@ class Advance:
         self.times, self.states, self.log = doubles(times), doubles(states), doubles(log)
         self.T, self.n, self.most = doubles(self.series_of), len(times), len(log)
         self.next = self.rows = self.events = self.steps = 0
-        self.t0 = self.A = self.B = self.bound = 0.0
+        self.t0 = self.late0 = self.late = self.A = self.B = self.x = self.y = self.bound = 0.0
 
     def go_on(self) -> int:
         """Events up to the end of the span, or until the log is full; called from Python."""
@@ -100,9 +101,10 @@ class Advance:
     def leave(self) -> None:
         """A flight begins: its oscillation and the bound of its acceleration."""
         c, s = cos(self.Omega * self.t), sin(self.Omega * self.t)
-        self.t0, self.series = self.t, False
-        self.A = self.g - self.s0 - (self.X * c + self.Y * s)
-        self.B = (self.u - self.Omega * (self.Y * c - self.X * s) + self.delta * self.A) / self.w_d
+        self.t0, self.late0, self.series = self.t, self.late, False
+        self.x, self.y = self.X * c + self.Y * s, self.Y * c - self.X * s
+        self.A = self.g - self.s0 - self.x
+        self.B = (self.u - self.Omega * self.y + self.delta * self.A) / self.w_d
         self.bound = self.w2 * hypot(self.A, self.B) + self.forced + TINY
         self.T[0], self.T[1] = self.g, self.u
 
@@ -111,12 +113,11 @@ class Advance:
         if tau * self.fast < SHORT:
             self.by_series(tau)
             return
-        phase, decay = self.Omega * (self.t0 + tau), exp(-self.delta * tau)
+        decay, f_c, f_s = exp(-self.delta * tau), cos(self.Omega * tau), sin(self.Omega * tau)
         c, s = decay * cos(self.w_d * tau), decay * sin(self.w_d * tau)
-        f_c, f_s = cos(phase), sin(phase)
         z, z_t = self.A * c + self.B * s, self.w_d * (self.B * c - self.A * s)
-        self.g = self.s0 + z + (self.X * f_c + self.Y * f_s)
-        self.u = z_t - self.delta * z + self.Omega * (self.Y * f_c - self.X * f_s)
+        self.g = self.s0 + z + (self.x * f_c + self.y * f_s)
+        self.u = z_t - self.delta * z + self.Omega * (self.y * f_c - self.x * f_s)
 
     def by_series(self, tau: float) -> None:
         """The same, soon after it."""
@@ -138,7 +139,7 @@ class Advance:
     def fly(self) -> bool:
         """Up to the next impact, or the end of the span; False where a flight does not come on."""
         self.leave()
-        end, tau, d = self.t_end - self.t0, 0.0, inf
+        end, tau, d = self.t_end - self.t0 - self.late0, 0.0, inf
         if self.g <= 0.0 and self.u <= 0.0:
             tau = BEGIN / self.fast
             self.at(tau)
@@ -156,16 +157,28 @@ class Advance:
             tau += d
             self.at(tau)
             if u < 0.0 and (self.g <= 0.0 or d <= EPS * tau):
-                self.land(tau)
-                return True
+                a = self.force(self.t0 + tau) - 2.0 * self.delta * self.u
+                if self.u * self.u > 2.0 * a * TOUCH * self.size:
+                    self.land(tau)
+                    return True
+                tau -= 2.0 * self.u / a
+                self.at(tau)
         return False
 
     def land(self, tau: float) -> None:
         """The flight ends with an impact."""
         u = self.u
-        self.tell(self.t0 + tau)
-        self.t, self.g, self.u = self.t0 + tau, 0.0, min(u, 0.0)
+        self.go_to(tau)
+        self.tell(self.t)
+        self.u = u
         self.strike()
+
+    def go_to(self, tau: float) -> None:
+        """To tau after the beginning of the flight: the time, and what its last digit leaves out."""
+        tau += self.late0
+        self.t = self.t0 + tau
+        rounded = self.t - self.t0
+        self.late = (self.t0 - (self.t - rounded)) + (tau - rounded)
 
     def strike(self) -> None:
         """An impact, with all that follow where they are low and soon over."""
@@ -176,7 +189,7 @@ class Advance:
             left = 2.0 * self.u / (-a * (1.0 - self.r))
             if self.u == 0.0 or (self.u * self.u < -2.0 * a * LOW * self.size and left * self.fast < SOON):
                 push = -(1.0 + self.r) / (1.0 - self.r) * before * self.push
-                self.t = min(self.t + left, self.t_end)
+                self.t, self.late = min(self.t + left, self.t_end), 0.0
                 self.note(before, 0.0, push, IMPACT if self.r == 0.0 else ACCUMULATION)
                 self.rest()
                 return
@@ -205,7 +218,7 @@ class Advance:
             self.t = self.t_end
             return
         self.tell(until)
-        self.t, self.resting = until, False
+        self.t, self.late, self.resting = until, 0.0, False
         self.note(0.0, 0.0, 0.0, RELEASE)
 
     def tell(self, until: float) -> None:
@@ -214,7 +227,7 @@ class Advance:
             if self.resting or self.times[self.next] <= self.t0:
                 self.g, self.u = (0.0, 0.0) if self.resting else (self.T[0], self.T[1])
             else:
-                self.at(self.times[self.next] - self.t0)
+                self.at(self.times[self.next] - self.t0 - self.late0)
             self.states[2 * self.next], self.states[2 * self.next + 1] = self.g, self.u
             self.next += 1
 
