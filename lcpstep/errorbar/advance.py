@@ -8,7 +8,7 @@ times Taylor's series, that tells low hops to all digits. As |g''| <= b over a f
     d = (u + sqrt(u^2 + 2 b g)) / b
 
 from wherever it has the velocity u: steps of that length pass no impact, and end at the first one as Newton's method
-does. Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems, thesis, Berkeley (1996), section 2.3.
+does. Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems, thesis, Berkeley (1996).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if not cython.compiled:
     from math import acos, atan2, cos, exp, floor, hypot, pi, sin, sqrt
 
     from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.pointers import inf, max, min
 
 IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])
 DEGREE, SHORT = 16, 0.5  # of the series, and the phase up to which it is taken
@@ -74,7 +74,7 @@ class Advance:
         self.rows = 0
         with cython.nogil:
             code = self.follow()
-        return code
+        return code  # noqa: RET504  what is Python's begins here
 
     def follow(self) -> int:
         """The same as a kernel."""
@@ -145,7 +145,7 @@ class Advance:
             self.at(tau)
             if not (self.g > 0.0 and self.u > 0.0):
                 return False
-        for k in range(MOST):
+        for _ in range(MOST):
             self.steps += 1
             g, u = max(self.g, 0.0), self.u
             root = sqrt(u * u + 2.0 * self.bound * g)

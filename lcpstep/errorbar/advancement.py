@@ -52,7 +52,7 @@ def treats(scene: Scene) -> bool:
 def _run(method: Any, scene: Scene, times: Array, progress: Callable[[float], None]) -> Trajectory:
     if not treats(scene):
         raise LcpStepError("scene: not one oscillator above a fixed flat obstacle")
-    m, (start, end) = looked_at(scene), scene.t_span
+    m, end = looked_at(scene), scene.t_span[1]
     states, log, found = np.zeros((len(times), 2)), np.empty((ROWS, COLUMNS)), [np.zeros((0, COLUMNS))]
     a = Advance(_numbers(m, scene), np.ascontiguousarray(times), states, log)
     code, stopped = -1, False
@@ -103,21 +103,20 @@ def _numbers(m: Model, scene: Scene) -> dict[str, float]:
         float(m.arrays[x].flat[0])
         for x in ("M", "C", "K", "G", "offset", "constant", "cosine", "sine", "restitution")
     )
+    q0, v0 = (float(np.asarray(x)[0]) for x in (scene.q0, scene.v0))
     delta, w2, Omega = 0.5 * C / M, K / M, m.omega
     if Omega == 0.0:
         constant, cosine, sine = constant + cosine, 0.0, 0.0
     a, b = w2 - Omega * Omega, 2.0 * delta * Omega
     F0, Fc, Fs = G * constant / M + w2 * offset, G * cosine / M, G * sine / M
-    size = abs(offset) + abs(G * float(scene.q0[0])) + (abs(F0) + math.hypot(Fc, Fs)) / max(w2, 1e-300)
+    size = abs(offset) + abs(G * q0) + (abs(F0) + math.hypot(Fc, Fs)) / max(w2, 1e-300)
     near = math.hypot(a, b) < NEAR * (w2 + Omega * Omega) and (cosine != 0.0 or sine != 0.0)
     if not (w2 > 0.0 and 0.0 <= delta * delta < DAMPED * w2 and delta >= 0.0) or near or Omega < 0.0:
         raise LcpStepError("no damped oscillation away from resonance")
     X, Y = np.linalg.solve([[a, b], [-b, a]], [Fc, Fs]) if Fc != 0.0 or Fs != 0.0 else (0.0, 0.0)
-    g, u = offset + G * float(scene.q0[0]), G * float(scene.v0[0])
-    if abs(g) <= SURFACE * size:
+    g, u = offset + G * q0, G * v0
+    if g <= SURFACE * size:
         g = 0.0
-    if g < 0.0:
-        raise LcpStepError("begins inside of the obstacle")
     return {
         "delta": delta, "w2": w2, "F0": F0, "Fc": Fc, "Fs": Fs, "Omega": Omega, "X": float(X), "Y": float(Y),
         "r": r, "push": M / (G * G), "t": scene.t_span[0], "g": g, "u": u, "t_end": scene.t_span[1], "size": size,

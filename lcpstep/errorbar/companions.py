@@ -45,7 +45,10 @@ FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error
 FAR = 0.1  # the same of event-driven runs that are tighter than usual
 LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
-PIECES = (1.0, 4.0)  # in a step of the event-driven run, of steps that look for its events: first, and at last
+PIECES = (
+    1.0,
+    4.0,
+)  # in a step of the event-driven run, of steps that look for its events: first, and at last
 LONG, ROWS = 4.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
@@ -107,7 +110,9 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
     try:
         require_exact(scene)
         long = max(step, min(LONG * step, span / ROWS))
-        yield (Companion(Located(long)) if _constant(scene) else Companion(Located(long, "exact"), seen=True),)
+        yield (
+            Companion(Located(long)) if _constant(scene) else Companion(Located(long, "exact"), seen=True),
+        )
     except LcpStepError:
         pass
     order = 4 if scene.n_j == 0 else 2
