@@ -22,6 +22,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.status import DONE, STEP_TOO_SMALL
 from lcpstep.model import looked_at
 from lcpstep.recording import LOGGED, Kept, in_order
+from lcpstep.stepping.pieces.run import Again
 from lcpstep.trajectory import IMPACT_DTYPE, Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -69,23 +70,17 @@ def _run(method: Any, scene: Scene, times: Array, progress: Callable[[float], No
     known = times[: np.searchsorted(times, until, side="right")]
     q, v = ((states[: len(known), [0]] - m.arrays["offset"][0]), states[: len(known), [1]])
     G, none = float(m.arrays["G"][0, 0]), np.zeros((len(known), 0))
+    last = (x[-1] if len(known) else np.zeros(1) for x in (q / G, v / G))
     status = Status.INTERRUPTED if stopped else Status.DONE
     run = Trajectory(
         scene=scene, method=method, t=known, q=q / G, v=v / G, impulse=np.zeros((len(known), 1)),
         impacts=_logged(np.concatenate(found), end), status=status,
         message="interrupted" if stopped else "reached the end of the span", counts=Counts(a.steps, events=a.events),
-        dense=lambda t: _at(method, scene, t), joint_impulse=none, friction_impulse=none,
+        dense=Again(method, scene, *last), joint_impulse=none, friction_impulse=none,
     )  # fmt: skip
     if stopped:
         raise SimulationInterrupted(lambda: run)
     return run
-
-
-def _at(method: Any, scene: Scene, t: Array) -> tuple[Array, Array]:
-    """States at any times, by another run."""
-    times, back = np.unique(t, return_inverse=True)
-    run = _run(method, scene, times, lambda _: None)
-    return run.q[back], run.v[back]
 
 
 def _logged(rows: Array, end: float) -> Any:

@@ -36,6 +36,7 @@ from lcpstep.faults import forget
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
+from lcpstep.stepping.pieces.run import Again
 from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
@@ -110,9 +111,7 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
     try:
         require_exact(scene)
         long = max(step, min(LONG * step, span / ROWS))
-        yield (
-            Companion(Located(long)) if _constant(scene) else Companion(Located(long, "exact"), seen=True),
-        )
+        yield (Companion(Located(long, 2 if _constant(scene) else "exact"), seen=True),)
     except LcpStepError:
         pass
     order = 4 if scene.n_j == 0 else 2
@@ -166,6 +165,8 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
         return None
     finally:
         forget()
+    if companion.seen and len(found.t):  # what else is asked for are no differences of positions kept
+        found = replace(found, dense=Again(method, scene, found.q[-1], found.v[-1]))
     return found
 
 
