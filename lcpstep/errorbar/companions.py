@@ -50,7 +50,7 @@ PIECES = (
     1.0,
     4.0,
 )  # in a step of the event-driven run, of steps that look for its events: first, and at last
-LONG, ROWS = 4.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
+LONG, ROWS = 16.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 
