@@ -21,7 +21,7 @@ NODES = 2
 def increasing(*parts: Any, low: float = -math.inf, high: float = math.inf) -> Any:
     """The times of all parts within bounds, each once, in their order."""
     found = np.concatenate(parts)
-    found.sort()
+    found.sort(kind="stable")  # which merges parts that are in order
     count, times = len(found), doubles(found)
     return found[: keep_once(count, times, low, high)]
 

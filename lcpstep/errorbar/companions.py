@@ -2,9 +2,12 @@
 
     run                          companion                                          error of the run
     Moreau, Located              EventDriven                                        the distance
-    EventDriven                  Located "exact" where the motion has that form     the distance
-    EventDriven, else            a far smaller tolerance; and `Located` looks       the distance
-                                 whether it sees the same events
+    EventDriven                  `Advancement` of an oscillator above a fixed       the distance
+                                 obstacle; else Located, of order 2 where
+                                 accelerations are constant, "exact" where the
+                                 motion has that form
+    EventDriven, else            a smaller tolerance; and `Located` looks whether   the distance
+                                 it sees the same events, in finer steps if not
 
 The distance is the error of the run as far as the companion's own error is smaller. Moreau's smooth steps are those
 of `Located` of order 2, which is no companion for that reason; and a tolerance that is just a little smaller is none,
@@ -24,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lcpstep.errorbar.advancement import Advancement, treats
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
@@ -32,17 +36,21 @@ from lcpstep.faults import forget
 from lcpstep.recording import Kept
 from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
+from lcpstep.stepping.pieces.run import Again
 from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 TIGHT = 1e-13
 BEST = EventDriven(TIGHT, TIGHT)
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
-FAR = 0.03  # the same of event-driven runs that are tighter than usual
+FAR = 0.1  # the same of event-driven runs that are tighter than usual
 LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
 EARLY, CLEAR = 0.25, 100.0  # part of the bar, in which it is so many times a companion's tolerance
-PIECES = 4.0  # of order 4 in a step of the event-driven run
-LONG, ROWS = 4.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
+PIECES = (
+    1.0,
+    4.0,
+)  # in a step of the event-driven run, of steps that look for its events: first, and at last
+LONG, ROWS = 16.0, 4000  # steps of the event-driven run in an exact one, and such steps in a span at least
 PATIENCE = 1.0  # that a companion may take in any case [s of CPU time]
 
 
@@ -51,7 +59,7 @@ class Companion:
     """A method to hold a run against.
 
     measures : its distance is the error, or it only looks for the same events
-    first : it may not be accurate enough for that, and the next one is
+    first : it may not be accurate enough for what it does, and the next one is
     seen : it keeps the states that are compared: those between its own ask for another run
     """
 
@@ -61,9 +69,14 @@ class Companion:
     seen: bool = False
 
     def tells(self, run: Trajectory, bar: ErrorBar) -> bool:
-        """Whether the bar is far above the companion's own tolerance, early on, where no error has grown yet."""
+        """Whether it is accurate enough for the bar that it is part of.
+
+        It sees the same events; or the bar is far above its own tolerance, early on, where no error has grown yet.
+        """
         if not self.first:
             return True
+        if not self.measures:
+            return in_words(self.method) not in bar.reason
         early = int(np.searchsorted(bar.t, bar.t[0] + EARLY * (bar.t[-1] - bar.t[0]), side="right")) - 1
         own = self.method.rtol * _size(run)
         return bool(np.max(bar.position.largest[early]) > CLEAR * own)
@@ -93,15 +106,20 @@ def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Co
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
     span = float(run.t[-1] - run.t[0])
     step = span / max(run.counts.steps, 1)
+    if treats(scene):
+        yield (Companion(Advancement(), seen=True),)
     try:
         require_exact(scene)
-        yield (Companion(Located(max(step, min(LONG * step, span / ROWS)), "exact"), seen=True),)
+        long = max(step, min(LONG * step, span / ROWS))
+        yield (Companion(Located(long, 2 if _constant(scene) else "exact"), seen=True),)
     except LcpStepError:
         pass
     order = 4 if scene.n_j == 0 else 2
-    looks = Companion(Located(step / PIECES, order), measures=False)
     rtol, atol = (max(LEAST_TOLERANCE, min(TIGHT, x * FAR)) for x in (method.rtol, method.atol))
-    yield Companion(EventDriven(rtol, atol)), looks
+    measure = Companion(EventDriven(rtol, atol))
+    for pieces in PIECES:
+        looks = Companion(Located(step / pieces, order), measures=False, first=pieces < PIECES[-1])
+        yield measure, looks
 
 
 def in_closed_form(scene: Scene) -> bool:
@@ -147,6 +165,8 @@ def followed(companion: Companion, scene: Scene, kept: Kept, seconds: float) -> 
         return None
     finally:
         forget()
+    if companion.seen and len(found.t):  # what else is asked for are no differences of positions kept
+        found = replace(found, dense=Again(method, scene, found.q[-1], found.v[-1]))
     return found
 
 

@@ -172,7 +172,7 @@ def add_floor(n: int, size: int, t: Doubles, floor: Doubles, out: Doubles) -> No
 
 def merged(windows: Any, around: float) -> Any:
     """Intervals with what is around them, those that overlap as one, in their order (k, 2)."""
-    found = np.ascontiguousarray(windows[windows[:, 0].argsort()])
+    found = np.ascontiguousarray(windows[windows[:, 0].argsort(kind="stable")])
     count, some = len(found), doubles(found)
     return found[: merge(count, some, around)]
 

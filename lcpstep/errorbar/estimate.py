@@ -57,14 +57,15 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     for group in companions(run, error):
         for c in group:
             if c not in known:
-                look = look or (looks(run, run, every, end) if c.seen or not every else None)
-                known[c] = followed(c, scene, _kept(look, every), seconds)
+                if look is None and (c.seen or not every):
+                    look = looks(run, run, every, end)
+                known[c] = followed(c, scene, _kept(look if c.seen or not every else None, every), seconds)
         found = [(c, x) for c in group if (x := known[c]) is not None and len(x.t) > 1]
         told = len(found) > 0 and known[group[0]] is not None
         if not told or _reach(found) < reach or (_reach(found) == reach and clear):
             continue
         bar, reach = against(run, every, found, wide=wide, look=look), _reach(found)
-        clear = group[0].tells(run, bar)
+        clear = all(c.tells(run, bar) for c in group)
         if reach >= end and clear:
             break
     return bar or unknown(run, "no companion")

@@ -17,7 +17,7 @@ from lcpstep.kernels.between import last_rows
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
-LEAST, MOST, NUMBERS = 200, 600, 2400  # breaks besides the events, so many numbers between two bounds
+LEAST, MOST, NUMBERS = 150, 300, 1800  # breaks besides the events, so many numbers between two bounds
 EVEN = 3  # and one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it are all over (0, 1), and at no step of one size

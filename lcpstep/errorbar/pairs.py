@@ -76,4 +76,4 @@ def one_to_one(a: Log, b: Log, most: int, weak: float, resolution: float) -> tup
 
 def middle(x: Array) -> float:
     """The median, or the larger of two."""
-    return float(np.sort(x)[len(x) // 2]) if len(x) else 0.0
+    return float(np.partition(x, len(x) // 2)[len(x) // 2]) if len(x) else 0.0

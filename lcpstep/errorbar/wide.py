@@ -15,7 +15,7 @@ from lcpstep.stepping.located import Located
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
-FEW = 4000  # steps, which are run again instead: that tells more
+FEW = 200  # steps, which are run again instead: that tells more
 BETWEEN = 600  # states between steps
 
 

@@ -145,8 +145,11 @@ def find_energy(m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, M: Dou
             mass(m, t[k], x, x_t, M)
             for i in range(n):
                 total -= m.constant[i] * x[i]
+                momentum = elastic = 0.0  # of a row each: rows do not wait for one another
                 for j in range(n):
-                    total += 0.5 * (M[i * n + j] * x_t[i] * x_t[j] + m.K[i * n + j] * x[i] * x[j])
+                    momentum += M[i * n + j] * x_t[j]
+                    elastic += m.K[i * n + j] * x[j]
+                total += 0.5 * (x_t[i] * momentum + x[i] * elastic)
             out[k] = total
 
 

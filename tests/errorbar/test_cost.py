@@ -12,6 +12,7 @@ from lagrangian import Scene, scenes
 from lagrangian.scenes import CATALOGUE
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errorbar import companions, estimate
+from lcpstep.errorbar.advancement import Advancement
 from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
 from lcpstep.recording import Kept
 from lcpstep.stepping.pieces.run import Again
@@ -22,7 +23,7 @@ class Asked:
 
     def __init__(self, monkeypatch):
         self.of = []
-        for kind in (Located, EventDriven):
+        for kind in (Located, EventDriven, Advancement):
             monkeypatch.setattr(kind, "run", self.noted(kind.run))
 
     def noted(self, run):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -202,7 +202,7 @@ class Again:
     """
 
     dear: ClassVar[bool] = True
-    method: Located
+    method: Any
     scene: Scene
     q_end: Array
     v_end: Array
