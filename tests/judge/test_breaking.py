@@ -9,7 +9,8 @@ from benchmarks.judge import checks
 from benchmarks.judge.breaking import breaks_down
 from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
-from benchmarks.judge.runs import run
+from benchmarks.judge.draw import draw
+from benchmarks.judge.runs import Clock, run
 from tests.judge.kept_recently import RECENTLY
 
 # A light body beside a heavy one: thrown off its wall, its mass turns by many radians in a step
@@ -60,3 +61,11 @@ def test_a_run_that_leaves_its_joints_is_judged_up_to_where_they_swing_too_fast(
     faster = replace(r, motion=replace(m, v=m.v * np.where(m.t < 0.05, 1.0 + m.t / 0.05, 2.0)[:, None]))
     monkeypatch.setattr(checks, "run", lambda *_: faster)
     assert "energy gained" in {x.kind for x in check(d, faster)}
+
+
+def test_a_run_that_goes_on_by_roundings_of_time_alone_ends(monkeypatch):
+    """Steps far too long for what swings on a round joint, 11,000 s from zero: it went on without step or event."""
+    monkeypatch.setattr(Clock, "limit", 20.0)
+    r = run(draw(2511250334, 4710), "located-4", 0.25)  # else it has hung
+    assert r.status == "TOO_MANY_EVENTS"
+    assert r.motion.counts.steps + r.motion.counts.events < 10_000

@@ -11,7 +11,7 @@ from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.kernels.vectors cimport clear
-from lcpstep.pointers cimport abs, min
+from lcpstep.pointers cimport abs, max, min
 
 cdef Py_ssize_t BEGIN, SETTLE, JUMP, MOVE, OPEN, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 cdef double LOOK_AHEAD, FURTHER, NO_TIME

@@ -26,11 +26,13 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import abs, min
+    from lcpstep.pointers import abs, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
-NO_TIME = 2.0**-50  # of the interval looked at: stretches of motion this short take no time
+NO_TIME = (
+    2.0**-50
+)  # of the interval looked at: stretches of motion this short take no time, nor do roundings of it
 
 
 class Course(Events):
@@ -91,7 +93,8 @@ def progress(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
     t = s.clock.t0
     code = s.proceed(record, tally)
-    tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= NO_TIME * s.scan_length else 0
+    moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
+    tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= moment else 0
     return code
 
 
