@@ -38,7 +38,18 @@ class Advancement:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion, with states at the times that are kept; LcpStepError where it does not treat the scene."""
-        return _run(self, scene, kept.times, progress)
+        if not treats(scene):
+            raise LcpStepError("scene: not one oscillator above a fixed flat obstacle")
+        m, times = looked_at(scene), np.ascontiguousarray(kept.times)
+        states, log = np.zeros((len(times), 2)), np.empty((ROWS, COLUMNS))
+        a = Advance(_numbers(m, scene), times, states, log)
+        rows, stopped = _events(a, log, progress)
+        states[:, 0] -= m.arrays["offset"][0]
+        states /= m.arrays["G"][0, 0]
+        run = _trajectory(self, scene, times[: a.next], states[: a.next], rows, a, stopped)
+        if stopped:
+            raise SimulationInterrupted(lambda: run)
+        return run
 
 
 def treats(scene: Scene) -> bool:
@@ -50,14 +61,10 @@ def treats(scene: Scene) -> bool:
     return flat and scene.n_q == 1 and scene.n_c == 1 and scene.n_j == 0
 
 
-def _run(method: Any, scene: Scene, times: Array, progress: Callable[[float], None]) -> Trajectory:
-    if not treats(scene):
-        raise LcpStepError("scene: not one oscillator above a fixed flat obstacle")
-    m, end = looked_at(scene), scene.t_span[1]
-    states, log, found = np.zeros((len(times), 2)), np.empty((ROWS, COLUMNS)), [np.zeros((0, COLUMNS))]
-    a = Advance(_numbers(m, scene), np.ascontiguousarray(times), states, log)
-    code, stopped = -1, False
-    while code != DONE and not stopped:
+def _events(a: Advance, log: Array, progress: Callable[[float], None]) -> tuple[Array, bool]:
+    """Rows of the log up to the end, or to an interrupt, and whether there was one."""
+    found, code = [], -1
+    while code != DONE:
         code = a.go_on()
         if code == STEP_TOO_SMALL:
             raise LcpStepError("a flight that does not come on")
@@ -65,22 +72,25 @@ def _run(method: Any, scene: Scene, times: Array, progress: Callable[[float], No
         try:
             progress(a.t)
         except KeyboardInterrupt:
-            stopped = True
-    until = a.t if stopped else end
-    known = times[: np.searchsorted(times, until, side="right")]
-    q, v = ((states[: len(known), [0]] - m.arrays["offset"][0]), states[: len(known), [1]])
-    G, none = float(m.arrays["G"][0, 0]), np.zeros((len(known), 0))
-    last = (x[-1] if len(known) else np.zeros(1) for x in (q / G, v / G))
-    status = Status.INTERRUPTED if stopped else Status.DONE
-    run = Trajectory(
-        scene=scene, method=method, t=known, q=q / G, v=v / G, impulse=np.zeros((len(known), 1)),
-        impacts=_logged(np.concatenate(found), end), status=status,
-        message="interrupted" if stopped else "reached the end of the span", counts=Counts(a.steps, events=a.events),
-        dense=Again(method, scene, *last), joint_impulse=none, friction_impulse=none,
+            return np.concatenate(found), True
+    return np.concatenate(found), False
+
+
+def _trajectory(
+    method: Any, scene: Scene, t: Array, states: Array, rows: Array, a: Advance, stopped: bool
+) -> Trajectory:
+    q, v = states[:, :1].copy(), states[:, 1:].copy()
+    status, message = (
+        (Status.INTERRUPTED, "interrupted") if stopped else (Status.DONE, "reached the end of the span")
+    )
+    last = (x[-1] if len(t) else np.zeros(1) for x in (q, v))
+    none = np.zeros((len(t), 0))
+    return Trajectory(
+        scene=scene, method=method, t=t, q=q, v=v, impulse=np.zeros((len(t), 1)),
+        impacts=_logged(rows, scene.t_span[1]), status=status, message=message,
+        counts=Counts(a.steps, events=a.events), dense=Again(method, scene, *last), joint_impulse=none,
+        friction_impulse=none,
     )  # fmt: skip
-    if stopped:
-        raise SimulationInterrupted(lambda: run)
-    return run
 
 
 def _logged(rows: Array, end: float) -> Any:
