@@ -34,6 +34,9 @@ Array = NDArray[np.float64]
 REPEATED = 20  # times that a curved gap is taken as straight
 REFINED = 3  # times that contacts at rest are closed, until what is left is zero
 MOST = 5  # contacts named in a warning
+LEAST = np.finfo(
+    float
+).tiny  # below it numbers have lost their digits: what rounding leaves of what has underflowed
 TINY = 1e-16  # relative residual of a large system
 AT_REST = (
     Kind.STICK,
@@ -149,7 +152,7 @@ def _velocity(scene: Scene, t: float, q: Array, v: Array, rests: NDArray[np.bool
 def moved(x: Array, d: Array) -> Array:
     """X + d, where what d cancels to rounding is zero: nothing else would give the scene its scale."""
     y = x + d
-    y[np.abs(y) <= ROUNDING * np.max(np.abs(d))] = 0.0
+    y[np.abs(y) <= max(ROUNDING * np.max(np.abs(d)), LEAST)] = 0.0
     return y
 
 

@@ -10,7 +10,16 @@ from scipy import sparse
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.hybrid_abs import hybrid_abs
 from lagrangian.scenes.hybrid_oscillators import bilinear_oscillator, stick_slip_oscillator
-from lcpstep import EventDriven, LcpStepError, Located, Moreau, SimulationInterrupted, continued, simulate
+from lcpstep import (
+    EventDriven,
+    LcpStepError,
+    Located,
+    Moreau,
+    SimulationInterrupted,
+    Status,
+    continued,
+    simulate,
+)
 from lcpstep.continuing import PutBack
 from tests.models import bowl_scene
 from tests.stepping.test_joints import point_on_a_rod
@@ -74,6 +83,13 @@ def test_another_method_goes_on_where_one_has_ended():
     assert apart(whole, rest) < 1e-9
     assert rest.scene.exact is None
     assert rest.scene.parameters == scene.parameters
+
+
+def test_what_has_underflowed_at_rest_is_zero():
+    """The lowest mass of a chain lies on the floor with 2e-323 m/s, in which no digit is left to go on with."""
+    _, rest = cut(replace(scenes.elastic_chain(), t_span=(0.0, 1.5)), EventDriven(), 0.5)
+    assert rest.scene.v0[0] == 0.0
+    assert rest.status is Status.DONE
 
 
 def test_a_ball_that_lies_stays_lying_and_nothing_happens():
