@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lcpstep.audit.first import look
 from lcpstep.audit.flat import Flat
 from lcpstep.audit.limits import AT_EVENT, BESIDE, ERRORS, NEGLIGIBLE
+from lcpstep.audit.motion import Oscillation
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.result import Audit, Found, Window
 from lcpstep.audit.sampled import sampled
@@ -112,7 +113,7 @@ def examine(p: Pieces, w: Windows, tally: Tally) -> None:
     if len(closed.a):
         if p.certain:
             tally.certified += float(np.sum(closed.b - closed.a))
-        elif hasattr(p.problem, "pressed") and p.motion.absolute and not p.problem.why:
+        elif isinstance(p.motion, Oscillation) and not p.problem.why:
             halve(p, closed, tally, p.problem)
         elif p.cones is not None:
             halve(p, closed, tally, p.cones)

@@ -29,9 +29,9 @@ class Curve(Gap):
     """
 
     def __init__(
-        self, cells: Cells, motion: Function, none: Function, state: Any, limits: Any, degree: int
+        self, cells: Cells, motion: Function, frame: Function, G: Any, state: Any, limits: Any, degree: int
     ) -> None:
-        Gap.__init__(self, cells, motion, none, [0.0], state, limits)
+        Gap.__init__(self, cells, motion, frame, G, state, limits)
         self.degree, self.space = degree, np.zeros((3, degree + 1))
         self.x, self.second, self.part = (
             doubles(self.space[0]),

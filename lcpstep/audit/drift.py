@@ -41,7 +41,9 @@ def drift(
     size = np.zeros(v.shape[1])
     changes(t, v, jump, cuts, first, second, size)
     h, held = np.diff(t)[:, None], frequency(run, m, size, second)
-    add_up(t, jump, PLACE * h * h * first, SPEED * h * second, held, gone)
+    second *= SPEED * h
+    first *= PLACE * h * h
+    add_up(t, jump, first, second, held, gone)
     return gone
 
 

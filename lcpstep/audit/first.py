@@ -61,13 +61,13 @@ def by_curves(p: Any, o: Obstacle, found: Any) -> None:
     m, motion = p.m, p.motion
     absolute, relative = p.problem.error
     absolute = np.ascontiguousarray(absolute) if np.ndim(absolute) else np.full((1, p.scene.n_q), absolute)
-    none = Function(0, np.zeros(0), 1, 1, (1, 3))
-    gap = Curve(o.cells(len(found)), m.motion, none, o.state, limits(p), motion.degree)
     G, offset = (np.ascontiguousarray(x) for x in (p.problem.G, p.problem.offset))
+    frame = m.frame if motion.absolute else Function(0, np.zeros(0), 1, 1, (1, 3))
+    gap = Curve(o.cells(len(found)), m.motion, frame, G[:, 0], o.state, limits(p), motion.degree)
     B = np.ascontiguousarray(motion.B)
     touched, kind, cuts = marks(p, o)
     drift = np.zeros((0, p.scene.n_q)) if p.problem.drift is None else p.problem.drift
-    met = sampled(o, p.t)
+    met = sampled(o, p.t, G, motion.absolute)
     clear_curves(gap, p.t, B, G, offset, met, absolute, relative, drift, touched, kind, cuts, found)
 
 
@@ -90,12 +90,17 @@ def by_groups(p: Any, problem: Curved, found: Any) -> None:
         found |= np.repeat(clear, end - first, axis=0) & left
 
 
-def sampled(o: Obstacle, t: Any) -> Any:
+def sampled(o: Obstacle, t: Any, G: Any, with_frame: bool) -> Any:
     """What the contacts meet at every kept state, (m + 1, n_c, 3); one row of zeros where nothing moves."""
-    if not o.m.motion.given:
+    if not o.moves:
         return np.zeros((1, o.n_c, 3))
-    out = np.zeros((len(t), o.n_c, 3))
-    o.m.motion.sample(t, o.state[0], o.state[1], out)
+    out, t = np.zeros((len(t), o.n_c, 3)), np.ascontiguousarray(t)
+    if o.m.motion.given:
+        o.m.motion.sample(t, o.state[0], o.state[1], out)
+    if with_frame:
+        c = np.zeros((len(t), 1, 3))
+        o.m.frame.sample(t, o.state[0], o.state[1], c)
+        out += G[:, :1] * c
     return out
 
 

@@ -56,12 +56,13 @@ class Polynomials:
     B : (m, degree + 1, n_q)   Bernstein's coefficients of the pieces between them
     steps : (moves, length)   the same less the states at the starts, and how long the steps (m,) are that pieces are
         parts of: so derivatives in short pieces do not drown in the rounding of positions
+    absolute : of the coordinate in which a frame rests, not of that which the scene means
     """
 
-    absolute = False  # q is what the scene means by it
-
-    def __init__(self, t: Array, B: Array, steps: tuple[Array, Array] | None = None) -> None:
-        self.t, self.B, self.degree, self.steps = t, B, B.shape[1] - 1, steps
+    def __init__(
+        self, t: Array, B: Array, steps: tuple[Array, Array] | None = None, *, absolute: bool = False
+    ) -> None:
+        self.t, self.B, self.degree, self.steps, self.absolute = t, B, B.shape[1] - 1, steps, absolute
 
     def windows(self, k: Any, a: Array, b: Array) -> Array:
         """Bernstein's coefficients (n, degree + 1, n_q) over the windows [a, b] in the pieces k."""

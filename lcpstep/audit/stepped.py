@@ -18,6 +18,7 @@ from lcpstep.audit.missed import among
 from lcpstep.audit.polynomials import Polynomials, through
 from lcpstep.kernels import states
 from lcpstep.kernels.model import Model
+from lcpstep.model import model
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -31,6 +32,8 @@ GROWTH = 3.0  # more than e: by how much a state grows in a step
 SHORT = 1.0  # (rate h)^2 of steps that have a bound, at most
 ENOUGH = 10.0  # roundings within which a free step must be
 ASIDE = 1e-9  # of a step: so far from its ends accelerations are taken where there is a corner
+AT_CORNER = 1e-11  # of the time: so far from a corner the speed of a frame is asked for
+ROUNDED, LATE = 1e-13, 2e-15  # of its largest speed, and of the time: by how much that may be off
 
 
 def stepped(run: Trajectory, m: Model, closed: Mask, cuts: Array, rounding: float) -> tuple[Polynomials, Any]:
@@ -42,18 +45,45 @@ def stepped(run: Trajectory, m: Model, closed: Mask, cuts: Array, rounding: floa
     contacts: Any = run.scene.contacts
     resting: Mask = np.any(closed, axis=1)
     struck = among(np.array(run.impacts["time"], dtype=float), run.t[1:])  # pieces that end with an event
-    if getattr(run.method, "order", None) != "exact":
+    t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
+    exact, absolute = getattr(run.method, "order", None) == "exact", False
+    if exact and m.frame.given and run.scene.n_q == 1 and turns_evenly(m, cuts):
+        m, q, v, absolute = *in_rest(run, m, t), True
+    if not exact:
         off = 0.0
     elif run.scene.n_c == 1 or not resting.any():  # of one contact nothing flies while it rests
-        off = bounds(run, m, struck, ENOUGH * rounding)
+        off = bounds(m, t, q, v, struck, ENOUGH * rounding)
     friction = run.scene.n_c > 1 and contacts.friction is not None and resting.any()
     if run.scene.n_j > 0 or off is None or friction:  # what holds bodies there may move, which nobody tells
         return made_again(run), 0.0
-    t, q, v = (np.ascontiguousarray(x) for x in (run.t, run.q, run.v))
     a, a_end = accelerations(m, t, q, v, cuts)
     if not np.all(np.isfinite(a) | resting[:, None]):
         return made_again(run), 0.0
-    return Polynomials(t, coefficients(m, t, q, v, a, a_end, resting, struck)), off
+    return Polynomials(t, coefficients(m, t, q, v, a, a_end, resting, struck), absolute=absolute), off
+
+
+def turns_evenly(m: Model, cuts: Array) -> bool:
+    """Whether the speed of the frame does not jump at corners: on which side of one it is told is no matter then."""
+    c, still = np.zeros((2, len(cuts), m.n_q, 3)), np.zeros(m.n_q)
+    beside = AT_CORNER * np.maximum(1.0, np.abs(cuts))
+    for side, times in zip(c, (cuts - beside, cuts + beside), strict=True):
+        m.frame.sample(times, still, still, side)
+    before, after = (
+        c[0, ..., 1] + beside[:, None] * c[0, ..., 2],
+        c[1, ..., 1] - beside[:, None] * c[1, ..., 2],
+    )
+    size = np.max(np.abs(c), axis=(0, 2))
+    rounding = ROUNDED * np.max(size[:, 1], initial=0.0) + LATE * np.abs(cuts) * size[:, 2]
+    return bool(np.all(np.abs(after - before) <= rounding[:, None]))
+
+
+def in_rest(run: Trajectory, m: Model, t: Array) -> tuple[Model, Array, Array]:
+    """A model and the states in coordinates in which the frame rests."""
+    c, still = np.zeros((len(t), m.n_q, 3)), np.zeros(m.n_q)
+    m.frame.sample(t, still, still, c)
+    rest = model(run.scene)
+    rest.carried = True
+    return rest, run.q + c[..., 0], run.v + c[..., 1]
 
 
 def made_again(run: Trajectory) -> Polynomials:
@@ -128,15 +158,15 @@ def from_powers(c: list[Array]) -> Array:
     return np.einsum("pi,pkj->kij", shares[: len(c)], np.stack(c))
 
 
-def bounds(run: Trajectory, m: Model, struck: Mask, enough: float) -> Array | None:
+def bounds(m: Model, t: Array, q: Array, v: Array, struck: Mask, enough: float) -> Array | None:
     """How far polynomials may be from the linear motion under harmonic forces, (m, n_q); None: too far.
 
     With s = t / h, q_ss = h^2 f - h M^-1 C q_s - h^2 M^-1 K q, whose rows are summed: (q, q_s) grows at most by e in
     a step, and derivatives bound one another.
     """
-    if m.frame.given or not m.linear:
+    if (m.frame.given and not m.carried) or not m.linear:
         return None
-    n, h = run.scene.n_q, np.diff(run.t)
+    n, h = m.n_q, np.diff(t)
     M, K, C = (np.asarray(m.arrays[x], dtype=float).reshape(n, n) for x in ("M", "K", "C"))
     with np.errstate(all="ignore"):
         spring, damper = (np.abs(np.linalg.solve(M, x)).sum(axis=1).max() for x in (K, C))
@@ -147,7 +177,7 @@ def bounds(run: Trajectory, m: Model, struck: Mask, enough: float) -> Array | No
     kappa, gamma, turn = spring * h * h, damper * h, abs(m.omega) * h
     if not np.all(kappa + gamma <= SHORT):
         return None
-    place, speed = np.max(np.abs(run.q), axis=1)[:-1], h * np.max(np.abs(run.v), axis=1)[:-1]
+    place, speed = np.max(np.abs(q), axis=1)[:-1], h * np.max(np.abs(v), axis=1)[:-1]
     size = GROWTH * (np.maximum(place, speed) + h * h * (steady + swinging))
     second = (kappa + gamma) * size + h * h * (steady + swinging)
     third = kappa * (speed + second) + gamma * second + h * h * swinging * turn

@@ -1,6 +1,7 @@
 """What kernels certify is open: against dense looks at motions of all kinds, and compiled as uncompiled."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from lcpstep.audit import audit, first
 from lcpstep.audit.cells import Cells
 from lcpstep.audit.certify import Tally, divided, examine
 from lcpstep.audit.curves import Curve, clear_curves
+from lcpstep.audit.obstacle import Table
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.polynomials import basis, through
 from lcpstep.kernels.function import Function
@@ -110,7 +112,7 @@ def test_a_piece_that_went_through_a_burr_is_not_certified(width):
 def curve_of(x, touched=(0, 0)):
     """What kernels say of a contact whose gap has these coefficients in Bernstein's basis on [0, 1]."""
     none = Function(0, NOTHING, 1, 1, (1, 3))
-    gap = Curve(Cells(None, 1, math.inf), none, none, np.zeros((2, 1)), (1e-9, 1e-9, 0.0), len(x) - 1)
+    gap = Curve(Cells(None, 1, math.inf), none, none, [0.0], np.zeros((2, 1)), (1e-9, 1e-9, 0.0), len(x) - 1)
     found = np.zeros((1, 1), dtype=np.uint8)
     clear_curves(
         gap, np.array([0.0, 1.0]), np.ascontiguousarray(x)[None, :, None], np.ones((1, 1)), np.zeros(1),
@@ -219,3 +221,45 @@ def test_the_audit_of_a_run_by_steps_and_by_events_agree():
         answer = audit(simulate(scene, method))
         assert answer.certified == answer.flights
         assert answer.share == pytest.approx(1.0, abs=1e-6)
+
+
+def saw(t, q, v, p, out):
+    """A table that goes up and down at one speed: p = (amplitude, rate)."""
+    turn = p[1] * t / (2.0 * math.pi)
+    turn -= math.floor(turn)
+    up = turn < 0.5
+    out[0, 0] = 2.0 * p[0] * (turn if up else 1.0 - turn)
+    out[0, 1] = p[0] * p[1] / math.pi * (1.0 if up else -1.0)
+    out[0, 2] = 0.0
+
+
+@pytest.mark.parametrize("declared", [True, False])
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-3)], ids=["event-driven", "order 2"])
+def test_pieces_above_a_table_with_true_corners_are_certified_only_where_they_are_open(declared, method):
+    for seed in range(4):
+        scene = shaken(np.random.default_rng(seed))
+        half = math.pi / scene.p[1]
+        scene = replace(
+            scene, contacts=replace(scene.contacts, motion=saw), t_span=(0.0, 4.0), period=2.0 * half,
+            corners=[0.0, half] if declared else [],
+        )  # fmt: skip
+        with blind():
+            run = simulate(scene, method)
+        p = Pieces(run)
+        flying = ~p.closed[:, 0] & (np.diff(p.t) > 1e-9)
+        clear = first.look(p)[:, 0] & flying
+        assert np.sum(clear) > 0.5 * np.sum(flying)
+        for k in np.flatnonzero(clear)[:: max(1, int(np.sum(clear)) // 40)]:
+            assert least(run, k) > -1e-12
+
+
+def test_a_window_as_long_as_the_whole_table_meets_all_its_cells():
+    """Their number may be a power of two."""
+    ends = np.linspace(0.0, 1.0, 65)
+    lo = np.zeros((64, 1, 3))
+    lo[40, 0, 0] = -1.0
+    hi = lo + 1.0
+    hi[20, 0, 0] = 7.0
+    table = Table(ends, lo, hi, np.zeros(64, dtype=bool), np.zeros(65, dtype=bool))
+    bounds, _ = table.bounds(np.array([0]), np.array([0.0]), np.array([1.0]))
+    assert (bounds.place.lo[0], bounds.place.hi[0]) == (-1.0, 7.0)

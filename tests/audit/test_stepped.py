@@ -42,7 +42,7 @@ def test_exact_steps_have_a_bound_that_holds_and_is_no_larger_than_it_must_be(h)
         p = Pieces(run)
         struck = among(run.impacts["time"], run.t[1:])
         assert struck.any()
-        bound = stepped.bounds(run, p.m, struck, np.inf)
+        bound = stepped.bounds(p.m, run.t, run.q, run.v, struck, np.inf)
         a, a_end = stepped.accelerations(p.m, run.t, run.q, run.v, p.cuts)
         rest = np.zeros(len(struck), dtype=bool)
         B = stepped.coefficients(p.m, run.t, run.q, run.v, a, a_end, rest, struck)
@@ -118,3 +118,32 @@ def test_a_body_that_rests_on_what_moves_is_as_near_to_it_as_is_told():
     off, told = apart(run, p.motion.B)[resting, 0], p.problem.error[0][resting, 0]
     assert np.max(off) > 1e-8
     assert np.all(off <= told + 1e-14)
+
+
+def test_exact_steps_in_a_moving_frame_are_known_where_that_rests(monkeypatch):
+    run = simulate(scenes.cam_follower(rpm=660.0, t_end=1.0), Located(1e-3, order="exact"))
+    monkeypatch.setattr(stepped, "made_again", None)
+    p = Pieces(run)
+    assert p.motion.absolute
+    times = run.t[:-1, None] + np.diff(run.t)[:, None] * SHARES[1:-1]
+    c, still = np.zeros((times.size, 1, 3)), np.zeros(1)
+    p.m.frame.sample(np.ascontiguousarray(times.ravel()), still, still, c)
+    y = run.at(times.ravel())[0][:, 0] + c[:, 0, 0]
+    off = np.abs(np.einsum("si,ki->ks", SHAPES[1:-1], p.motion.B[:, :, 0]) - y.reshape(times.shape))
+    assert np.all(off <= p.problem.error[0] + 1e-13)
+    assert np.max(p.problem.error[0]) < 1e-9
+
+
+def test_a_frame_whose_speed_jumps_is_not_told_from_one_side():
+    def roof(t, q, v, p, out):
+        up = t < 0.5
+        out[0, 0], out[0, 1], out[0, 2] = 0.1 * (t if up else 1.0 - t), 0.1 if up else -0.1, 0.0
+
+    scene = Scene(
+        system=LinearSystem(M=1.0, K=4.0, force=Harmonic(constant=-9.81), frame=roof),
+        contacts=LinearContacts(G=1.0, offset=0.3), q0=1.0, v0=0.0, t_span=(0.0, 1.0), corners=[0.5],
+    )  # fmt: skip
+    run = simulate(scene, Located(1e-2, order="exact"))
+    p = Pieces(run)
+    assert not p.motion.absolute
+    assert not stepped.turns_evenly(p.m, p.cuts)
