@@ -1,7 +1,7 @@
 cimport cython
 from libc.math cimport floor
 from lcpstep.arrays cimport doubles, indices, small_numbers
-from lcpstep.pointers cimport after, inf, max, min, whole
+from lcpstep.pointers cimport Doubles, Indices, after, inf, max, min, whole
 
 cdef double SLACK
 cdef Py_ssize_t BINS
@@ -14,19 +14,12 @@ cdef class Cells:
     cdef readonly Py_ssize_t n, n_c
     cdef Py_ssize_t here, n_bins
     cdef object starts
-    cdef Py_ssize_t* bins
+    cdef Indices bins
     cdef readonly double period
     cdef double per
-    cdef double* ends
-    cdef double* lo
-    cdef double* hi
+    cdef Doubles ends, lo, hi
     cdef unsigned char* branched
-    cdef double* whole_top
-    cdef double* whole_low
-    cdef double* whole_high
-    cdef double* whole_fast
-    cdef double* whole_bottom
-    cdef double* whole_size
+    cdef Doubles whole_top, whole_low, whole_high, whole_fast, whole_bottom, whole_size
     cdef readonly double bottom, top, slow, low, high
     cdef void find(self, Py_ssize_t c, double a, double b) noexcept nogil
     @cython.locals(i=Py_ssize_t, low=Py_ssize_t, high=Py_ssize_t, middle=Py_ssize_t)

@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.arrays cimport doubles
 from lcpstep.audit.cells cimport Cells
 from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport abs, inf, max, min, nan
+from lcpstep.pointers cimport Doubles, abs, inf, max, min, nan
 
 cdef Py_ssize_t DEEPEST, MOST
 cdef double SLACK, ERRORS, TIMES
@@ -12,14 +12,7 @@ cdef class Gap:
     cdef Cells cells
     cdef Function motion, frame
     cdef object kept, stack
-    cdef double* q
-    cdef double* v
-    cdef double* moving
-    cdef double* G
-    cdef double* times
-    cdef double* places
-    cdef double* gaps
-    cdef double* bends
+    cdef Doubles q, v, moving, G, times, places, gaps, bends
     cdef double place, bend, fourth, loose, length, error, own, small, since, until, moment, near, negligible
     cdef double begin_place, end_place, begin_gap, end_gap, begin_bend, end_bend
     cdef bint first, last, begin_known, end_known

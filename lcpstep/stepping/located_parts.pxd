@@ -3,7 +3,7 @@ from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport COLUMNS, Record
 from lcpstep.kernels.vectors cimport clear, copy, largest
-from lcpstep.pointers cimport after, inf, nan, whole
+from lcpstep.pointers cimport Doubles, after, inf, nan, whole
 from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners cimport find_corners
 from lcpstep.stepping.pieces.led cimport Led, copy_state
@@ -22,11 +22,9 @@ cdef class Parts(Control):
     cdef Plan plan
     cdef Work w, saved
     cdef object own_row
-    cdef double* row
+    cdef Doubles row
     cdef Py_ssize_t saved_row, saved_event, saved_time, n_numbers, n_marks, n_matrices
-    cdef double* A_inverse
-    cdef double* AG
-    cdef double* WA
+    cdef Doubles A_inverse, AG, WA
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed
