@@ -1,7 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
+from lcpstep.arrays cimport doubles
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport COLUMNS, Record
+from lcpstep.kernels.record cimport COLUMNS
 from lcpstep.kernels.vectors cimport clear, copy, largest
 from lcpstep.pointers cimport Doubles, after, inf, nan, whole
 from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
@@ -22,9 +22,8 @@ cdef class Parts(Control):
     cdef Plan plan
     cdef Work w, saved
     cdef object own_row
-    cdef Doubles row
-    cdef Py_ssize_t saved_row, saved_event, saved_time, n_numbers, n_marks, n_matrices
-    cdef Doubles A_inverse, AG, WA
+    cdef Py_ssize_t n_numbers, n_marks, n_matrices
+    cdef Doubles last_row, A_inverse, AG, WA
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed

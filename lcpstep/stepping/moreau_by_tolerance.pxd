@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.vectors cimport copy, copy_indices, distance, largest
 from lcpstep.pointers cimport Doubles, Indices, abs, after, inf, max, min
 from lcpstep.stepping.hidden_switches cimport Switches
@@ -10,7 +9,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.theta_loop cimport Steps
 
-cdef Py_ssize_t LEVELS, FINISHED, BUFFER_FULL, SAVED
+cdef Py_ssize_t LEVELS, FINISHED, BUFFER_FULL
 cdef double LATE
 
 
@@ -25,9 +24,8 @@ cdef class Attempts(Control):
     cdef bint struck
     cdef double share
     cdef Doubles times
-    cdef Py_ssize_t steps_before, row, event, asked
-    cdef Doubles q, v, force, one_q, one_v, part_q, part_v, between_q, between_v, g, u, part_g, part_u
-    cdef Doubles restitution, impulse
+    cdef Py_ssize_t steps_before
+    cdef Doubles begin, one_q, one_v, part_q, part_v, between_q, between_v, part_g, part_u, restitution
     cdef Indices closed
     cdef Doubles A_q, A_v, A_f, X, W
     cdef void place_saved(self)

@@ -12,7 +12,7 @@ cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
 cdef class Control(Course):
     cdef Record record
     cdef object make, matrices, own_made
-    cdef Py_ssize_t n_times
+    cdef Py_ssize_t n_times, row, event, asked
     cdef Py_ssize_t* made
     cdef public long long position, end, tried
     cdef public int level, finest
@@ -21,6 +21,8 @@ cdef class Control(Course):
     cdef public bint happened, failed, full
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil
+    cdef void mark(self) noexcept nogil
+    cdef void wind_back(self) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef Py_ssize_t attempt(self) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil

@@ -10,8 +10,8 @@ cdef Py_ssize_t VECTORS, SQUARES
 
 cdef class State:
     cdef readonly object arrays
-    cdef object work, order
-    cdef readonly Py_ssize_t n_q, n_c
+    cdef object numbers, marks, work
+    cdef readonly Py_ssize_t n_q, n_c, n_moving
     cdef public Py_ssize_t steps, problems, forces, iteration
     cdef Doubles q, v, force, g, u, impulse
     cdef Indices closed, sticks
