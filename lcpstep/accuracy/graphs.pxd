@@ -1,7 +1,5 @@
 cimport cython
-from libc.math cimport hypot, sqrt
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport Doubles, max, min
+from lcpstep.pointers cimport Doubles
 
 cdef double RESOLUTION, ROUNDING
 cdef Py_ssize_t LEAF, DEPTH, FIRST

@@ -1,7 +1,5 @@
 cimport cython
-from libc.math cimport floor
-from lcpstep.arrays cimport doubles, indices, small_numbers
-from lcpstep.pointers cimport Doubles, Indices, after, inf, max, min, whole
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef double SLACK
 cdef Py_ssize_t BINS

@@ -1,8 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.audit.cells cimport Cells
 from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport Doubles, abs, inf, max, min, nan
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t DEEPEST, MOST
 cdef double SLACK, ERRORS, TIMES

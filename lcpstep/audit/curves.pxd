@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices, small_numbers
-from lcpstep.audit.cells cimport Cells
-from lcpstep.audit.clear cimport Gap, between_corners, late, open_between
-from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport Doubles, abs, after, indices_after, inf, max, min
+from lcpstep.audit.clear cimport Gap
+from lcpstep.pointers cimport Doubles
 
 cdef double ROUNDING, SECOND
 

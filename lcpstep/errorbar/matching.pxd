@@ -1,7 +1,6 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport Doubles, Indices, abs, inf, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t IMPACT, ACCUMULATION
 cdef Py_ssize_t START, STOP, LATE_BY, IMPULSE, JUMP, OF_PAIR

@@ -1,6 +1,5 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, indices, small_numbers
 
 cdef void find_rows(
     Py_ssize_t n, double* t, Py_ssize_t count, double* times, Py_ssize_t least, Py_ssize_t most, Py_ssize_t* out

@@ -1,7 +1,5 @@
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.function cimport Function
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.pointers cimport Doubles, Indices, after, indices_after, inf
+from lcpstep.pointers cimport Doubles, Indices
 
 
 cdef class Coefficients:

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices, abs, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef double DEGENERATE, ROUNDING
 cdef Py_ssize_t SOLVED

@@ -1,7 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.function cimport Function, Functions
-from lcpstep.pointers cimport Doubles, after
+from lcpstep.pointers cimport Doubles
 
 
 @cython.final

@@ -1,10 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport gap_rates, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport abs, after, max
 
 @cython.locals(i=Py_ssize_t, k=Py_ssize_t, best=Py_ssize_t)
 cdef void find_steepest(

@@ -1,7 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.vectors cimport add, copy
-from lcpstep.pointers cimport Doubles, after, inf, whole
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t TIME, MODE, LENGTH, LEAD, COLUMNS
 

@@ -1,9 +1,5 @@
 cimport cython
-from libc.math cimport pow, sqrt
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport Doubles, Indices, abs, after, inf, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS, NEEDED_LATER
 cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE

@@ -1,9 +1,4 @@
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport divide_by_mass, free_acceleration
-from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport after, max, min, nan
 
 cdef void find_extremes(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double* g, double* low, double* high

@@ -1,7 +1,4 @@
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs, after, max
 
 cdef void add_up(
     Model m, Py_ssize_t count, double* t, double* q, double* v, double near, double* work, double* out

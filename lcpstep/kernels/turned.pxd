@@ -1,12 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport factor_mass
-from lcpstep.kernels.dynamics cimport gap_rates
-from lcpstep.kernels.linear cimport solve_definite
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport after
 
 @cython.locals(i=Py_ssize_t, k=Py_ssize_t, c=Py_ssize_t, best=Py_ssize_t)
 cdef void find_turned(

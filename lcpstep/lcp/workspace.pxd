@@ -1,5 +1,4 @@
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport Doubles, Indices, after, indices_after
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t VECTORS, LISTS
 

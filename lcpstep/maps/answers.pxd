@@ -1,5 +1,4 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ENDS, IMPACTS

@@ -1,12 +1,8 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport external_force, obstacle
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
 from lcpstep.maps.answers cimport Answers
-from lcpstep.pointers cimport Doubles, max
+from lcpstep.pointers cimport Doubles
 from lcpstep.stepping.theta_method.plan cimport Plan
-
 
 
 @cython.final

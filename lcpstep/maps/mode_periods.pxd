@@ -1,12 +1,10 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.field cimport Machine, approaches, field, guard_gradient, scalar
+from lcpstep.events.hybrid.field cimport Machine
 from lcpstep.events.hybrid.loop cimport Switching
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.maps.saltation.switches cimport Tangent, walk
+from lcpstep.maps.saltation.switches cimport Tangent
 from lcpstep.kernels.function cimport Functions
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport Doubles, Indices, abs, after, indices_after, max, whole
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ARRIVE, NOT_SLIDING, SWITCH_LEAD, BUFFER_FULL, DONE, NOT_FINITE, UNREACHED, UNKNOWN, NO_LIMIT
 cdef double ON_SURFACE

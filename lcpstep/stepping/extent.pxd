@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport free_acceleration
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport finite, largest
-from lcpstep.pointers cimport abs, after, max
 
 cdef double longest_way(
     Model m, double t, double* q, double* v, double step, double piece, double* inverse, bint pushed, double* work

@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport clear, product
-from lcpstep.pointers cimport Doubles, Indices, abs, after, indices_after, max, min
-from lcpstep.stepping.hidden_forces cimport hidden, late
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 

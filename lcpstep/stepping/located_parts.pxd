@@ -1,17 +1,10 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport COLUMNS
-from lcpstep.kernels.vectors cimport clear, copy, largest
-from lcpstep.pointers cimport Doubles, after, inf, nan, whole
-from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
-from lcpstep.stepping.pieces.corners cimport find_corners
-from lcpstep.stepping.pieces.led cimport Led, copy_state
+from lcpstep.pointers cimport Doubles
+from lcpstep.stepping.pieces.led cimport Led
 from lcpstep.stepping.pieces.loop cimport Steps
-from lcpstep.stepping.pieces.smooth cimport invert
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport COLLAPSE
-from lcpstep.stepping.step_control cimport Control, follow_on, stamp
+from lcpstep.stepping.step_control cimport Control
 
 cdef Py_ssize_t LEVELS, OWN
 

@@ -1,10 +1,8 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, copy_indices, distance, largest
-from lcpstep.pointers cimport Doubles, Indices, abs, after, inf, max, min
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.hidden_switches cimport Switches
-from lcpstep.stepping.step_control cimport LEAST_SHARE, Control, stamp
+from lcpstep.stepping.step_control cimport Control
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.theta_loop cimport Steps

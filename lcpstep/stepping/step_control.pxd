@@ -1,9 +1,6 @@
 cimport cython
-from libc.math cimport ldexp
-from lcpstep.arrays cimport indices
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
-from lcpstep.kernels.record cimport COLUMNS, TIME, Record
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.record cimport Record
 
 cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
 cdef double NOISE, PLENTY, LEAST_SHARE, FLAT

@@ -1,11 +1,8 @@
 cimport cython
-from libc.math cimport cos, hypot, sin, sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.events.flight.oscillator cimport fundamental
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport Doubles, abs, after, inf
+from lcpstep.pointers cimport Doubles
 
 
 cdef double NOISE

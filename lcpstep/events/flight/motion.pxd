@@ -1,13 +1,10 @@
-from libc.math cimport cos, sin
-from lcpstep.arrays cimport doubles
-from lcpstep.events.flight.oscillator cimport Oscillator, fundamental
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.function cimport Function
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport Doubles, inf, nan
+from lcpstep.pointers cimport Doubles
 
 cdef double CLOSED, FREE
 

@@ -1,11 +1,10 @@
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.kernels.clock cimport Clock, RESOLUTION
+from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices, after, indices_after, inf
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ROWS, CONTACTS, MARKS, BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
 cdef double NOISE

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.function cimport Functions
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport Doubles, Indices, abs, after, max
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ARRIVE, EXIT_BELOW, EXIT_ABOVE, NOT_SLIDING, VECTORS, SURFACE
 cdef double DIFFERENCE, INNER, OUTER, TINY

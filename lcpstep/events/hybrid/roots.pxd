@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport Doubles, abs, after, max
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t DEGREE, DEPTH, CHECKS
 cdef double NONE

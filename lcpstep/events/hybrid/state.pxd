@@ -1,11 +1,8 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.field cimport Machine, field, guard
-from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
-from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.events.hybrid.field cimport Machine, guard
+from lcpstep.events.hybrid.roots cimport Scan
 from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport Doubles, Indices, abs, after, inf
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t TIME, LENGTH, ROW_MODE, LEAD, SWITCH_LEAD
 cdef double FIRST_STEP

@@ -1,12 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.events.hybrid.field cimport (
-    ARRIVE, INNER, NOT_SLIDING, OUTER, Machine, field, guard_gradient, surface_gradient
-)
-from lcpstep.events.hybrid.state cimport SWITCH_LEAD
+from lcpstep.events.hybrid.field cimport Machine
 from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport Doubles, abs, after, max, whole
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t DONE, NOT_TRANSVERSAL, VECTORS
 cdef double TOLERANCE, RELATIVE_STEP

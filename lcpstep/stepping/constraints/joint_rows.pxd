@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.linear cimport factorise, solve
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport Doubles, Indices, abs, after, inf, max
-from libc.math cimport sqrt
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef double NEGLIGIBLE, EPSILON, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS

@@ -1,7 +1,5 @@
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, LENGTH, Record, TIME
-from lcpstep.pointers cimport after
+from lcpstep.kernels.record cimport Record
 
 cdef double PUT_BACK
 

@@ -1,10 +1,5 @@
-from lcpstep.kernels.dynamics cimport gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, TIME, Record
-from lcpstep.kernels.vectors cimport add, clear, copy, distance, largest
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
-from lcpstep.stepping.pieces.joints cimport accelerate, put, reduce, take, turn
+from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Work
 
 cdef double ASTRAY

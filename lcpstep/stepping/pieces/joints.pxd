@@ -1,14 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport response
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport clear, largest, product
-from lcpstep.pointers cimport Doubles, abs, after, inf, max
-from lcpstep.stepping.constraints.joint_rows cimport (
-    CONTRADICTION, Elimination, arrived, factorise_joints, solve_joints
-)
-from lcpstep.stepping.pieces.codes cimport ROUNDING
+from lcpstep.pointers cimport Doubles
+from lcpstep.stepping.constraints.joint_rows cimport Elimination
 
 cdef double HELPS
 cdef Py_ssize_t PROJECTIONS, VECTORS

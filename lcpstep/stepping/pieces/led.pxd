@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport copy, copy_indices
-from lcpstep.pointers cimport Doubles, Indices, after
-from lcpstep.stepping.pieces.codes cimport FINISHED, STOPPED
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.pieces.state cimport Work
 
 

@@ -1,15 +1,7 @@
 cimport cython
-from libc.math cimport cos, isfinite, sin
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport gap_rates, gaps, obstacle
-from lcpstep.kernels.linear cimport grow_factor, solve_factored
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport Doubles, after, max
-from lcpstep.stepping.pieces.codes cimport CLOSED
-from lcpstep.stepping.pieces.smooth cimport free_acceleration, gap_bias, respond
+from lcpstep.pointers cimport Doubles
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t DEGREE, QUINTIC, CORRECTIONS
 cdef double DOUBTFUL

@@ -1,8 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices, after, indices_after
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.pieces.joints cimport Joints
 
 

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.events.friction.smooth cimport Smooth
-from lcpstep.events.friction.state cimport GUARDS
-from lcpstep.kernels.vectors cimport add, clear, copy, finite
-from lcpstep.pointers cimport Doubles, after, min
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t ARRIVAL
 

@@ -1,6 +1,5 @@
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport Doubles, Indices, after, indices_after
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.stepping.constraints.joint_rows cimport Elimination

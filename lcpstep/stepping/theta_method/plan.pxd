@@ -1,4 +1,3 @@
-from lcpstep.arrays cimport doubles
 from lcpstep.pointers cimport Doubles
 
 
