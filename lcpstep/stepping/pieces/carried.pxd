@@ -4,4 +4,4 @@ from lcpstep.kernels.record cimport Record
 cdef double PUT_BACK
 
 cdef void put_kept_back(Model m, Record record) noexcept nogil
-cdef void look(Model m, double t, double* still, double* c) noexcept
+cpdef displaced(Model m, double t)
