@@ -1,10 +1,11 @@
-"""What is compiled when the package is built: the modules with a `.pxd` file, from the very `.py` files beside these.
+"""What is compiled when the package is built: the modules with a `.pxd` file, from the `.py` files beside these.
 
 python setup.py build_ext --inplace     after a change: compiles what it concerns, in seconds
 """
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import importlib.util
 import itertools
@@ -24,6 +25,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = Path(__file__).resolve().parent
 DIGESTS = HERE / "build" / "digests"  # of what lies built beside its source, a file for each module
+SOURCES = "build/sources"  # as Cython reads them
 sys.path.insert(0, str(HERE))
 import ready  # noqa: E402
 
@@ -108,12 +110,39 @@ def is_built(ext: Module) -> bool:
 
 def digest(ext: Module) -> str:
     """A checksum: of Cython's version, of the options, of a module's source and of what that includes."""
-    found = [*create_dependency_tree().all_dependencies(ext.sources[0]), *ext.depends]
+    tree, source = create_dependency_tree(), ext.sources[0]
+    found = [*tree.all_dependencies(source), *tree.all_dependencies(in_c(source)), *ext.depends]
     places = HERE / "lcpstep", HERE / "build"
     mine = sorted({HERE / file for file in found if any(map((HERE / file).is_relative_to, places))})
     texts = [file.relative_to(HERE).as_posix().encode() + file.read_bytes() for file in mine]
     whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS)).encode(), *texts]
     return hashlib.sha256(b"\0".join(whole)).hexdigest()
+
+
+def in_c(source: str) -> str:
+    """The file that Cython reads in the place of a source: lines are the same, imports those of C (`cimporting`)."""
+    if source.endswith(".pyx"):
+        return source
+    file, text = HERE / SOURCES / source, cimporting((HERE / source).read_text(encoding="utf-8"))
+    if not file.exists() or file.read_text(encoding="utf-8") != text:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    return f"{SOURCES}/{source}"
+
+
+def cimporting(text: str) -> str:
+    """A kernel in which what it imports for where it is not compiled is cimported."""
+    lines = text.split("\n")
+    for block in ast.parse(text).body:
+        uncompiled = isinstance(block, ast.If) and ast.unparse(block.test) == "not cython.compiled"
+        if not uncompiled or not isinstance(block.body[0], ast.ImportFrom):
+            continue
+        lines[block.lineno - 1 : block.end_lineno] = [""] * (block.end_lineno - block.lineno + 1)
+        for node in block.body:
+            home = "libc.math" if node.module == "math" else node.module
+            names = ", ".join(ast.unparse(name) for name in node.names)
+            lines[node.lineno - 1] = f"from cython.cimports.{home} import {names}"
+    return "\n".join(lines)
 
 
 def has_compiler() -> bool:
@@ -164,14 +193,16 @@ def translate(modules: list[Module]) -> None:
     Done by the command that compiles, and not when this file is run: pip and build run it several times, to ask for
     requirements and metadata, each time in a process of its own.
     """
-    in_c = cythonize(
+    for module in modules:
+        module.sources = [in_c(source) for source in module.sources]
+    made = cythonize(
         modules,
         nthreads=os.cpu_count() or 1,
         force=True,
         compiler_directives=DIRECTIVES,
         build_dir="build/cython",
     )
-    sources = {made.name: made.sources for made in in_c}
+    sources = {module.name: module.sources for module in made}
     for module in modules:
         module.sources = sources[module.name]
 

@@ -11,6 +11,10 @@ cdef extern from *:
     long long bits "lcpstep_bits"(double x) noexcept nogil
     double double_of "lcpstep_double_of"(long long bits) noexcept nogil
 
+# Of a kind's fields several stand in a line so
+ctypedef double* Doubles
+ctypedef Py_ssize_t* Indices
+
 
 cdef inline double max(double a, double b) noexcept nogil:
     return b if b > a else a
@@ -20,11 +24,11 @@ cdef inline double min(double a, double b) noexcept nogil:
     return b if b < a else a
 
 
-cdef inline double* after(double* x, Py_ssize_t i) noexcept nogil:
+cdef inline Doubles after(Doubles x, Py_ssize_t i) noexcept nogil:
     return x + i
 
 
-cdef inline Py_ssize_t* indices_after(Py_ssize_t* x, Py_ssize_t i) noexcept nogil:
+cdef inline Indices indices_after(Indices x, Py_ssize_t i) noexcept nogil:
     return x + i
 
 

@@ -1,5 +1,3 @@
-from lcpstep.pointers cimport abs, after, bits, inf, max, min
-
 cdef long long MAGNITUDE
 
 # Named in C, for rows.h

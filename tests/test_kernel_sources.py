@@ -1,6 +1,7 @@
 """What Python and C read differently, in the sources of kernels; and what a `.pxd` says once more than the `.py`."""
 
 import ast
+import importlib.util
 import itertools
 import math
 import re
@@ -10,7 +11,7 @@ import pytest
 
 from lcpstep.kernels import quadratic, vectors
 from lcpstep.stepping.pieces import codes, times
-from tests.uncompiled import BUILT, HEADERS
+from tests.uncompiled import BUILT, HEADERS, ROOT
 
 
 def whole(node, integers):
@@ -42,6 +43,30 @@ def test_no_kernel_divides_integers(name):
 
 def test_a_division_of_integers_is_found():
     assert divisions("EARLY = 1 / 16\n\ndef f(n: int, m: int, x: float):\n    return n / m + x / n") == [1, 4]
+
+
+# --- what a kernel takes from others: said once, in the `.py` -----------------------------------------------------
+
+
+def test_what_a_kernel_imports_is_cimported_on_the_line_on_which_it_stood():
+    spec = importlib.util.spec_from_file_location("setup_of_lcpstep", ROOT.parent / "setup.py")
+    setup = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(setup)
+    source = "import cython\n\nif not cython.compiled:\n    from math import pow as power\n\n"
+    source += "    from lcpstep.pointers import (\n        abs,\n        max,\n    )\n\n"
+    source += "if not cython.compiled:\n    ONE = [0.0]\n"
+    read = ["import cython", "", "", "from cython.cimports.libc.math import pow as power", ""]
+    read += ["from cython.cimports.lcpstep.pointers import abs, max", "", "", "", ""]
+    assert setup.cimporting(source).split("\n") == [*read, "if not cython.compiled:", "    ONE = [0.0]", ""]
+
+
+@pytest.mark.parametrize("name", sorted(BUILT))
+def test_a_header_cimports_what_it_names_and_no_more(name):
+    lines = header(name).split("\n")
+    cimports = [re.match(r"from \S+ cimport (.+)", line) for line in lines]
+    rest = "\n".join(line for line in lines if " cimport " not in line)
+    names = [x.split()[-1] for found in cimports if found for x in found[1].split(",")]
+    assert [x for x in names if not re.search(rf"\b{x}\b", rest)] == []
 
 
 # --- modules that are merged into others: their functions are written in both files ------------------------------

@@ -1,7 +1,5 @@
 cimport cython
-from libc.math cimport hypot, sqrt
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport max, min
+from lcpstep.pointers cimport Doubles
 
 cdef double RESOLUTION, ROUNDING
 cdef Py_ssize_t LEAF, DEPTH, FIRST
@@ -12,9 +10,7 @@ cdef class Graph:
     cdef object kept
     cdef Py_ssize_t n, leaves
     cdef readonly double size
-    cdef double* x
-    cdef double* y
-    cdef double* boxes
+    cdef Doubles x, y, boxes
 
 
 cdef double farthest(

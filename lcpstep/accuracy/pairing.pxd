@@ -1,6 +1,3 @@
-from lcpstep.arrays cimport doubles, indices, small_numbers
-from lcpstep.pointers cimport abs
-
 cdef Py_ssize_t NEITHER, PAIR, SKIP
 
 cdef void fill_partners(

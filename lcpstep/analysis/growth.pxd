@@ -1,5 +1,1 @@
-from libc.math cimport log, sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.pointers cimport after, nan
-
 cdef void follow(double* J, double* e, double* growth, Py_ssize_t m, Py_ssize_t d) noexcept nogil

@@ -1,7 +1,4 @@
 cimport cython
-from libc.math cimport floor
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport after, inf, max, min, whole
 
 cdef double SLACK
 cdef Py_ssize_t BINS, NEXT, KINDS

@@ -1,8 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.audit.cells cimport Cells
 from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport abs, inf, max, min, nan
 
 cdef Py_ssize_t DEEPEST, MOST
 cdef double SLACK, ERRORS, TIMES

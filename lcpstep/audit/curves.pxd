@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices, small_numbers
-from lcpstep.audit.cells cimport Cells
-from lcpstep.audit.clear cimport Gap, between_corners, late, open_between
-from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport abs, after, indices_after, inf, max, min
+from lcpstep.audit.clear cimport Gap
+from lcpstep.pointers cimport Doubles
 
 cdef double ROUNDING, SECOND
 
@@ -12,9 +9,7 @@ cdef double ROUNDING, SECOND
 cdef class Curve(Gap):
     cdef readonly Py_ssize_t degree
     cdef object space
-    cdef double* x
-    cdef double* second
-    cdef double* part
+    cdef Doubles x, second, part
 
 cdef double casteljau(double* x, Py_ssize_t degree, double share, double* part) noexcept nogil
 cdef void differences(Curve g, double size) noexcept nogil

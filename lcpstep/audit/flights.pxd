@@ -1,11 +1,6 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.audit.clear cimport DEEPEST, MOST, beside, between_corners, late, open_between, rise, same_time
-from lcpstep.audit.parting cimport above, above_at_ends, parts_at_ends, rises, swung
-from lcpstep.audit.swing cimport Swing, driven
-from lcpstep.events.flight.motion cimport Flight, leave_from
-from lcpstep.pointers cimport abs, after, inf, max, min, nan
+from lcpstep.audit.swing cimport Swing
+from lcpstep.events.flight.motion cimport Flight
 
 cdef double SLACK, ROUNDING, PRESSING, BEFORE, HALF_TURN, ERRORS
 cdef Py_ssize_t UNKNOWN, PRESSED

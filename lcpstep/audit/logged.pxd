@@ -1,6 +1,4 @@
 cimport cython
-from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.pointers cimport inf, min, whole
 
 cdef double IMPACT, STICK, ACCUMULATION, RELEASE
 

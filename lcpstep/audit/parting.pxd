@@ -1,8 +1,6 @@
 cimport cython
-from lcpstep.audit.clear cimport rise
 from lcpstep.audit.swing cimport Swing
 from lcpstep.events.flight.motion cimport Flight
-from lcpstep.pointers cimport abs, inf, max, min
 
 cdef double SLACK, ROUNDING
 cdef Py_ssize_t DEEP

@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.kernels.acceleration cimport free_acceleration
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs, after, max, nan
 
 @cython.locals(n=Py_ssize_t, width=Py_ssize_t, n_q=Py_ssize_t, i=Py_ssize_t, k=Py_ssize_t, j=Py_ssize_t,
                h=double, start=double)

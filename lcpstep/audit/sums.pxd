@@ -1,6 +1,4 @@
 cimport cython
-from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t JUMP, RELEASED
 

@@ -1,9 +1,6 @@
 cimport cython
-from libc.math cimport cos, hypot, sin, sqrt
-from lcpstep.audit.cells cimport Cells
 from lcpstep.audit.clear cimport Gap
-from lcpstep.events.flight.motion cimport Flight, absolute
-from lcpstep.pointers cimport abs, nan
+from lcpstep.events.flight.motion cimport Flight
 
 cdef double SLACK
 

@@ -1,8 +1,5 @@
 cimport cython
-from libc.math cimport M_PI as pi, acos, atan2, cos, exp, floor, hypot, sin, sqrt
 
-from lcpstep.arrays cimport doubles
-from lcpstep.pointers cimport inf, max, min
 
 cdef Py_ssize_t IMPACT, ACCUMULATION, STICK, RELEASE, DONE, BUFFER_FULL, STEP_TOO_SMALL, DEGREE, MOST, COLUMNS
 cdef double SHORT, BEGIN, LOW, SOON, TOUCH, EPS, TINY, ROUNDING

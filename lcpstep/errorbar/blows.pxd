@@ -1,8 +1,6 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.errorbar.matching cimport ALIKE, NEAR, Log
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.errorbar.matching cimport Log
 
 cdef Py_ssize_t START, STOP, LATE_BY, IMPULSE, JUMP, OF_PAIR
 cdef Py_ssize_t FIRST, LAST, HARD, PUSH, OF_BLOW

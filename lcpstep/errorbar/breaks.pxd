@@ -1,6 +1,5 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles
 
 cdef double EARLIER, LATER
 cdef Py_ssize_t NODES

@@ -1,7 +1,5 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, small_numbers
-from lcpstep.pointers cimport abs, after, inf, max, min
 
 cdef double ROUNDING, EPS
 

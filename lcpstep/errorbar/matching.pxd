@@ -1,7 +1,6 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t IMPACT, ACCUMULATION
 cdef Py_ssize_t START, STOP, LATE_BY, IMPULSE, JUMP, OF_PAIR
@@ -13,11 +12,8 @@ cdef class Log:
     cdef readonly object times, impulses, jumps, contacts, kinds
     cdef readonly Py_ssize_t n
     cdef readonly double end
-    cdef double* time
-    cdef double* impulse
-    cdef double* jump
-    cdef Py_ssize_t* contact
-    cdef Py_ssize_t* kind
+    cdef Doubles time, impulse, jump
+    cdef Indices contact, kind
     cdef bint strikes(self, Py_ssize_t k) noexcept nogil
 
 @cython.locals(most=Py_ssize_t)

@@ -1,7 +1,3 @@
-from libc.math cimport ceil, floor
-
-from lcpstep.pointers cimport abs, inf, max, min
-
 cdef double OUT, TINY, TURN
 
 cdef double below(double x, double units) noexcept nogil

@@ -1,7 +1,4 @@
-from lcpstep.kernels.dynamics cimport mass, total_force
-from lcpstep.kernels.linear cimport positive_definite, solve_definite
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
 
 cdef bint free_acceleration(
     Model m, double t, double* q, double* v, double* M, double* y, double* a

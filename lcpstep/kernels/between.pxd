@@ -1,25 +1,11 @@
 cimport cython
 
-from lcpstep.arrays cimport doubles, indices, small_numbers
-
-cdef void find_rows(
-    Py_ssize_t n, double* t, Py_ssize_t count, double* times, Py_ssize_t least, Py_ssize_t most, Py_ssize_t* out
-) noexcept
-cdef void go_on_lines(
-    Py_ssize_t n, double* t, double* q, double* v, Py_ssize_t count, double* times, Py_ssize_t* rows, double* out,
-    double* out_t
-) noexcept
-@cython.locals(at_end=bint)
-cdef void go_on_parabolas(
-    Py_ssize_t n, Py_ssize_t last, double* t, double* q, double* v, bint bent, unsigned char* jumps, Py_ssize_t count,
-    double* times, Py_ssize_t* rows, double* out, double* out_t
-) noexcept
-@cython.locals(known=bint)
-cdef void accelerate(
-    Py_ssize_t n, Py_ssize_t last, double* t, double* q, double* v, double* a, Py_ssize_t count, double* times,
-    Py_ssize_t* rows, double* out, double* out_t
-) noexcept
-cdef void move_by_dense_output(
-    Py_ssize_t n, Py_ssize_t terms, double* t, double* q, double* v, double* length, double* F, Py_ssize_t count,
-    double* times, Py_ssize_t* rows, double* out, double* out_t
-) noexcept
+cpdef last_rows(object t, object times, Py_ssize_t least, Py_ssize_t most)
+@cython.locals(n=Py_ssize_t)
+cpdef on_lines(object t, object q, object v, object times, object rows)
+@cython.locals(n=Py_ssize_t, bent=bint, at_end=bint)
+cpdef on_parabolas(object t, object q, object v, object jumps, object times, object rows)
+@cython.locals(n=Py_ssize_t, known=bint)
+cpdef accelerated(object t, object q, object v, object a, object times, object rows)
+@cython.locals(n=Py_ssize_t, terms=Py_ssize_t)
+cpdef by_dense_output(object t, object q, object v, object length, object F, object times, object rows)

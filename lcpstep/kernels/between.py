@@ -13,32 +13,28 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices, small_numbers
-    from lcpstep.pointers import Doubles, Indices
 
 
 def last_rows(t: Any, times: Any, least: int, most: int) -> Any:
-    """Rows of the last kept state at or before each time (m,), none below `least` and none above `most`."""
+    """Rows of the last kept state at or before each time (m,), none below `least` and none above `most`.
+
+    From the row of the time before on, in longer and longer strides.
+    """
     count, n, found = len(times), len(t), np.empty(len(times), dtype=np.intp)
     kept, asked, out = doubles(t), doubles(times), indices(found)
-    find_rows(n, kept, count, asked, least, most, out)
-    return found
-
-
-def find_rows(n: int, t: Doubles, count: int, times: Doubles, least: int, most: int, out: Indices) -> None:
-    """Kernel of `last_rows`: from the row of the time before on, in longer and longer strides."""
     with cython.nogil:
         low = -1
         for j in range(count):
-            x, high, stride = times[j], low + 1, 1
-            if low >= 0 and not t[low] <= x:
+            x, high, stride = asked[j], low + 1, 1
+            if low >= 0 and not kept[low] <= x:
                 low, high = -1, low
-            while high < n and t[high] <= x:
+            while high < n and kept[high] <= x:
                 low, high, stride = high, high + stride, 2 * stride
             if high > n:
                 high = n
             while high - low > 1:
                 middle = (low + high) // 2
-                if t[middle] <= x:
+                if kept[middle] <= x:
                     low = middle
                 else:
                     high = middle
@@ -48,6 +44,7 @@ def find_rows(n: int, t: Doubles, count: int, times: Doubles, least: int, most: 
             if row < least:
                 row = least
             out[j] = row
+    return found
 
 
 def on_lines(t: Any, q: Any, v: Any, times: Any, rows: Any) -> tuple[Any, Any]:
@@ -56,23 +53,15 @@ def on_lines(t: Any, q: Any, v: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     found_q, found_v = np.empty((count, n)), np.empty((count, n))
     kept, x, x_t, asked, row = doubles(t), doubles(q), doubles(v), doubles(times), indices(rows)
     out, out_t = doubles(found_q), doubles(found_v)
-    go_on_lines(n, kept, x, x_t, count, asked, row, out, out_t)
-    return found_q, found_v
-
-
-def go_on_lines(
-    n: int, t: Doubles, q: Doubles, v: Doubles, count: int, times: Doubles, rows: Indices, out: Doubles,
-    out_t: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `on_lines`."""
     with cython.nogil:
         for j in range(count):
-            k = rows[j]
-            share = (times[j] - t[k]) / (t[k + 1] - t[k])
+            k = row[j]
+            share = (asked[j] - kept[k]) / (kept[k + 1] - kept[k])
             for i in range(n):
                 a, b = k * n + i, (k + 1) * n + i
-                out[j * n + i] = (1.0 - share) * q[a] + share * q[b]
-                out_t[j * n + i] = (1.0 - share) * v[a] + share * v[b]
+                out[j * n + i] = (1.0 - share) * x[a] + share * x[b]
+                out_t[j * n + i] = (1.0 - share) * x_t[a] + share * x_t[b]
+    return found_q, found_v
 
 
 def on_parabolas(t: Any, q: Any, v: Any, jumps: Any, times: Any, rows: Any) -> tuple[Any, Any]:
@@ -86,29 +75,21 @@ def on_parabolas(t: Any, q: Any, v: Any, jumps: Any, times: Any, rows: Any) -> t
     found_q, found_v = np.empty((count, n)), np.empty((count, n))
     kept, x, x_t, jumped = doubles(t), doubles(q), doubles(v), small_numbers(jumps)
     asked, row, out, out_t = doubles(times), indices(rows), doubles(found_q), doubles(found_v)
-    go_on_parabolas(n, last, kept, x, x_t, bent, jumped, count, asked, row, out, out_t)
-    return found_q, found_v
-
-
-def go_on_parabolas(
-    n: int, last: int, t: Doubles, q: Doubles, v: Doubles, bent: bool, jumps: Any, count: int, times: Doubles,
-    rows: Indices, out: Doubles, out_t: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `on_parabolas`."""
     with cython.nogil:
         for j in range(count):
-            k = rows[j]
-            at_end, tau, length = times[j] == t[last], times[j] - t[k], t[k + 1] - t[k]
-            share = tau / length if bent and not at_end and not jumps[k + 1] else 0.0
+            k = row[j]
+            at_end, tau, length = asked[j] == kept[last], asked[j] - kept[k], kept[k + 1] - kept[k]
+            share = tau / length if bent and not at_end and not jumped[k + 1] else 0.0
             for i in range(n):
-                q0, q1, v0 = q[k * n + i], q[(k + 1) * n + i], v[k * n + i]
+                q0, q1, v0 = x[k * n + i], x[(k + 1) * n + i], x_t[k * n + i]
                 half = (q1 - q0 - length * v0) / (length * length)
-                out[j * n + i] = q[last * n + i] if at_end else q0 + tau * (v0 + tau * half)
-                rate = v[last * n + i] if at_end else v0 + 2.0 * tau * half
+                out[j * n + i] = x[last * n + i] if at_end else q0 + tau * (v0 + tau * half)
+                rate = x_t[last * n + i] if at_end else v0 + 2.0 * tau * half
                 if share != 0.0:
                     arrives = 2.0 * (q1 - q0) / length - v0  # the parabola's velocity at the end of the step
-                    rate += share * share * (v[(k + 1) * n + i] - arrives)
+                    rate += share * share * (x_t[(k + 1) * n + i] - arrives)
                 out_t[j * n + i] = rate
+    return found_q, found_v
 
 
 def accelerated(t: Any, q: Any, v: Any, a: Any, times: Any, rows: Any) -> tuple[Any, Any]:
@@ -117,23 +98,15 @@ def accelerated(t: Any, q: Any, v: Any, a: Any, times: Any, rows: Any) -> tuple[
     found_q, found_v = np.empty((count, n)), np.empty((count, n))
     kept, x, x_t, own = doubles(t), doubles(q), doubles(v), doubles(a)
     asked, row, out, out_t = doubles(times), indices(rows), doubles(found_q), doubles(found_v)
-    accelerate(n, last, kept, x, x_t, own, count, asked, row, out, out_t)
-    return found_q, found_v
-
-
-def accelerate(
-    n: int, last: int, t: Doubles, q: Doubles, v: Doubles, a: Doubles, count: int, times: Doubles,
-    rows: Indices, out: Doubles, out_t: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `accelerated`."""
     with cython.nogil:
         for j in range(count):
-            k = rows[j] * n
-            tau, known = times[j] - t[rows[j]], times[j] < t[last]
+            k = row[j] * n
+            tau, known = asked[j] - kept[row[j]], asked[j] < kept[last]
             for i in range(n):
-                own = a[k + i] if known else 0.0
-                out[j * n + i] = q[k + i] + tau * (v[k + i] + 0.5 * tau * own)
-                out_t[j * n + i] = v[k + i] + tau * own
+                bend = own[k + i] if known else 0.0
+                out[j * n + i] = x[k + i] + tau * (x_t[k + i] + 0.5 * tau * bend)
+                out_t[j * n + i] = x_t[k + i] + tau * bend
+    return found_q, found_v
 
 
 def by_dense_output(t: Any, q: Any, v: Any, length: Any, F: Any, times: Any, rows: Any) -> tuple[Any, Any]:
@@ -142,28 +115,20 @@ def by_dense_output(t: Any, q: Any, v: Any, length: Any, F: Any, times: Any, row
     found_q, found_v = np.empty((count, n)), np.empty((count, n))
     kept, x, x_t, long, own = doubles(t), doubles(q), doubles(v), doubles(length), doubles(F)
     asked, row, out, out_t = doubles(times), indices(rows), doubles(found_q), doubles(found_v)
-    move_by_dense_output(n, terms, kept, x, x_t, long, own, count, asked, row, out, out_t)
-    return found_q, found_v
-
-
-def move_by_dense_output(
-    n: int, terms: int, t: Doubles, q: Doubles, v: Doubles, length: Doubles, F: Doubles, count: int,
-    times: Doubles, rows: Indices, out: Doubles, out_t: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `by_dense_output`."""
     with cython.nogil:
         for j in range(count):
-            k = rows[j]
-            tau = times[j] - t[k]
-            share = tau / length[k] if length[k] > 0.0 else tau
+            k = row[j]
+            tau = asked[j] - kept[k]
+            share = tau / long[k] if long[k] > 0.0 else tau
             for i in range(2 * n):
                 moved = 0.0
                 for term in range(terms):
                     factor = share if term % 2 == 0 else 1.0 - share
-                    moved = (moved + F[(k * terms + terms - 1 - term) * 2 * n + i]) * factor
+                    moved = (moved + own[(k * terms + terms - 1 - term) * 2 * n + i]) * factor
                 if tau == 0.0:
                     moved = 0.0
                 if i < n:
-                    out[j * n + i] = q[k * n + i] + moved
+                    out[j * n + i] = x[k * n + i] + moved
                 else:
-                    out_t[j * n + i - n] = v[k * n + i - n] + moved
+                    out_t[j * n + i - n] = x_t[k * n + i - n] + moved
+    return found_q, found_v

@@ -1,5 +1,4 @@
 cimport cython
-from lcpstep.pointers cimport abs, inf, max, min
 
 cdef Py_ssize_t MOST
 cdef double LITTLE

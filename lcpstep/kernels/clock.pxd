@@ -1,8 +1,5 @@
-from libc.math cimport floor
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport abs, inf, max, min
 
 cdef double RESOLUTION, NUDGE
 

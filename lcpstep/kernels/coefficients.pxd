@@ -1,7 +1,5 @@
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.function cimport Function
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.pointers cimport after, indices_after, inf
+from lcpstep.pointers cimport Doubles, Indices
 
 
 cdef class Coefficients:
@@ -9,11 +7,8 @@ cdef class Coefficients:
     cdef readonly bint varies, two, fixed
     cdef Py_ssize_t n_c, wrong
     cdef double slip
-    cdef double* sliding
-    cdef double* sticking
-    cdef double* rest
-    cdef Py_ssize_t* rough
-    cdef Py_ssize_t* tried
+    cdef Doubles sliding, sticking, rest
+    cdef Indices rough, tried
     cdef Function function
     cdef bint measure(self, double t, double* q, double* u) noexcept nogil
     cdef void use(self, double* mu) noexcept nogil

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.lcp.kernel cimport solve_small
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef double DEGENERATE, ROUNDING
 cdef Py_ssize_t SOLVED
@@ -12,17 +9,8 @@ cdef Py_ssize_t SOLVED
 cdef class ContactProblem:
     cdef readonly object arrays
     cdef object lists
-    cdef double* mobility
-    cdef double* rate
-    cdef double* impulse
-    cdef double* mu
-    cdef double* W
-    cdef double* b
-    cdef double* z
-    cdef double* slow
-    cdef double* sum
-    cdef Py_ssize_t* ids
-    cdef Py_ssize_t* carrier
+    cdef Doubles mobility, rate, impulse, mu, W, b, z, slow, sum
+    cdef Indices ids, carrier
     cdef bint warm
     cdef Workspace work
 

@@ -1,8 +1,5 @@
 cimport cython
-from libc.math cimport cos, pow, sin, sqrt
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, inf, max, min
 
 cdef double DIFFERENCE, REACH, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
 cdef Py_ssize_t SHORTENINGS, TURNS

@@ -1,8 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.kernels.coulomb cimport ContactProblem, solve_contacts
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.kernels.coulomb cimport ContactProblem
 
 cdef Py_ssize_t PHASES, TURNS
 cdef double LOCKED, LEFT, LIKE, ROUNDING

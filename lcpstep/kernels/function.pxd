@@ -1,6 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport Callback, after, callback_at, nan
+from lcpstep.pointers cimport Callback
 
 
 @cython.final

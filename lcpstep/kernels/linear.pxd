@@ -1,6 +1,3 @@
-from libc.math cimport sqrt
-from lcpstep.pointers cimport abs
-
 cdef double DEPENDENT
 
 cdef bint factorise(double* A, Py_ssize_t* pivots, Py_ssize_t n) noexcept nogil

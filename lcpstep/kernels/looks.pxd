@@ -1,10 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport abs, after, inf, max, min, whole
 
 @cython.locals(found=bint, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, before=Py_ssize_t)
 cdef bint find_inside(

@@ -1,7 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.function cimport Function, Functions
-from lcpstep.pointers cimport after
+from lcpstep.pointers cimport Doubles
 
 
 @cython.final
@@ -14,19 +13,6 @@ cdef class Model:
     cdef Functions modes
     cdef public bint carried
     cdef readonly double omega
-    cdef double* M
-    cdef double* M_inverse
-    cdef double* C
-    cdef double* K
-    cdef double* constant
-    cdef double* cosine
-    cdef double* sine
-    cdef double* G
-    cdef double* offset
-    cdef double* restitution
-    cdef double* frame_now
-    cdef double* motion_now
-    cdef double* x
-    cdef double* x_t
-    cdef double* mass_now
+    cdef Doubles M, M_inverse, C, K, constant, cosine, sine, G, offset, restitution, frame_now, motion_now, x
+    cdef Doubles x_t, mass_now
     cdef readonly Function force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias

@@ -1,16 +1,8 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport gap_rates, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport abs, after, max
 
 @cython.locals(i=Py_ssize_t, k=Py_ssize_t, best=Py_ssize_t)
-cdef void find_steepest(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* impulse, double longest, Py_ssize_t parts,
-    double* work, double* out
-) noexcept
+cpdef steepest(Model m, object t, object q, object v, object impulse, double longest, Py_ssize_t parts)
 @cython.locals(i=Py_ssize_t, j=Py_ssize_t, c=Py_ssize_t)
 cdef void weigh(
     Model m, Py_ssize_t k, double* t, double* q, double* v, double* impulse, double* work, double* out

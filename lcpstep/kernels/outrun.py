@@ -30,30 +30,21 @@ def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, par
     -------
     energy at its end over what it may be, the number of the state before it, and the energies at both its ends
     """
-    count, work, found = len(t), np.zeros(m.n_c * (m.n_q + 2) + 3 * m.n_q), np.zeros(4)
-    at, x, x_t, pushes = doubles(t), doubles(q), doubles(v), doubles(impulse)
-    own, out = doubles(work), doubles(found)
-    find_steepest(m, count, at, x, x_t, pushes, longest, parts, own, out)
-    return found
-
-
-def find_steepest(
-    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, longest: float, parts: int,
-    work: Doubles, out: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `steepest`."""
-    n, steps = m.n_q, count - 1
+    n, steps, space, found = m.n_q, len(t) - 1, np.zeros(m.n_c * (m.n_q + 2) + 3 * m.n_q), np.zeros(4)
+    at, x, rates, pushes = doubles(t), doubles(q), doubles(v), doubles(impulse)
+    work, out = doubles(space), doubles(found)
     with cython.nogil:
         for i in range(parts):
-            most, best, x_t = 0.0, -1, after(v, i * steps // parts * n)
+            most, best, x_t = 0.0, -1, after(rates, i * steps // parts * n)
             speed = product(x_t, x_t, 0, n)
             for k in range(i * steps // parts, (i + 1) * steps // parts):
-                x_t, before = after(v, (k + 1) * n), speed
+                x_t, before = after(rates, (k + 1) * n), speed
                 speed = product(x_t, x_t, 0, n)
-                if not speed - before <= most and 0.0 < t[k + 1] - t[k] <= longest:
+                if not speed - before <= most and 0.0 < at[k + 1] - at[k] <= longest:
                     most, best = speed - before, k
             if best >= 0:
-                weigh(m, best, t, q, v, impulse, work, out)
+                weigh(m, best, at, x, rates, pushes, work, out)
+    return found
 
 
 def weigh(

@@ -1,10 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport divide_by_mass, free_acceleration
-from lcpstep.kernels.dynamics cimport bias, gap_rates
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport after, inf
+from lcpstep.pointers cimport Doubles
 
 
 @cython.final
@@ -12,9 +8,4 @@ cdef class Point:
     cdef object numbers
     cdef Model m
     cdef Py_ssize_t n
-    cdef double* M
-    cdef double* work
-    cdef double* G
-    cdef double* shifted
-    cdef double* rate
-    cdef double* out
+    cdef Doubles M, work, G, shifted, rate, out

@@ -1,7 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.vectors cimport add, copy
-from lcpstep.pointers cimport after, inf, whole
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t TIME, MODE, LENGTH, LEAD, COLUMNS
 
@@ -12,10 +10,7 @@ cdef class Record:
     cdef readonly Py_ssize_t n_q, n_c, n_times, row_size, row_capacity, event_capacity, dense_size
     cdef public Py_ssize_t every, row, event, next_time
     cdef public bint on_events
-    cdef double* times
-    cdef double* rows
-    cdef double* events
-    cdef double* dense
+    cdef Doubles times, rows, events, dense
     cdef double* last_row(self) noexcept nogil
     cdef double* dense_row(self, Py_ssize_t row) noexcept nogil
     cdef void keep(self, double t, double mode, double* q, double* v, double* impulse) noexcept nogil

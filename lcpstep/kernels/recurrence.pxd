@@ -1,5 +1,3 @@
-from lcpstep.pointers cimport abs, max
-
 cdef double RETURNS, FOR_EVER, CERTAIN
 
 cdef bint looks_back(Py_ssize_t turn) noexcept nogil

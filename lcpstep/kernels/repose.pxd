@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.kernels.coulomb cimport ContactProblem, motion_of
-from lcpstep.kernels.vectors cimport clear
-from lcpstep.lcp.kernel cimport solve_small
-from lcpstep.pointers cimport abs
+from lcpstep.kernels.coulomb cimport ContactProblem
 
 cdef double AT_REST
 cdef Py_ssize_t SOLVED

@@ -1,9 +1,5 @@
 cimport cython
-from libc.math cimport pow, sqrt
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport abs, after, inf, max, min
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS, NEEDED_LATER
 cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE
@@ -18,18 +14,8 @@ cdef class RungeKutta:
     cdef public Py_ssize_t evaluations
     cdef Py_ssize_t refused, stage
     cdef double stretch_end
-    cdef Py_ssize_t* needed
-    cdef double* A
-    cdef double* C
-    cdef double* D
-    cdef double* E3
-    cdef double* E5
-    cdef double* y
-    cdef double* y_new
-    cdef double* y_stage
-    cdef double* first
-    cdef double* K
-    cdef double* F
+    cdef Indices needed
+    cdef Doubles A, C, D, E3, E5, y, y_new, y_stage, first, K, F
     cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
     cdef void begin(self, double next_step) noexcept nogil
     @cython.locals(truncated=bint, again=bint, good=bint, known=bint, error=double)

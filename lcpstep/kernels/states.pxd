@@ -1,26 +1,9 @@
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport divide_by_mass, free_acceleration
-from lcpstep.kernels.dynamics cimport gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport after, max, min, nan
 
-cdef void find_extremes(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* g, double* low, double* high
-) noexcept
-cdef void find_gaps(Model m, Py_ssize_t count, double* t, double* q, double* v, double* out) noexcept
-cdef void find_rates(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* G, double* g_t, bint moved, double* out
-) noexcept
-cdef void find_power(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* M, double* f, double* kinetic, double* power
-) noexcept
-cdef void find_energy(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* M, double* out
-) noexcept
-cdef void find_accelerations(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* work, double* out
-) noexcept
-cdef void find_responses(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double* rates, double* work, double* G, double* MG
-) noexcept
+cpdef extremes(Model m, object t, object q, object v)
+cpdef gaps_at(Model m, object t, object q)
+cpdef own_rates(Model m, object t, object q, object v, bint moved)
+cpdef power(Model m, object t, object q, object v)
+cpdef energy(Model m, object t, object q, object v)
+cpdef accelerations(Model m, object t, object q, object v)
+cpdef responses(Model m, object t, object q, object v)

@@ -1,8 +1,6 @@
 cimport cython
 from lcpstep.kernels.coefficients cimport Coefficients
-from lcpstep.kernels.coulomb cimport ContactProblem, motion_of, solve_contacts
-from lcpstep.kernels.repose cimport moves, stay
-from lcpstep.kernels.vectors cimport clear
+from lcpstep.kernels.coulomb cimport ContactProblem
 
 cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY
 

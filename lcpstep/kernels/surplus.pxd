@@ -1,11 +1,6 @@
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport mass, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs, after, max
 
-cdef void add_up(
-    Model m, Py_ssize_t count, double* t, double* q, double* v, double near, double* work, double* out
-) noexcept
+cpdef surplus(Model m, object t, object q, object v, double near)
 cdef double kinetic(Model m, double t, double* q, double* v, double* M) noexcept nogil
 cdef double power(
     Model m, double t, double* q, double* v, double near, double* work, double* out

@@ -27,39 +27,25 @@ def surplus(m: Model, t: Any, q: Any, v: Any, near: float) -> Any:
     The sum of what they gain and the sum of |W|; the largest of T, of f^T M^-1 f / 2 and of q^T M q / 2, the last two
     with the diagonal of M alone: sizes, which tell rounding. near : step of the differences of M(t, q) [s]
     """
-    count, sums, work = len(t) // 2, np.zeros(5), np.zeros(m.n_q * m.n_q + 3 * m.n_q)
-    at, x, x_t, room, out = doubles(t), doubles(q), doubles(v), doubles(work), doubles(sums)
-    add_up(m, count, at, x, x_t, near, room, out)
-    return sums
-
-
-def add_up(
-    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, near: float, work: Doubles, out: Doubles
-) -> None:
-    """Kernel of `surplus`."""
+    n, count, sums, space = m.n_q, len(t) // 2, np.zeros(5), np.zeros(m.n_q * m.n_q + 3 * m.n_q)
+    at, x, rates, work, out = doubles(t), doubles(q), doubles(v), doubles(space), doubles(sums)
+    middle, rate = after(work, n * n + n), after(work, n * n + 2 * n)
     with cython.nogil:
-        n = m.n_q
-        middle, rate = after(work, n * n + n), after(work, n * n + 2 * n)
         for k in range(count):
-            q0, q1, v0, v1 = (
-                after(q, 2 * k * n),
-                after(q, (2 * k + 1) * n),
-                after(v, 2 * k * n),
-                after(v, (2 * k + 1) * n),
-            )
-            h = t[2 * k + 1] - t[2 * k]
-            T0, T1 = kinetic(m, t[2 * k], q0, v0, work), kinetic(m, t[2 * k + 1], q1, v1, work)
-            P0, P1 = (
-                power(m, t[2 * k], q0, v0, near, work, out),
-                power(m, t[2 * k + 1], q1, v1, near, work, out),
-            )
+            q0, q1 = after(x, 2 * k * n), after(x, (2 * k + 1) * n)
+            v0, v1 = after(rates, 2 * k * n), after(rates, (2 * k + 1) * n)
+            t0, t1 = at[2 * k], at[2 * k + 1]
+            h = t1 - t0
+            T0, T1 = kinetic(m, t0, q0, v0, work), kinetic(m, t1, q1, v1, work)
+            P0, P1 = power(m, t0, q0, v0, near, work, out), power(m, t1, q1, v1, near, work, out)
             for i in range(n):
                 middle[i] = 0.5 * (q0[i] + q1[i]) - 0.125 * h * (v1[i] - v0[i])
                 rate[i] = 1.5 * (q1[i] - q0[i]) / h - 0.25 * (v0[i] + v1[i])
-            P = power(m, t[2 * k] + 0.5 * h, middle, rate, near, work, out)
+            P = power(m, t0 + 0.5 * h, middle, rate, near, work, out)
             out[0] += T1 - T0 - h * (P0 + 4.0 * P + P1) / 6.0
             out[1] += h * (abs(P0) + 4.0 * abs(P) + abs(P1)) / 6.0
             out[2] = max(out[2], max(T0, T1))
+    return sums
 
 
 def kinetic(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles) -> float:

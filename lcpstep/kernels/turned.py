@@ -31,33 +31,24 @@ def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float
     -------
     cosine of the angle, the number of the state before the step, and the row; 1, 0 and 0 where there is none
     """
-    count, work, found = len(t), np.zeros((2 * m.n_q + 1) * m.n_c + (m.n_q + 1) * m.n_q), np.zeros(3)
-    at, x, x_t, own, out = doubles(t), doubles(q), doubles(v), doubles(work), doubles(found)
-    pushed = own if impulse is None else doubles(impulse)
-    find_turned(m, count, at, x, x_t, pushed, impulse is None, longest, parts, own, out)
-    return found
-
-
-def find_turned(
-    m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, always: bool, longest: float,
-    parts: int, work: Doubles, out: Doubles,
-) -> None:  # fmt: skip
-    """Kernel of `farthest_turn`."""
-    n, steps = m.n_q, count - 1
+    n, steps, always, found = m.n_q, len(t) - 1, impulse is None, np.array([1.0, 0.0, 0.0])
+    space = np.zeros((2 * m.n_q + 1) * m.n_c + (m.n_q + 1) * m.n_q)
+    at, x, rates, work, out = doubles(t), doubles(q), doubles(v), doubles(space), doubles(found)
+    pushed = work if always else doubles(impulse)
     with cython.nogil:
-        out[0], out[1], out[2] = 1.0, 0.0, 0.0
         for i in range(parts):
-            fastest, best, x_t = -1.0, -1, after(v, i * steps // parts * n)
+            fastest, best, x_t = -1.0, -1, after(rates, i * steps // parts * n)
             speed = product(x_t, x_t, 0, n)
             for k in range(i * steps // parts, (i + 1) * steps // parts):
-                x_t, before = after(v, (k + 1) * n), speed
+                x_t, before = after(rates, (k + 1) * n), speed
                 speed = product(x_t, x_t, 0, n)
-                if before + speed > fastest and 0.0 < t[k + 1] - t[k] <= longest:
+                if before + speed > fastest and 0.0 < at[k + 1] - at[k] <= longest:
                     for c in range(m.n_c):
-                        if always or pressed(impulse, k * m.n_c + c, m.n_c):
+                        if always or pressed(pushed, k * m.n_c + c, m.n_c):
                             fastest, best = before + speed, k
             if best >= 0:
-                look(m, best, t, q, v, impulse, always, work, out)
+                look(m, best, at, x, rates, pushed, always, work, out)
+    return found
 
 
 def pressed(impulse: Doubles, i: int, n_c: int) -> bool:

@@ -1,7 +1,4 @@
-from lcpstep.lcp.elimination cimport invert
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, after, max
-from lcpstep.rows cimport copy, dot, subtract
 
 cdef double DRIFT
 

@@ -1,12 +1,4 @@
-from lcpstep.arrays cimport are_doubles, doubles, indices
-from lcpstep.lcp.enumeration cimport enumerate_bases, enumerate_vertices
-from lcpstep.lcp.judge cimport judge
-from lcpstep.lcp.kernel cimport solve_dense
-from lcpstep.lcp.scaling cimport all_finite
-from lcpstep.lcp.small cimport solve_closed
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport after, max
-from lcpstep.rows cimport copy
 
 cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, MAX_ITERATIONS, PER_UNKNOWN, RAY, SOLVED, NOT_FINITE, TINY, LARGEST_KEPT, LARGEST_ENUMERATION
 

@@ -1,6 +1,4 @@
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, after
-from lcpstep.rows cimport dot, subtract
 
 cdef double SINGULAR, PREFERENCE
 

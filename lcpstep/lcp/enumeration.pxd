@@ -1,8 +1,4 @@
-from lcpstep.lcp.elimination cimport back_substitute, factorise
-from lcpstep.lcp.judge cimport judge
-from lcpstep.lcp.principal cimport clip, solve_chosen
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t FAILED, MAX_ITERATIONS, SOLVED
 

@@ -1,7 +1,4 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.pointers cimport abs, after, inf, max, min
-from lcpstep.rows cimport both_sums
 
 cdef double EPSILON, ROUNDING, LITTLE, LOST
 

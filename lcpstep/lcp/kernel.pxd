@@ -1,15 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.lcp.enumeration cimport enumerate_bases, enumerate_vertices
-from lcpstep.lcp.judge cimport judge, proves_infeasible
-from lcpstep.lcp.lemke cimport lemke
-from lcpstep.lcp.principal cimport exchange_indices
-from lcpstep.lcp.scaling cimport equilibrate
-from lcpstep.lcp.small cimport solve_closed
-from lcpstep.lcp.tableau cimport correct, mark_basis, pivot_tableau
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, max, min
-from lcpstep.rows cimport copy
 
 cdef Py_ssize_t ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, FEW, EXCHANGES, LAST_EXCHANGES, SPREADING, MOST, STARTS, FEWEST_STARTS, STRIDE, PER_SQUARE, THOROUGH, PATIENT, MULTIPLIER, MODULUS, SIXTHS, TINY
 cdef double TOLERANCE, STRICT, ALMOST, SMALLEST_PIVOT, LARGER_PIVOT

@@ -1,7 +1,4 @@
-from lcpstep.lcp.basis cimport pivot, refactorise, set_direction
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, after, inf, max, min
-from lcpstep.rows cimport subtract
 
 cdef Py_ssize_t FAILED, MAX_ITERATIONS, RAY, SOLVED, NOTHING
 cdef double TIE

@@ -1,6 +1,3 @@
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.pointers cimport max
-
 cdef Py_ssize_t MAX_ITERATIONS, SOLVED, SWEEPS, BETWEEN
 
 cdef void sweep(

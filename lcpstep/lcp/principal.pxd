@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.lcp.elimination cimport back_substitute, factorise
-from lcpstep.lcp.judge cimport judge, share
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, max
-from lcpstep.rows cimport copy
 
 cdef Py_ssize_t FAILED, MAX_ITERATIONS, SOLVED, REFINEMENTS, PATIENCE
 cdef double ROUNDING, UNDECIDED, NOISE

@@ -1,6 +1,4 @@
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, after, bits, double_of, max
-from lcpstep.rows cimport largest_magnitude, raise_to
 
 cdef long long INFINITE, LARGEST_POWER, SMALLEST_POWER
 cdef int MANTISSA

@@ -1,6 +1,3 @@
-from lcpstep.lcp.judge cimport judge
-from lcpstep.pointers cimport inf
-
 cdef double ROUNDING
 
 cdef double solve_closed(

@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.lcp.judge cimport judge
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport abs, after, indices_after, inf, max
-from lcpstep.rows cimport add_four, copy, largest_entry, lowest_entry, multiply, ratios, subtract
 
 cdef Py_ssize_t MAX_ITERATIONS, RAY, SOLVED, CORRECTIONS, MOST, CACHED, LARGE, NOTHING
 cdef double SMALLEST_PIVOT, TIE, ROUNDING

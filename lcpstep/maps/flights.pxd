@@ -1,10 +1,7 @@
 cimport cython
 from lcpstep.events.flight.loop cimport Course
 from lcpstep.events.flight.motion cimport Flight
-from lcpstep.kernels.record cimport COLUMNS
 from lcpstep.maps.answers cimport Answers
-from lcpstep.maps.tangent cimport along_events, begin_tangent, carry
-from lcpstep.pointers cimport abs, after, max
 
 cdef Py_ssize_t BUFFER_FULL, DONE, IMPACT, STICK, INSIDE, UNREACHED, NO_LIMIT, KICKS
 cdef double ON_THE_SURFACE, KICK

@@ -1,12 +1,8 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport external_force, obstacle
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
 from lcpstep.maps.answers cimport Answers
-from lcpstep.pointers cimport max
+from lcpstep.pointers cimport Doubles
 from lcpstep.stepping.theta_method.plan cimport Plan
-
 
 
 @cython.final
@@ -15,17 +11,7 @@ cdef class Lanes:
     cdef object space, own
     cdef Py_ssize_t n
     cdef double h, theta, A_f, A_q, A_v, A_g, W
-    cdef double* q
-    cdef double* v
-    cdef double* g
-    cdef double* u
-    cdef double* p
-    cdef double* before
-    cdef double* slack
-    cdef double* nobody
-    cdef double* force
-    cdef double* closed
-    cdef double* free
+    cdef Doubles q, v, g, u, p, before, slack, nobody, force, closed, free
     cpdef void take(self, Plan plan)
 
 

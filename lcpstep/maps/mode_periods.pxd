@@ -1,12 +1,10 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.field cimport Machine, approaches, field, guard_gradient, scalar
+from lcpstep.events.hybrid.field cimport Machine
 from lcpstep.events.hybrid.loop cimport Switching
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.maps.saltation.switches cimport Tangent, walk
+from lcpstep.maps.saltation.switches cimport Tangent
 from lcpstep.kernels.function cimport Functions
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, after, indices_after, max, whole
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ARRIVE, NOT_SLIDING, SWITCH_LEAD, BUFFER_FULL, DONE, NOT_FINITE, UNREACHED, UNKNOWN, NO_LIMIT
 cdef double ON_SURFACE
@@ -19,7 +17,7 @@ cdef class Placing:
     cdef object out_array, called
     cdef bint asked
     cdef Py_ssize_t sliding
-    cdef double* out
+    cdef Doubles out
     cdef Py_ssize_t place(self, double t, double* x) noexcept nogil
 
 
@@ -34,22 +32,8 @@ cdef class Follow:
     cdef readonly Py_ssize_t runs, run, taken, period
     cdef Py_ssize_t n, mode, drop, periods, n_targets, kept, most
     cdef readonly double t_start, t_end
-    cdef double* x
-    cdef double* rate
-    cdef double* g_x
-    cdef double* starts
-    cdef double* targets
-    cdef double* radius
-    cdef double* scale
-    cdef double* states
-    cdef double* tangents
-    cdef double* impacts
-    cdef double* landings
-    cdef double* final
-    cdef Py_ssize_t* counts
-    cdef Py_ssize_t* reached
-    cdef Py_ssize_t* run_taken
-    cdef Py_ssize_t* codes
+    cdef Doubles x, rate, g_x, starts, targets, radius, scale, states, tangents, impacts, landings, final
+    cdef Indices counts, reached, run_taken, codes
 
 
 cpdef Py_ssize_t follow(Follow f, Py_ssize_t until)

@@ -1,9 +1,5 @@
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.events.flight.motion cimport Flight
-from lcpstep.events.flight.oscillator cimport fundamental
-from lcpstep.events.flight.rest cimport alpha_at
-from lcpstep.kernels.record cimport COLUMNS, Record
-from lcpstep.pointers cimport after, nan
+from lcpstep.kernels.record cimport Record
 
 cdef Py_ssize_t IMPACT, STICK
 

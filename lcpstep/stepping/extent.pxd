@@ -1,14 +1,10 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport free_acceleration
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport finite, largest
-from lcpstep.pointers cimport abs, after, max
 
-cdef double longest_way(
-    Model m, double t, double* q, double* v, double step, double piece, double* inverse, bint pushed, double* work
-) noexcept
-cdef double of_places(Model m, double* q, double* v, double step) noexcept
+cpdef double extent(
+    Model m, double t, object q, object v, double step, double piece, object implicit, bint pushed
+)
+cpdef double places(Model m, object q, object v, double step)
 cdef double displacement(Model m, double t, double* q, double* v, double h, double* work) noexcept
 cdef double driven(Model m, double t, double* q, double* v, double h, double* implicit, double* work) noexcept
 cpdef bint is_stiff(Model m)

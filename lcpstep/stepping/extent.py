@@ -23,33 +23,21 @@ def extent(
     implicit : (n_q, n_q)   (M + h/2 C + h^2/4 K)^-1 of a linear system
     pushed : whether forces are looked at too
     """
-    work = np.zeros(6 * m.n_q + m.n_q * m.n_q)
-    at, at_rate, inverse, own = doubles(q), doubles(v), doubles(implicit), doubles(work)
-    return float(longest_way(m, t, at, at_rate, step, piece, inverse, pushed, own))
-
-
-def longest_way(
-    m: Model, t: float, q: Doubles, v: Doubles, step: float, piece: float, inverse: Doubles,
-    pushed: bool, work: Doubles,
-) -> float:  # fmt: skip
-    """Kernel of `extent`."""
-    found = of_places(m, q, v, step)
+    space = np.zeros(6 * m.n_q + m.n_q * m.n_q)
+    at, at_rate, inverse, work = doubles(q), doubles(v), doubles(implicit), doubles(space)
+    found = places(m, q, v, step)
     if m.flat:
-        found = max(found, displacement(m, t, q, v, piece, work))
+        found = max(found, displacement(m, t, at, at_rate, piece, work))
         if pushed:
-            found = max(found, driven(m, t, q, v, piece, inverse, work))
+            found = max(found, driven(m, t, at, at_rate, piece, inverse, work))
     return found
 
 
 def places(m: Model, q: Any, v: Any, step: float) -> float:
     """The largest of places, offsets and ways within a step that v leads along [m]."""
     at, at_rate = doubles(q), doubles(v)
-    return float(of_places(m, at, at_rate, step))
-
-
-def of_places(m: Model, q: Doubles, v: Doubles, step: float) -> float:
-    """Kernel of `places`."""
-    return largest(m.offset, max(largest(q, 0.0, m.n_q), step * largest(v, 0.0, m.n_q)), m.n_c)
+    found = max(largest(at, 0.0, m.n_q), step * largest(at_rate, 0.0, m.n_q))
+    return largest(m.offset, found, m.n_c)
 
 
 def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Doubles) -> float:

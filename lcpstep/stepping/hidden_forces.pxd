@@ -1,5 +1,3 @@
-from lcpstep.pointers cimport abs, max, min
-
 cdef double UNSURE
 
 cdef double late(

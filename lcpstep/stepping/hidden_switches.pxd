@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport clear, product
-from lcpstep.pointers cimport abs, after, indices_after, max, min
-from lcpstep.stepping.hidden_forces cimport hidden, late
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
@@ -14,13 +11,8 @@ cdef double STICKS
 cdef class Switches:
     cdef object kept
     cdef readonly Py_ssize_t n_c, n
-    cdef double* force
-    cdef double* impulse
-    cdef double* mobility
-    cdef double* response
-    cdef double* turned
-    cdef Py_ssize_t* holds
-    cdef Py_ssize_t* held
+    cdef Doubles force, impulse, mobility, response, turned
+    cdef Indices holds, held
     cdef void begin(self, State s, double slow) noexcept nogil
     cdef void note(
         self, Py_ssize_t part, Plan plan, State s, Rows rows, double* before, double slow

@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.kernels.vectors cimport distance, largest
-from lcpstep.pointers cimport abs, after, inf, max, min
-from lcpstep.stepping.hidden_forces cimport hidden, late
 from lcpstep.stepping.located_parts cimport Parts
-from lcpstep.stepping.pieces.codes cimport BUFFER_FULL, CLOSED, FINISHED, STOPPED
 
 cdef Py_ssize_t REACHED, TRIALS
 cdef double EARLY, NEAR

@@ -43,7 +43,7 @@ class Attempts(Parts):
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
         self.in_time()
-        self.full = self.two.code == BUFFER_FULL and self.saved_event + self.saved_row > 0
+        self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0
         if not self.full:
             self.weigh(end - start)
         self.failed = (
@@ -65,7 +65,7 @@ class Attempts(Parts):
             wrong_v = max(wrong_v, distance(self.one.v, self.two.v, self.w.n_q))
         self.apart_q, self.apart_v = wrong_q, wrong_v
         self.far_q, self.far_v = largest(self.two.q, 0.0, self.w.n_q), largest(self.two.v, 0.0, self.w.n_q)
-        self.happened = self.two.code == STOPPED or self.record.event > self.saved_event
+        self.happened = self.two.code == STOPPED or self.record.event > self.event
 
     def depth(self) -> float:
         """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""

@@ -1,17 +1,10 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport COLUMNS, Record
-from lcpstep.kernels.vectors cimport clear, copy, largest
-from lcpstep.pointers cimport after, inf, nan, whole
-from lcpstep.stepping.pieces.codes cimport CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
-from lcpstep.stepping.pieces.corners cimport find_corners
-from lcpstep.stepping.pieces.led cimport Led, copy_state
+from lcpstep.pointers cimport Doubles
+from lcpstep.stepping.pieces.led cimport Led
 from lcpstep.stepping.pieces.loop cimport Steps
-from lcpstep.stepping.pieces.smooth cimport invert
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport COLLAPSE
-from lcpstep.stepping.step_control cimport Control, follow_on, stamp
+from lcpstep.stepping.step_control cimport Control
 
 cdef Py_ssize_t LEVELS, OWN
 
@@ -22,11 +15,8 @@ cdef class Parts(Control):
     cdef Plan plan
     cdef Work w, saved
     cdef object own_row
-    cdef double* row
-    cdef Py_ssize_t saved_row, saved_event, saved_time, n_numbers, n_marks, n_matrices
-    cdef double* A_inverse
-    cdef double* AG
-    cdef double* WA
+    cdef Py_ssize_t n_numbers, n_marks, n_matrices
+    cdef Doubles last_row, A_inverse, AG, WA
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
     cdef double from_time, to_time, h, elapsed

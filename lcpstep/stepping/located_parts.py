@@ -37,8 +37,7 @@ class Parts(Control):
 
     way                     the loop, which takes the parts of a step
     m, plan, w              as it has them; the matrices of the plan are those of the part at hand
-    saved, row              the state at the start of the step, and the last row, which an event at its time changes
-    saved_row, saved_event, saved_time    counters of the record there
+    saved, last_row         the state at the start of the step, and the last row, which an event at its time changes
     A_inverse, AG, WA       of every level, and last of a part as long as none
     rough                   gaps are no quadratics, as which they are looked at
     means                   forces of closed contacts are means over a piece
@@ -63,8 +62,7 @@ class Parts(Control):
         plan, w = way.plan, way.w
         self.way, self.m, self.plan, self.w = way, way.m, plan, w
         self.saved, self.own_row = Work(w.n_q, w.n_c, w.joints), np.zeros(way.record.row_size)
-        self.row = doubles(self.own_row)
-        self.saved_row = self.saved_event = self.saved_time = 0
+        self.last_row = doubles(self.own_row)
         self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
         self.n_matrices = 0 if plan.constant else len(w.matrices)
         fields, places = plan.fields, OWN + 1 if plan.trapezoidal else 1
@@ -155,8 +153,8 @@ class Parts(Control):
 
     def in_time(self) -> None:
         """Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding."""
-        stamp(self.record, self.saved_row, self.saved_event, self.to_time, self.to_time)
-        follow_on(self.record, self.saved_row)
+        stamp(self.record, self.row, self.event, self.to_time, self.to_time)
+        follow_on(self.record, self.row)
 
     def led(self, to: Led, code: int) -> None:
         """Where the part that has just been taken led."""
@@ -187,7 +185,7 @@ class Parts(Control):
                         pull += W[c * n + d] * self.w.force_now[d]
                 force[c] = -pull / W[c * n + c] if W[c * n + c] > 0.0 else nan
             impulse[c] = self.w.pushed[c]
-        for k in range(self.saved_event, self.record.event):
+        for k in range(self.event, self.record.event):
             event = after(self.record.events, k * COLUMNS)
             if event[5] == RELEASE and event[3] > 0.0:
                 force[whole(event[1])] = nan
@@ -196,27 +194,19 @@ class Parts(Control):
         """Keep the state at the start of a step, and the last row."""
         clear(self.w.pushed, self.w.n_c)
         copy_state(self.saved, self.w, self.n_numbers, self.n_marks, self.n_matrices)
-        self.saved_row, self.saved_event, self.saved_time = (
-            self.record.row,
-            self.record.event,
-            self.record.next_time,
-        )
+        self.mark()
         if self.record.row > 0:
-            copy(self.row, self.record.last_row(), self.record.row_size)
+            copy(self.last_row, self.record.last_row(), self.record.row_size)
         else:
-            clear(self.row, self.record.row_size)
+            clear(self.last_row, self.record.row_size)
 
     def restore(self) -> None:
         """Go back to the start of the step; work that was done stays counted."""
         self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
         copy_state(self.w, self.saved, self.n_numbers, self.n_marks, self.n_matrices)
-        self.record.row, self.record.event, self.record.next_time = (
-            self.saved_row,
-            self.saved_event,
-            self.saved_time,
-        )
+        self.wind_back()
         if self.record.row > 0:
-            copy(self.record.last_row(), self.row, self.record.row_size)
+            copy(self.record.last_row(), self.last_row, self.record.row_size)
 
     def accept(self) -> None:
         """The step stands."""

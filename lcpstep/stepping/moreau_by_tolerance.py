@@ -35,8 +35,6 @@ if not cython.compiled:
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
     from lcpstep.stepping.theta_method.theta_loop import Steps
 
-SAVED = 9  # vectors of n_q numbers
-
 
 class Attempts(Control):
     """A run of `Moreau` by a tolerance.
@@ -45,10 +43,9 @@ class Attempts(Control):
     m, plan, s, rows            as it has them; the matrices of the plan are those of the part at hand
     times                       states asked for, which are kept here and not by the loop
     restitution                 the scene's own, (n_c,)
-    q, v, force, g, u, closed, impulse    the state (marks of what sticks follow `closed`) at the start of the step
-    steps, row, event, asked    counters there
+    begin, closed, steps_before   the state at the start of the step: numbers, marks, and how many steps it is after
     one_q, one_v                where the one step led
-    part_q, part_v, part_g, part_u        the state at the start of the part at hand
+    part_q, part_v, part_g, part_u        the state at the start of the part at hand, its numbers in the same order
     between_q, between_v        a state within it
     struck                      whether anything was, in the step or one of its halves
     share                       of the error allowed, in those that a step with an event may make; at least 1
@@ -83,18 +80,14 @@ class Attempts(Control):
 
     def place_saved(self) -> None:
         """Where the state at the start of steps and parts is kept."""
-        n_q, n_c = self.s.n_q, self.s.n_c
-        self.kept = np.zeros(SAVED * n_q + 5 * n_c + self.rows.n), np.zeros(2 * n_c, dtype=np.intp)
-        self.steps_before = self.row = self.event = self.asked = 0
-        self.q, self.closed = doubles(self.kept[0]), indices(self.kept[1])
-        self.v, self.force = after(self.q, n_q), after(self.q, 2 * n_q)
-        self.one_q, self.one_v = after(self.q, 3 * n_q), after(self.q, 4 * n_q)
-        self.part_q, self.part_v = after(self.q, 5 * n_q), after(self.q, 6 * n_q)
-        self.between_q, self.between_v = after(self.q, 7 * n_q), after(self.q, 8 * n_q)
-        self.g = after(self.q, SAVED * n_q)
-        self.u, self.part_g = after(self.g, n_c), after(self.g, 2 * n_c)
-        self.part_u, self.restitution = after(self.g, 3 * n_c), after(self.g, 4 * n_c)
-        self.impulse = after(self.g, 5 * n_c)
+        n_q, n_c, n = self.s.n_q, self.s.n_c, self.s.n_moving
+        self.kept, self.steps_before = (np.zeros(2 * n + 4 * n_q + n_c), np.zeros(2 * n_c, dtype=np.intp)), 0
+        self.begin, self.closed = doubles(self.kept[0]), indices(self.kept[1])
+        self.part_q, self.one_q = after(self.begin, n), after(self.begin, 2 * n)
+        self.part_v, self.part_g = after(self.part_q, n_q), after(self.part_q, 3 * n_q)
+        self.part_u, self.one_v = after(self.part_g, n_c), after(self.one_q, n_q)
+        self.between_q, self.between_v = after(self.one_q, 2 * n_q), after(self.one_q, 3 * n_q)
+        self.restitution = after(self.one_q, 4 * n_q)
 
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""
@@ -161,10 +154,9 @@ class Attempts(Control):
 
     def before(self, slow: float) -> None:
         """Remember where a part begins; contacts slower than `slow` have no restitution in it."""
-        copy(self.part_q, self.s.q, self.s.n_q)
-        copy(self.part_v, self.s.v, self.s.n_q)
+        copy(self.part_q, self.s.q, self.s.n_moving)
         for i in range(self.s.n_c):
-            self.part_g[i], self.part_u[i], self.rows.p[i] = self.s.g[i], self.s.u[i], 0.0
+            self.rows.p[i] = 0.0
             self.m.restitution[i] = self.restitution[i] if abs(self.s.u[i]) > slow else 0.0
 
     def after_part(self, h: float, slow: float) -> None:
@@ -204,29 +196,19 @@ class Attempts(Control):
 
     def store(self) -> None:
         """Keep the state at the start of a step."""
-        copy(self.q, self.s.q, self.s.n_q)
-        copy(self.v, self.s.v, self.s.n_q)
-        copy(self.force, self.s.force, self.s.n_q)
-        copy(self.g, self.s.g, self.s.n_c)
-        copy(self.u, self.s.u, self.s.n_c)
+        copy(self.begin, self.s.q, self.s.n_moving)
         copy_indices(self.closed, self.s.closed, 2 * self.s.n_c)
-        copy(self.impulse, self.s.impulse, self.rows.n)
         self.steps_before = self.s.steps
-        self.row, self.event, self.asked = self.record.row, self.record.event, self.record.next_time
+        self.mark()
 
     def restore(self) -> None:
         """Go back there; work that was done stays counted, and whether anything happened known."""
         if self.record.event > self.event:
             self.happened = True
-        copy(self.s.q, self.q, self.s.n_q)
-        copy(self.s.v, self.v, self.s.n_q)
-        copy(self.s.force, self.force, self.s.n_q)
-        copy(self.s.g, self.g, self.s.n_c)
-        copy(self.s.u, self.u, self.s.n_c)
+        copy(self.s.q, self.begin, self.s.n_moving)
         copy_indices(self.s.closed, self.closed, 2 * self.s.n_c)
-        copy(self.s.impulse, self.impulse, self.rows.n)
         self.s.steps, self.s.iteration = self.steps_before, 0
-        self.record.row, self.record.event, self.record.next_time = self.row, self.event, self.asked
+        self.wind_back()
 
 
 def dip(g: float, u: float, u_next: float, h: float) -> float:

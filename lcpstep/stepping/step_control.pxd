@@ -1,9 +1,6 @@
 cimport cython
-from libc.math cimport ldexp
-from lcpstep.arrays cimport indices
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Course
-from lcpstep.kernels.record cimport COLUMNS, TIME, Record
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.kernels.course cimport Course
+from lcpstep.kernels.record cimport Record
 
 cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
 cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
@@ -12,7 +9,7 @@ cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
 cdef class Control(Course):
     cdef Record record
     cdef object make, matrices, own_made
-    cdef Py_ssize_t n_times
+    cdef Py_ssize_t n_times, row, event, asked
     cdef Py_ssize_t* made
     cdef public long long position, end, tried
     cdef public int level, finest
@@ -21,6 +18,8 @@ cdef class Control(Course):
     cdef public bint happened, failed, full
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil
+    cdef void mark(self) noexcept nogil
+    cdef void wind_back(self) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef Py_ssize_t attempt(self) noexcept nogil
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil

@@ -52,6 +52,7 @@ class Control(Course):
     size_q, size_v       of the motion so far
     last                 error of the attempt before, if that failed at the same place
     into                 how far beyond `position` an event has cut the step [s]
+    row, event, asked    rows and events written, and states asked for that were kept, where the step begins
 
     What an attempt has found:
 
@@ -83,6 +84,7 @@ class Control(Course):
         self.tolerance, self.enough = tolerance, PLENTY * 0.5**order
         self.size_q = self.size_v = self.into = 0.0
         self.last = inf
+        self.row = self.event = self.asked = 0
         self.begin_attempt()
 
     def store(self) -> None:
@@ -90,6 +92,14 @@ class Control(Course):
 
     def restore(self) -> None:
         """Of a method: go back there; work that was done stays counted."""
+
+    def mark(self) -> None:
+        """Note how far the record has come."""
+        self.row, self.event, self.asked = self.record.row, self.record.event, self.record.next_time
+
+    def wind_back(self) -> None:
+        """Back to there in the record."""
+        self.record.row, self.record.event, self.record.next_time = self.row, self.event, self.asked
 
     def accept(self) -> None:
         """Of a method: the step that has been taken stands."""

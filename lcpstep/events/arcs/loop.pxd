@@ -1,10 +1,6 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.arcs.motion cimport NOISE, Arc, belt_slip, bend_at, bends, look, pay, rebase, rise, set_out, state_at
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.events.arcs.motion cimport Arc
+from lcpstep.kernels.course cimport Events
 
 cdef Py_ssize_t STAYS_CLOSED, DONE, REVERSE, SLACK, SLIP, STICK_TANGENT
 cdef double STILL

@@ -1,11 +1,8 @@
 cimport cython
-from libc.math cimport cos, hypot, sin, sqrt
-from lcpstep.arrays cimport doubles
-from lcpstep.events.flight.oscillator cimport fundamental
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport abs, after, inf
+from lcpstep.pointers cimport Doubles
 
 
 cdef double NOISE
@@ -21,11 +18,7 @@ cdef class Arc(Clock):
     cdef readonly double now, t_end, stride, rtol, atol, paid, friction
     cdef readonly bint begun
     cdef double noise, a, line, room, spring, zeta, dzeta, P1, Q1, P2, Q2, cos1, sin1, cos2, sin2
-    cdef double* place
-    cdef double* way
-    cdef double* q
-    cdef double* v
-    cdef double* impulse
+    cdef Doubles place, way, q, v, impulse
 
 cdef (double, double) turned(double c, double s, double half) noexcept nogil
 cdef void look(Arc s, double z, double dz) noexcept nogil

@@ -1,7 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.events.flight.motion cimport Flight, absolute
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.events.flight.motion cimport Flight
 
 cdef Py_ssize_t LEAPS
 cdef double SURE, WORTH, BULGE, LEAST_BULGE

@@ -1,6 +1,4 @@
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.flight.motion cimport Flight, rebase, state_at
-from lcpstep.pointers cimport max, min
+from lcpstep.events.flight.motion cimport Flight
 
 
 cdef void keep(Flight s, double t) noexcept nogil

@@ -1,14 +1,6 @@
 cimport cython
-from lcpstep.events.flight.clear cimport WORTH, clear_until, suspect
-from lcpstep.events.flight.keep cimport keep, keep_event, keep_times
-from lcpstep.events.flight.modes cimport go_on, impact, release, settle, settle_again, turn_corner
-from lcpstep.events.flight.motion cimport Flight, free, on_obstacle, rebase
-from lcpstep.events.flight.near cimport SHORT, along, hop_end, is_low, low_end, stretch
-from lcpstep.events.flight.rest cimport contact_impulse, first_release
-from lcpstep.events.flight.roots cimport first_contact, polish
-from lcpstep.kernels.clock cimport NUDGE
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.events.flight.motion cimport Flight
+from lcpstep.kernels.course cimport Events
 
 cdef Py_ssize_t DONE, NOT_FINITE, SLACK
 cdef double CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, STRIDE, UNSEEN

@@ -14,14 +14,7 @@ from lcpstep.kernels.status import DONE, NOT_FINITE
 if not cython.compiled:
     from lcpstep.events.flight.clear import WORTH, clear_until, suspect
     from lcpstep.events.flight.keep import keep, keep_event, keep_times
-    from lcpstep.events.flight.modes import (
-        go_on,
-        impact,
-        release,
-        settle,
-        settle_again,
-        turn_corner,
-    )
+    from lcpstep.events.flight.modes import go_on, impact, release, settle, settle_again, turn_corner
     from lcpstep.events.flight.motion import Flight, free, on_obstacle, rebase
     from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, stretch
     from lcpstep.events.flight.rest import contact_impulse, first_release

@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.events.flight.keep cimport keep_event
-from lcpstep.events.flight.motion cimport Flight, free, leave_from, on_obstacle
-from lcpstep.events.flight.rest cimport alpha_at
-from lcpstep.kernels.clock cimport NUDGE
-from lcpstep.pointers cimport abs, max, min
+from lcpstep.events.flight.motion cimport Flight
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, RELEASE, STICK
 cdef double CLOSED, FREE, NONE, ON_THE_SURFACE, UNSEEN, JUMP

@@ -1,13 +1,10 @@
-from libc.math cimport cos, sin
-from lcpstep.arrays cimport doubles
-from lcpstep.events.flight.oscillator cimport Oscillator, fundamental
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.function cimport Function
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport inf, nan
+from lcpstep.pointers cimport Doubles
 
 cdef double CLOSED, FREE
 
@@ -26,10 +23,7 @@ cdef class Flight(Clock):
     cdef readonly double now, mode, hold, g, u, alpha, g0, u0, alpha0, peak
     cdef bint begun, on_surface
     cdef double z0, dz0, q0, v0, tau, y_tau, w_tau, a_tau, c1, c2, c3
-    cdef double* q
-    cdef double* v
-    cdef double* impulse
-    cdef double* moving
+    cdef Doubles q, v, impulse, moving
     cdef void restart(self, double t, double t_end) noexcept nogil
 
 cdef (double, double) steady(Flight s, double t) noexcept nogil

@@ -1,7 +1,5 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.events.flight.motion cimport Flight, free
-from lcpstep.pointers cimport abs, min
+from lcpstep.events.flight.motion cimport Flight
 
 cdef Py_ssize_t PASSES
 cdef double NONE, RESOLUTION, SHORT, LOW, SETTLED, LONGER, N1, N2, N3

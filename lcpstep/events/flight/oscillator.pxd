@@ -1,6 +1,4 @@
-from libc.math cimport copysign, cos, exp, expm1, hypot, sin, sqrt
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t TERMS, k
 cdef double SMALL, NEGLIGIBLE, NOTHING, NEAR_RESONANCE

@@ -1,5 +1,4 @@
-from lcpstep.events.flight.motion cimport Flight, on_obstacle
-from lcpstep.pointers cimport abs, inf, min
+from lcpstep.events.flight.motion cimport Flight
 
 cdef Py_ssize_t PROBES, NODES
 cdef double NONE, RESOLUTION

@@ -1,7 +1,6 @@
 cimport cython
-from lcpstep.events.flight.motion cimport Flight, free
+from lcpstep.events.flight.motion cimport Flight
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.pointers cimport abs
 
 cdef Py_ssize_t GUESSES, POLISHES
 cdef double NONE, RESOLUTION, STRAIGHT, COARSE, POLISH, POLISHED

@@ -1,11 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport measure
-from lcpstep.events.friction.held cimport accelerate_on_joints
-from lcpstep.events.friction.modes cimport decide
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.events.friction.surfaces cimport touching
-from lcpstep.kernels.vectors cimport clear, product
-from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t OPEN, NOT_FINITE
 cdef double MOMENT, SHORTEST, SHORTER, DOUBTFUL

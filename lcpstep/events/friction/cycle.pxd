@@ -1,12 +1,7 @@
 cimport cython
-from lcpstep.events.friction.equations cimport apply, measure_velocities
-from lcpstep.events.friction.held cimport hold_joints, hold_modes, stop_rows
 from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.recurrence cimport CERTAIN, FOR_EVER, left, proportion
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t ACCUMULATION, OPEN, SLIDES, STICKS
 

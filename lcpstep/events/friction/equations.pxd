@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.acceleration cimport divide_by_mass, response
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t LEANS, SLIDES, STICKS
 

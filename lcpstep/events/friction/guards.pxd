@@ -1,12 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport (
-    force_noise, gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, size_of, speed_tolerance
-)
-from lcpstep.events.friction.held cimport is_held, right_hand_side
-from lcpstep.events.friction.state cimport GUARDS, NOISE, Rubbing
-from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, after, max, min
+from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t LEANS, OPEN, SLIDES, STICKS, STAGES, SAMPLES, PARTS, UNKNOWN
 cdef double RESOLVED, LOW, OFF

@@ -26,14 +26,7 @@ if not cython.compiled:
     )
     from lcpstep.events.friction.held import is_held, right_hand_side
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
-    from lcpstep.events.hybrid.roots import (
-        CHECKS,
-        DEGREE,
-        NONE,
-        convert,
-        first_rise,
-        taylor,
-    )
+    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 

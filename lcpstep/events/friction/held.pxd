@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport add_impulse, free_motion, measure_biases, measure_rates, measure_rows
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.acceleration cimport inverse_mass
-from lcpstep.kernels.dynamics cimport total_force
-from lcpstep.kernels.vectors cimport add, clear, copy, product
-from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
 cdef double DEPENDENT

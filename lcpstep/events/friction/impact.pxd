@@ -1,19 +1,7 @@
 cimport cython
-from lcpstep.events.friction.cycle cimport look_back, recurs, sum_up
-from lcpstep.events.friction.equations cimport apply, gap_size, gap_tolerance, measure, measure_velocities, size_of, speed_tolerance
-from lcpstep.events.friction.held cimport constrain, hold_joints, hold_modes, stop_rows
-from lcpstep.events.friction.keep cimport put_on_account
-from lcpstep.events.friction.parting cimport let_go, rejoin
-from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
-from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.coulomb cimport solve_contacts
-from lcpstep.kernels.energetic cimport strike_in_turn
+from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.recurrence cimport looks_back
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear, copy, product
-from lcpstep.pointers cimport abs, after, inf, min
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
 cdef double SEEN, STILL

@@ -1,7 +1,6 @@
 cimport cython
-from lcpstep.events.friction.state cimport NOISE, Rubbing
+from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
-from lcpstep.pointers cimport abs, after
 
 cdef void keep(Rubbing s, Record record, double t, double* y) noexcept nogil
 cdef void pay(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -1,17 +1,8 @@
 cimport cython
-from lcpstep.events.friction.balance cimport opens_any, reconsider
-from lcpstep.events.friction.equations cimport measure
-from lcpstep.events.friction.guards cimport begin_guards
-from lcpstep.events.friction.impact cimport close_small, forget_terms, jam, jump, still
-from lcpstep.events.friction.keep cimport keep, keep_event
-from lcpstep.events.friction.modes cimport decide, obey, adopt_modes, undecided
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.events.friction.surfaces cimport find_touching
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.course cimport Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear
-from lcpstep.pointers cimport abs, max, min
 
 cdef Py_ssize_t BEGIN, SETTLE, JUMP, MOVE, OPEN, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 cdef double LOOK_AHEAD, FURTHER, NO_TIME

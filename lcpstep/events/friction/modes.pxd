@@ -1,15 +1,7 @@
 cimport cython
-from lcpstep.events.friction.equations cimport force_noise
-from lcpstep.events.friction.held cimport accelerate_on_joints, constrain, hold_modes, list_multipliers
-from lcpstep.events.friction.problem cimport eliminate_joints, fill, list_unknowns, row_of
-from lcpstep.events.friction.several cimport opened_or_closed
-from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.coulomb cimport motion_of, solve_contacts
+from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.repose cimport moves, stay
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear, copy, product
-from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE

@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.events.friction.guards cimport UNKNOWN, look, look_at_stage
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, min
 
 cdef Py_ssize_t STAGES, REFINEMENTS
 cdef double NEAR

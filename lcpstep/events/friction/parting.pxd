@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport measure
-from lcpstep.events.friction.held cimport constrain, hold_modes
-from lcpstep.events.friction.modes cimport decide
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs
 
 cdef Py_ssize_t OPEN, SLIDES, DONE
 

@@ -1,13 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.events.friction.equations cimport free_motion, measure, measure_rows
-from lcpstep.events.friction.guards cimport look
-from lcpstep.events.friction.held cimport hold_modes, pull, right_hand_side
-from lcpstep.events.friction.impact cimport find_free
-from lcpstep.events.friction.modes cimport decide, adopt_modes
-from lcpstep.events.friction.state cimport GUARDS, Rubbing
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, max
+from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t OPEN, SLIDES, DONE, NOT_FINITE
 cdef double RELATIVE_STEP

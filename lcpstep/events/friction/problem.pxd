@@ -1,5 +1,4 @@
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.vectors cimport copy
 
 cdef Py_ssize_t OPEN
 cdef double DEPENDENT

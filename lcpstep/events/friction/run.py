@@ -22,12 +22,7 @@ from lcpstep.turns import turns
 
 
 def start(
-    scene: Scene,
-    kind: Callable[..., Any],
-    rtol: float,
-    atol: float,
-    *more: Any,
-    yields: bool = False,
+    scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any, yields: bool = False
 ) -> Any:
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
 

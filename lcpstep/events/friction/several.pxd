@@ -1,8 +1,5 @@
 cimport cython
 from lcpstep.kernels.coulomb cimport ContactProblem
-from lcpstep.kernels.linear cimport factorise, positive_definite, solve
-from lcpstep.kernels.vectors cimport largest
-from lcpstep.pointers cimport abs
 
 cdef Py_ssize_t MOST
 cdef double CLEARLY

@@ -1,10 +1,6 @@
-from lcpstep.events.friction.held cimport right_hand_side
 from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.events.friction.step cimport step
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport after
 
 
 cdef class Smooth(Rubbing):

@@ -1,13 +1,11 @@
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
-from lcpstep.kernels.clock cimport Clock, RESOLUTION
+from lcpstep.events.hybrid.roots cimport Scan
+from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport after, indices_after
 
 cdef Py_ssize_t ALL, GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE

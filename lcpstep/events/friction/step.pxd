@@ -1,19 +1,7 @@
 cimport cython
-from libc.math cimport sqrt
-from lcpstep.events.friction.equations cimport add_impulse, measure
-from lcpstep.events.friction.guards cimport UNKNOWN, first_event
-from lcpstep.events.friction.held cimport hold_modes, right_hand_side
-from lcpstep.events.friction.impact cimport forget_terms, still
-from lcpstep.events.friction.keep cimport keep
-from lcpstep.events.friction.modes cimport decide, undecided
-from lcpstep.events.friction.moments cimport locate
-from lcpstep.events.friction.parting cimport part_before
-from lcpstep.events.friction.state cimport GUARDS, Rubbing
-from lcpstep.events.friction.surfaces cimport find_touching, lift, project
+from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear, copy
-from lcpstep.pointers cimport abs, min
 
 cdef Py_ssize_t ALL, STAGES, SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double LOOK_AHEAD, FURTHER, FARTHEST

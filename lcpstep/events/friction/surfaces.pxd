@@ -1,13 +1,5 @@
 cimport cython
-from lcpstep.events.friction.equations cimport (
-    gap_size, gap_tolerance, measure_friction, measure_gaps, measure_rates, respond
-)
-from lcpstep.events.friction.held cimport constrain, hold_again, nothing, push, solve_held
-from lcpstep.events.friction.state cimport NOISE, Rubbing
-from lcpstep.kernels.acceleration cimport factor_mass
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport clear, copy, product
-from lcpstep.pointers cimport abs, after
+from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t OPEN
 cdef double FREE, LATE, TOGETHER

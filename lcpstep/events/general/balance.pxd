@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.general.equations cimport measure, measure_again
-from lcpstep.events.general.forces cimport contact_forces
-from lcpstep.events.general.held cimport constrain, hold_contacts, note
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, min
 
 cdef Py_ssize_t DONE, NOT_FINITE, NO_FORCES
 cdef double MOMENT, DOUBTFUL

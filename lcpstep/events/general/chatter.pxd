@@ -1,15 +1,7 @@
 cimport cython
-from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows, measure_again
-from lcpstep.events.general.held cimport constrain, hold_contacts, is_held, right_hand_side, solve_held
-from lcpstep.events.general.impact cimport apply, speed_noise
-from lcpstep.events.general.motion cimport gap_tolerance, speed_tolerance
-from lcpstep.events.general.parabolas cimport accumulation
-from lcpstep.events.general.state cimport Mechanism, NOISE
-from lcpstep.kernels.quadratic cimport first_zero
+from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport clear, copy, product
-from lcpstep.pointers cimport abs, after, max, min, nan
 
 cdef Py_ssize_t ACCUMULATION
 

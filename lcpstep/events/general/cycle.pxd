@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.events.general.chatter cimport stop
-from lcpstep.events.general.impact cimport apply, speed_noise
 from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.recurrence cimport FOR_EVER, left, proportion
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION

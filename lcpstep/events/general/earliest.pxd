@@ -1,12 +1,5 @@
 cimport cython
-from lcpstep.events.general.equations cimport biases, constraint_rows
-from lcpstep.events.general.held cimport note, right_hand_side
-from lcpstep.events.general.impact cimport speed_noise
-from lcpstep.events.general.state cimport Mechanism, NOISE
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.dynamics cimport gap_rounding, gaps
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs, max
+from lcpstep.events.general.state cimport Mechanism
 
 cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER
 cdef double NONE, NEVER, UNSEEN

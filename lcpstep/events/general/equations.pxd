@@ -1,9 +1,5 @@
 from lcpstep.events.general.state cimport Mechanism, Rows
-from lcpstep.kernels.acceleration cimport divide_by_mass, response
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps, total_force
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport after
 
 cdef bint measure(Mechanism s, double t) noexcept nogil
 cdef bint measure_on(Mechanism s, double t) noexcept nogil

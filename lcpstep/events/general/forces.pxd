@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.general.equations cimport bias_of
-from lcpstep.events.general.held cimport constrain, contradiction, hold, hold_contacts, hold_joints, note, solve_held
-from lcpstep.events.general.problem cimport CHECKED, solve_contacts
-from lcpstep.events.general.state cimport Mechanism, NOISE
-from lcpstep.kernels.vectors cimport copy, largest, product
-from lcpstep.pointers cimport abs
+from lcpstep.events.general.state cimport Mechanism
 
 cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED
 

@@ -1,12 +1,5 @@
 cimport cython
-from lcpstep.events.general.equations cimport bias_of, biases, constraint_rows
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.acceleration cimport divide_by_mass, inverse_mass, response
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.dynamics cimport gaps, total_force
-from lcpstep.kernels.linear cimport grow_factor, solve_factored
-from lcpstep.kernels.vectors cimport clear, copy, largest, product
-from lcpstep.pointers cimport abs, after
 
 cdef Py_ssize_t REFINEMENTS
 cdef double PARTED, DISAGREEMENT

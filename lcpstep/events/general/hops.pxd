@@ -1,13 +1,5 @@
 cimport cython
-from libc.math cimport pow, sqrt
-from lcpstep.events.general.earliest cimport NEVER, NONE, observe
-from lcpstep.events.general.impact cimport speed_noise
-from lcpstep.events.general.parabolas cimport hop
-from lcpstep.events.general.state cimport Mechanism, NOISE
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.quadratic cimport first_zero
-from lcpstep.kernels.vectors cimport largest
-from lcpstep.pointers cimport abs, inf, max, min, nan
+from lcpstep.events.general.state cimport Mechanism
 
 cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, FAINT, STEADY
 

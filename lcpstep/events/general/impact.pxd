@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.general.held cimport REFINEMENTS, hold, hold_joints, solve_held
-from lcpstep.events.general.problem cimport CHECKED, solve_contacts
-from lcpstep.events.general.state cimport Mechanism, NOISE
-from lcpstep.kernels.acceleration cimport inverse_mass
-from lcpstep.kernels.vectors cimport clear, largest, product
-from lcpstep.pointers cimport abs, inf, max, min
+from lcpstep.events.general.state cimport Mechanism
 
 @cython.locals(solved=bint, touches=bint)
 cdef bint strike(Mechanism s) noexcept nogil

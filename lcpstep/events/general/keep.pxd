@@ -1,6 +1,4 @@
 cimport cython
-from lcpstep.events.general.held cimport project
-from lcpstep.events.general.motion cimport state_at
 from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 

@@ -1,16 +1,8 @@
 cimport cython
-from lcpstep.events.general.equations cimport measure
-from lcpstep.events.general.keep cimport keep
-from lcpstep.events.general.modes cimport jump, obey, settle
-from lcpstep.events.general.motion cimport closed_from
-from lcpstep.events.general.parabolas cimport fly
-from lcpstep.events.general.state cimport BEGIN, ENTERED, JUMP, JUMPED, LOOKED, MOVE, Mechanism, OBEY, SETTLE
-from lcpstep.events.general.step cimport complete, step
-from lcpstep.events.general.switching cimport look_at_guards, switch
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Events
+from lcpstep.events.general.state cimport Mechanism
+from lcpstep.kernels.course cimport Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
 
 cdef Py_ssize_t DONE, NOT_FINITE
 

@@ -1,22 +1,7 @@
 cimport cython
-from lcpstep.events.general.balance cimport balanced_forces
-from lcpstep.events.general.chatter cimport close_chatter, hand_on
-from lcpstep.events.general.cycle cimport look_back, recurrence, sum_up
-from lcpstep.events.general.equations cimport measure_again
-from lcpstep.events.general.forces cimport contact_forces
-from lcpstep.events.general.held cimport constrain, hold_contacts, note
-from lcpstep.events.general.impact cimport speed_noise, strike
-from lcpstep.events.general.keep cimport keep_event
-from lcpstep.events.general.motion cimport lift, rebase, rounding_of_gap
-from lcpstep.events.general.parabolas cimport polish, synchronise
-from lcpstep.events.general.state cimport JUMP, Mechanism
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.dynamics cimport order_matters
+from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.recurrence cimport FOR_EVER, looks_back
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, max
 
 cdef Py_ssize_t IMPACT, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
 

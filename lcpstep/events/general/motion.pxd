@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.events.general.earliest cimport observe
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.dynamics cimport gap_rates, gap_rounding
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, inf, max, min
 
 cdef double SURE
 

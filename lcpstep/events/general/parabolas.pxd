@@ -1,12 +1,6 @@
-from lcpstep.events.general.held cimport solve_held
-from lcpstep.events.general.keep cimport keep, keep_wanted
-from lcpstep.events.general.motion cimport press, rebase, state_at
-from lcpstep.events.general.state cimport JUMP, Mechanism
-from lcpstep.kernels.quadratic cimport first_zero
+from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport largest, product
-from lcpstep.pointers cimport abs, max, min
 
 cdef double LARGE
 

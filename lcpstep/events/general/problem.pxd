@@ -1,7 +1,5 @@
 cimport cython
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.kernels.vectors cimport clear
-from lcpstep.lcp.kernel cimport solve_small
 
 cdef Py_ssize_t SOLVED
 cdef double CHECKED

@@ -1,7 +1,4 @@
-from lcpstep.events.general.held cimport right_hand_side
 from lcpstep.events.general.state cimport Mechanism
-from lcpstep.events.general.step cimport missed
-from lcpstep.events.general.switching cimport SWITCHES
 from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.rungekutta cimport RungeKutta
 

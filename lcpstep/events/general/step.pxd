@@ -1,18 +1,7 @@
 cimport cython
-from lcpstep.events.general.earliest cimport LANDS, MEETS, NEVER_LEFT, NONE, OPENS, first_event, observe, turns_unseen
-from lcpstep.events.general.equations cimport measure, measure_on
-from lcpstep.events.general.forces cimport contact_forces
-from lcpstep.events.general.held cimport constrain, hold_again, note, parted, project
-from lcpstep.events.general.hops cimport carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
-from lcpstep.events.general.keep cimport keep, keep_wanted
-from lcpstep.events.general.motion cimport arrive, press_between, rebase
-from lcpstep.events.general.state cimport JUMP, Mechanism, OBEY, SETTLE, SWITCH
-from lcpstep.events.general.switching cimport SWITCHES, reach_guard, watch
-from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, inf, min
 
 cdef Py_ssize_t NO_FORCES, NO_SURFACE, DONE, JOINTS_FAILED, NOT_FINITE, PARTS, MOST_PARTS, REFINEMENTS
 cdef Py_ssize_t LOOKS

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.clock cimport RESOLUTION
 from lcpstep.kernels.function cimport Functions
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ARRIVE, EXIT_BELOW, EXIT_ABOVE, NOT_SLIDING, VECTORS, SURFACE
 cdef double DIFFERENCE, INNER, OUTER, TINY
@@ -16,23 +13,8 @@ cdef class Machine:
     cdef readonly double dt
     cdef readonly Functions fields
     cdef Functions surfaces, values, resets
-    cdef Py_ssize_t* has_reset
-    cdef Py_ssize_t* first
-    cdef Py_ssize_t* at_once
-    cdef Py_ssize_t* kind
-    cdef Py_ssize_t* target
-    cdef Py_ssize_t* below
-    cdef Py_ssize_t* above
-    cdef double* sign
-    cdef double* out
-    cdef double* F
-    cdef double* F1
-    cdef double* F2
-    cdef double* H_x
-    cdef double* g_x
-    cdef double* x
-    cdef double* x_guard
-    cdef double* moved
+    cdef Indices has_reset, first, at_once, kind, target, below, above
+    cdef Doubles sign, out, F, F1, F2, H_x, g_x, x, x_guard, moved
 
 
 cdef double scalar(Machine m, Functions f, Py_ssize_t k, double t, double* x) noexcept nogil

@@ -1,10 +1,5 @@
 cimport cython
-from lcpstep.events.hybrid.field cimport guard
-from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, NONE, convert, first_rise, taylor
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport finite, largest
-from lcpstep.pointers cimport abs, after, max, min, nan
 
 cdef Py_ssize_t SAMPLES, UNKNOWN, PARTS, REFINEMENTS
 cdef double FAR, RESOLVED, JUMP

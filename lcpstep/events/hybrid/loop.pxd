@@ -1,13 +1,6 @@
 cimport cython
-from lcpstep.events.hybrid.field cimport (
-    ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, approaches, band_and_rate, guard, project
-)
-from lcpstep.events.hybrid.locate cimport UNKNOWN, find, locate
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, DUE, Course
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, min
+from lcpstep.kernels.course cimport Course
 
 cdef Py_ssize_t BUFFER_FULL, DONE, ENDLESS_SWITCHING, NOT_FINITE, NOT_TRANSVERSAL, STEP_TOO_SMALL, TOO_MANY_EVENTS
 cdef Py_ssize_t MAX_STALLED, NEVER_LEFT

@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, max
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t DEGREE, DEPTH, CHECKS
 cdef double NONE
@@ -13,15 +10,7 @@ cdef double NONE
 cdef class Scan:
     cdef object arrays
     cdef Bracket bracket
-    cdef double* points
-    cdef double* to_bernstein
-    cdef double* at_checks
-    cdef double* sample
-    cdef double* c
-    cdef double* half
-    cdef double* stack
-    cdef double* low
-    cdef double* high
+    cdef Doubles points, to_bernstein, at_checks, sample, c, half, stack, low, high
 
 
 cdef double convert(Scan scan) noexcept nogil

@@ -1,11 +1,8 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.events.hybrid.field cimport Machine, field, guard
-from lcpstep.events.hybrid.roots cimport CHECKS, DEGREE, Scan
-from lcpstep.kernels.clock cimport RESOLUTION
+from lcpstep.events.hybrid.field cimport Machine, guard
+from lcpstep.events.hybrid.roots cimport Scan
 from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.vectors cimport copy, finite
-from lcpstep.pointers cimport abs, after, inf
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t TIME, LENGTH, ROW_MODE, LEAD, SWITCH_LEAD
 cdef double FIRST_STEP
@@ -20,12 +17,8 @@ cdef class Motion(RungeKutta):
     cdef bint begun, was_armed
     cdef double event_at, rate, missed, tried
     cdef Py_ssize_t row_capacity, log_capacity
-    cdef Py_ssize_t* armed
-    cdef double* band
-    cdef double* states
-    cdef double* rows
-    cdef double* dense_rows
-    cdef double* log
+    cdef Indices armed
+    cdef Doubles band, states, rows, dense_rows, log
     cdef void start_from(self, double t, Py_ssize_t mode) noexcept nogil
     cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
     cdef double miss(self, double t, double tau) noexcept nogil

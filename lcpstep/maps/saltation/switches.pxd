@@ -1,12 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.events.hybrid.field cimport (
-    ARRIVE, INNER, NOT_SLIDING, OUTER, Machine, field, guard_gradient, surface_gradient
-)
-from lcpstep.events.hybrid.state cimport SWITCH_LEAD
+from lcpstep.events.hybrid.field cimport Machine
 from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, max, whole
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t DONE, NOT_TRANSVERSAL, VECTORS
 cdef double TOLERANCE, RELATIVE_STEP
@@ -17,18 +12,7 @@ cdef class Tangent(RungeKutta):
     cdef readonly object derivative
     cdef readonly Machine m
     cdef Py_ssize_t n_x, mode
-    cdef double* J
-    cdef double* F_x
-    cdef double* S
-    cdef double* R
-    cdef double* R_t
-    cdef double* H_x
-    cdef double* x
-    cdef double* start
-    cdef double* F_before
-    cdef double* F_after
-    cdef double* up
-    cdef double* down
+    cdef Doubles J, F_x, S, R, R_t, H_x, x, start, F_before, F_after, up, down
     cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
 
 

@@ -1,7 +1,3 @@
-from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport after
-
-
 cdef void mobilities(
     double* H, double* X, Py_ssize_t* ids, Py_ssize_t n_k, double* W, Py_ssize_t n, Py_ssize_t n_q
 ) noexcept nogil

@@ -1,9 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.linear cimport factorise, solve
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, after, inf, max
-from libc.math cimport sqrt
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef double NEGLIGIBLE, EPSILON, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
@@ -13,17 +9,8 @@ cdef class Elimination:
     cdef object numbers, integers
     cdef Py_ssize_t n_j
     cdef bint redundant
-    cdef double* S
-    cdef double* B
-    cdef double* F
-    cdef double* Z
-    cdef double* values
-    cdef double* scale
-    cdef double* x
-    cdef double* y
-    cdef double* r
-    cdef double* d
-    cdef Py_ssize_t* pivots
+    cdef Doubles S, B, F, Z, values, scale, x, y, r, d
+    cdef Indices pivots
 
 
 @cython.locals(regular=bint)

@@ -1,9 +1,7 @@
-from lcpstep.arrays cimport doubles
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, LENGTH, Record, TIME
-from lcpstep.pointers cimport after
+from lcpstep.kernels.record cimport Record
 
 cdef double PUT_BACK
 
 cdef void put_kept_back(Model m, Record record) noexcept nogil
-cdef void look(Model m, double t, double* still, double* c) noexcept
+cpdef displaced(Model m, double t)

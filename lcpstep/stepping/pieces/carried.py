@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import LEAD, LENGTH, TIME, Record
-    from lcpstep.pointers import Doubles, after
+    from lcpstep.pointers import after
 
 # In place of the duration, which rows of `Located` do not have: the row is in the scene's coordinates
 PUT_BACK = 1.0
@@ -32,14 +32,9 @@ def put_kept_back(m: Model, record: Record) -> None:
             v[i] -= c[3 * i + 1]
 
 
-def frame_at(m: Model, t: float) -> Any:
-    """How far those coordinates are from the scene's, c, c', c'' (n_q, 3); zero of what is not carried."""
+def displaced(m: Model, t: float) -> tuple[Any, Any]:
+    """How far those coordinates are from the scene's at time t, and how fast they part; zero if not carried."""
     found, still = np.zeros((m.n_q, 3)), np.zeros(m.n_q)
     if m.carried:
-        look(m, t, doubles(still), doubles(found))
-    return found
-
-
-def look(m: Model, t: float, still: Doubles, c: Doubles) -> None:
-    """Where the frame is at time t."""
-    m.frame.fill(t, still, still, c)
+        m.frame.fill(t, doubles(still), doubles(still), doubles(found))
+    return found[:, 0], found[:, 1]

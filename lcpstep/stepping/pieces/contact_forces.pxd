@@ -1,15 +1,7 @@
 cimport cython
-from lcpstep.kernels.linear cimport solve_factored
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport clear, copy, product
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-from lcpstep.stepping.pieces.jointed cimport answer_force
-from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.refine cimport FORCES, IMPULSES, keep_closed, solve_chosen
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport release, release_time, stick, turn
 
 cdef bint hold(Model m, Plan plan, Work w, Record record, Py_ssize_t place, double t) noexcept nogil
 cdef Py_ssize_t answered(Plan plan, Work w, Py_ssize_t place) noexcept nogil

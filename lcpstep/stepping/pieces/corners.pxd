@@ -1,11 +1,5 @@
-from libc.math cimport floor
-from lcpstep.kernels.dynamics cimport gap_rates, moves
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport abs, inf, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport within
 
 cdef double JUMP
 

@@ -1,5 +1,3 @@
-from lcpstep.kernels.linear cimport grow_factor, solve_factored
-from lcpstep.pointers cimport max
 from lcpstep.stepping.pieces.state cimport Work
 
 cdef void bear_on_independent(Work w, double* W, Py_ssize_t n) noexcept nogil

@@ -1,23 +1,14 @@
-from lcpstep.kernels.dynamics cimport gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport LEAD, TIME, Record
-from lcpstep.kernels.vectors cimport add, clear, copy, distance, largest
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
-from lcpstep.stepping.pieces.joints cimport accelerate, put, reduce, take, turn
+from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Work
 
 cdef double ASTRAY
 
-cdef void take_joints(Work w, double t) noexcept nogil
-cdef void join_acceleration(Work w, double t, double* q, double* v, double* a) noexcept nogil
-cdef void reduce_mobility(Work w, Py_ssize_t c) noexcept nogil
 cdef void put_on_joints(Work w, double t, double slack, double* q) noexcept nogil
 cdef void meet_both(Model m, Work w, double t, double slack) noexcept nogil
 cdef void settle_velocity(Work w, double t) noexcept nogil
 cdef void turn_with_joints(Work w, double t) noexcept nogil
 cdef void turn_onto_joints(Work w, double* v) noexcept nogil
-cdef Py_ssize_t joints_failed(Work w) noexcept nogil
 cdef void load_joints(Work w) noexcept nogil
 cdef void reach_joints(Work w, double t, double tau, double slack) noexcept nogil
 cdef void meet_joints(Work w, double tau) noexcept nogil

@@ -21,27 +21,12 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import add, clear, copy, distance, largest
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
-    from lcpstep.stepping.pieces.joints import accelerate, put, reduce, take, turn
+    from lcpstep.stepping.pieces.joints import put, take, turn
     from lcpstep.stepping.pieces.state import Work
 
 ASTRAY = 1e6  # times what counts as closed: where a closed contact is not held
 
 # --- at one state ---------------------------------------------------------------------------------------------
-
-
-def take_joints(w: Work, t: float) -> None:
-    """What the joints are at the state q, with the mass matrix at hand."""
-    take(w.joints, w.M, t, w.q, w.v)
-
-
-def join_acceleration(w: Work, t: float, q: Doubles, v: Doubles, a: Doubles) -> None:
-    """The acceleration with the forces of the joints, a being that without."""
-    accelerate(w.joints, w.M, t, w.low, w.high, q, v, a)
-
-
-def reduce_mobility(w: Work, c: int) -> None:
-    """Take from M^-1 G_c^T, row c of w.MG, what the joints hold back."""
-    reduce(w.joints, c, after(w.MG, c * w.n_q))
 
 
 def put_on_joints(w: Work, t: float, slack: float, q: Doubles) -> None:
@@ -79,11 +64,6 @@ def turn_onto_joints(w: Work, v: Doubles) -> None:
     """A velocity onto the rates of the joints at the state last taken."""
     if not turn(w.joints, v):
         w.joints.failed = JOINTS_FAILED
-
-
-def joints_failed(w: Work) -> int:
-    """Why the joints end the run, or FINISHED."""
-    return w.joints.failed
 
 
 # --- a piece of motion ----------------------------------------------------------------------------------------

@@ -1,14 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.acceleration cimport response
-from lcpstep.kernels.dynamics cimport bias, gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport clear, largest, product
-from lcpstep.pointers cimport abs, after, inf, max
-from lcpstep.stepping.constraints.joint_rows cimport (
-    CONTRADICTION, Elimination, arrived, factorise_joints, solve_joints
-)
-from lcpstep.stepping.pieces.codes cimport ROUNDING
+from lcpstep.pointers cimport Doubles
+from lcpstep.stepping.constraints.joint_rows cimport Elimination
 
 cdef double HELPS
 cdef Py_ssize_t PROJECTIONS, VECTORS
@@ -21,21 +14,8 @@ cdef class Joints:
     cdef readonly object numbers
     cdef readonly Py_ssize_t n_j, n_q
     cdef public Py_ssize_t failed, culprit
-    cdef double* turning
-    cdef double* stretch
-    cdef double* curvature
-    cdef double* free
-    cdef double* load
-    cdef double* piece
-    cdef double* answer
-    cdef double* push
-    cdef double* J
-    cdef double* J_try
-    cdef double* MJ
-    cdef double* S
-    cdef double* share
-    cdef double* before
-    cdef double* shifted
+    cdef Doubles turning, stretch, curvature, free, load, piece, answer, push, J, J_try, MJ, S, share, before
+    cdef Doubles shifted
 
 
 cdef void take(Joints j, double* M, double t, double* q, double* v) noexcept nogil

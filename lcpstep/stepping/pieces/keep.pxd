@@ -1,11 +1,6 @@
-from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport MODE, TIME, Record
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport max, min
-from lcpstep.stepping.pieces.smooth cimport refactor, settle_state
+from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport within
 
 cdef void keep_times(Work w, Record record, double now, double before) noexcept nogil
 cdef void keep_now(Work w, Record record, double before) noexcept nogil

@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
-from lcpstep.kernels.vectors cimport copy, copy_indices
-from lcpstep.pointers cimport after
-from lcpstep.stepping.pieces.codes cimport FINISHED, STOPPED
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.pieces.state cimport Work
 
 
@@ -11,13 +8,8 @@ cdef class Led:
     cdef object kept
     cdef Py_ssize_t code
     cdef double time
-    cdef double* q
-    cdef double* v
-    cdef double* gap
-    cdef double* half
-    cdef double* force
-    cdef double* impulse
-    cdef Py_ssize_t* status
+    cdef Doubles q, v, gap, half, force, impulse
+    cdef Indices status
     cdef bint good(self) noexcept nogil
 
 

@@ -1,25 +1,8 @@
 cimport cython
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Stepwise
-from lcpstep.kernels.dynamics cimport external_force
+from lcpstep.kernels.course cimport Stepwise
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, finite, product
-from lcpstep.pointers cimport abs, max
-from lcpstep.stepping.pieces.carried cimport put_kept_back
-from lcpstep.stepping.pieces.codes cimport (
-    AGAIN, BUFFER_FULL, CLOSED, CORNER, EPS, FINISHED, GROUND, NOBODY, NOT_FINITE, OPEN, STOPPED,
-    TOO_MANY_EVENTS,
-)
-from lcpstep.stepping.pieces.corners cimport find_corners, obstacles_move
-from lcpstep.stepping.pieces.event cimport remeasure
-from lcpstep.stepping.pieces.glide cimport glide
-from lcpstep.stepping.pieces.jointed cimport joints_failed
-from lcpstep.stepping.pieces.keep cimport keep, keep_now
-from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms
-from lcpstep.stepping.pieces.settle cimport endless, settle
-from lcpstep.stepping.pieces.smooth cimport free_acceleration, gap_bias, measure, respond
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport just_after, rounded_by, within
 
 
 cdef class Steps(Stepwise):

@@ -35,7 +35,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
     from lcpstep.stepping.pieces.event import remeasure
     from lcpstep.stepping.pieces.glide import glide
-    from lcpstep.stepping.pieces.jointed import joints_failed
     from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.settle import endless, settle
@@ -262,7 +261,7 @@ def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
     w.under_way = False
     if not is_finite(w):
         return NOT_FINITE
-    code = joints_failed(w) if w.joined else FINISHED
+    code = w.joints.failed if w.joined else FINISHED
     if code == FINISHED and record.is_due(w.steps):
         keep(w, record, t, 0.0)
     return code

@@ -1,5 +1,4 @@
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double FAINT, LEAST

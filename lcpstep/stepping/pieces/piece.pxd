@@ -1,22 +1,7 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport gap_rounding, gaps, moves, obstacle
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.quadratic cimport first_zero, may_reach_zero
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport (
-    CLOSED, EPS, FINISHED, LCP_FAILED, LEFT, NOBODY, NOT_FINITE, OPEN, SAME_TIME,
-)
-from lcpstep.stepping.pieces.contact_forces cimport hold, land
-from lcpstep.stepping.pieces.jointed cimport load_joints, put_on_joints, share_out
-from lcpstep.stepping.pieces.keep cimport keep_between, keep_times, remember
-from lcpstep.stepping.pieces.smooth cimport (
-    ON_THE_SURFACE, accelerate, advance, gap_bias, measure, put_on_surface, refactor, respond,
-)
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport stick
-from lcpstep.stepping.pieces.times cimport driven_by, within
 
 cdef Py_ssize_t POLISHING
 cdef double BRIEF

@@ -1,15 +1,7 @@
 cimport cython
-from libc.math cimport cos, isfinite, sin
-from lcpstep.arrays cimport doubles
-from lcpstep.kernels.dynamics cimport gap_rates, gaps, obstacle
-from lcpstep.kernels.linear cimport grow_factor, solve_factored
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport after, max
-from lcpstep.stepping.pieces.codes cimport CLOSED
-from lcpstep.stepping.pieces.smooth cimport free_acceleration, gap_bias, respond
+from lcpstep.pointers cimport Doubles
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t DEGREE, QUINTIC, CORRECTIONS
 cdef double DOUBTFUL
@@ -21,19 +13,7 @@ cdef class Polynomial:
     cdef readonly object kept
     cdef readonly double scale
     cdef readonly Py_ssize_t degree
-    cdef double* T
-    cdef double* a
-    cdef double* q
-    cdef double* v
-    cdef double* q_stage
-    cdef double* v_stage
-    cdef double* q_end
-    cdef double* v_end
-    cdef double* gap_from
-    cdef double* rate_from
-    cdef double* gap_to
-    cdef double* rate_to
-    cdef double* rate_now
+    cdef Doubles T, a, q, v, q_stage, v_stage, q_end, v_end, gap_from, rate_from, gap_to, rate_to, rate_now
 
 
 cdef bint on_surface(Plan plan, Work w) noexcept nogil

@@ -1,28 +1,11 @@
 cimport cython
 
-from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, max, min
-from lcpstep.stepping.pieces.codes cimport (
-    AGAIN,
-    CLOSED, CORNER, EPS, FINISHED, GROUND, LCP_FAILED, LEFT, NOBODY, NOT_FINITE, ROUNDING, SAME_TIME,
-)
 from lcpstep.stepping.pieces.impulses cimport strike
-from lcpstep.stepping.pieces.keep cimport keep
-from lcpstep.stepping.pieces.loop cimport Steps, is_finite
-from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.piece cimport penetrates
-from lcpstep.stepping.pieces.polynomial cimport (
-    NODES, WEIGHTS, Polynomial, acceleration, biases, expand, force_at, on_surface, state_at,
-)
-from lcpstep.stepping.pieces.polynomial_forces cimport UNDECIDED, load
-from lcpstep.stepping.pieces.scan cimport LOW, NOWHERE, first_landing, first_release, hop_at, is_low
-from lcpstep.stepping.pieces.smooth cimport measure, newton_step, put_on_surface, refactor, respond, settle_state
+from lcpstep.stepping.pieces.loop cimport Steps
+from lcpstep.stepping.pieces.polynomial cimport Polynomial
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport idle, release, stick, turn
-from lcpstep.stepping.pieces.times cimport at_corner, within
 
 cdef double SLOW
 

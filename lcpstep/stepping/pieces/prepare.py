@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.kernels.model import Model
 from lcpstep.stepping.extent import extent, is_stiff
-from lcpstep.stepping.pieces.carried import frame_at
+from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -39,12 +39,6 @@ def at_rest(m: Model, trapezoidal: bool) -> Model:
     """
     m.carried = bool(trapezoidal and m.linear and m.flat and m.frame.given)
     return m
-
-
-def displaced(m: Model, t: float) -> tuple[Array, Array]:
-    """How far the kernels' coordinates are from the scene's at time t, and how fast they part."""
-    out = frame_at(m, t)
-    return out[:, 0], out[:, 1]
 
 
 def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:

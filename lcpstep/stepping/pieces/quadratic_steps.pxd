@@ -1,18 +1,9 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport external_force, moves, obstacle
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.pointers cimport min
-from lcpstep.stepping.pieces.codes cimport AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
-from lcpstep.stepping.pieces.event cimport event
-from lcpstep.stepping.pieces.jointed cimport turn_with_joints
-from lcpstep.stepping.pieces.loop cimport Steps, is_finite
-from lcpstep.stepping.pieces.piece cimport begin_piece, first_contact, move, polish
-from lcpstep.stepping.pieces.race cimport race
-from lcpstep.stepping.pieces.smooth cimport renew_forces
+from lcpstep.stepping.pieces.loop cimport Steps
+from lcpstep.stepping.pieces.piece cimport begin_piece
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport idle
-from lcpstep.stepping.pieces.times cimport at_corner, within
 
 
 cdef class QuadraticSteps(Steps):

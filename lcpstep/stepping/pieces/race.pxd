@@ -1,8 +1,5 @@
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.quadratic cimport first_zero, may_reach_zero
 from lcpstep.kernels.record cimport Record
-from lcpstep.pointers cimport abs, inf
-from lcpstep.stepping.pieces.codes cimport GROUND, IMPACT, ROUNDING
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double CLOSE, SHORT

@@ -1,12 +1,5 @@
 cimport cython
-from lcpstep.kernels.linear cimport grow_factor, solve_definite, solve_factored
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport clear, copy, largest, product
-from lcpstep.lcp.kernel cimport solve_small
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport EPS, INERTIA, ROUNDING
-from lcpstep.stepping.pieces.independent cimport bear_on_independent
-from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double SETTLED, EXACT, PULLS

@@ -18,9 +18,10 @@ from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import adaptive
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
+from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
-from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, displaced, plan, start
+from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, plan, start
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.pieces.state import Plan
 from lcpstep.stepping.step_run import StepRun

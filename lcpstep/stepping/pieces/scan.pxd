@@ -1,13 +1,6 @@
 cimport cython
-from libc.math cimport isfinite
-from lcpstep.kernels.dynamics cimport moves
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport abs, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
-from lcpstep.stepping.pieces.contact_forces cimport pulls
-from lcpstep.stepping.pieces.magnitudes cimport speed_terms
-from lcpstep.stepping.pieces.polynomial cimport NODES, Polynomial, WEIGHTS, contacts_at, force_at
+from lcpstep.stepping.pieces.polynomial cimport Polynomial
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef Py_ssize_t NOWHERE, PARTS, PROBES

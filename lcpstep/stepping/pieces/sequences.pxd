@@ -1,11 +1,6 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs
-from lcpstep.stepping.pieces.codes cimport CLOSED, OPEN, ROUNDING
-from lcpstep.stepping.pieces.magnitudes cimport faint
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER
-from lcpstep.stepping.pieces.times cimport driven_by
 
 cdef double SHORT, AS_SLOW, FINE
 cdef Py_ssize_t IN_A_ROW, MANY_AT_ONCE

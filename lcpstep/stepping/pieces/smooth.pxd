@@ -1,17 +1,6 @@
 cimport cython
-from lcpstep.kernels.acceleration cimport factor_mass, response
-from lcpstep.kernels.dynamics cimport bias, external_force, gap_rates, gaps, total_force
-from lcpstep.kernels.linear cimport factorise, grow_factor, solve, solve_factored
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, OPEN, REST, WHOLE
-from lcpstep.stepping.pieces.jointed cimport (
-    join_acceleration, meet_both, meet_joints, put_on_joints, reach_joints, reduce_mobility,
-    settle_velocity, take_joints,
-)
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.times cimport within
 
 cdef Py_ssize_t LANDINGS
 cdef double ON_THE_SURFACE

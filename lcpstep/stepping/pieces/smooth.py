@@ -23,15 +23,15 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
     from lcpstep.stepping.pieces.jointed import (
-        join_acceleration,
         meet_both,
         meet_joints,
         put_on_joints,
         reach_joints,
-        reduce_mobility,
         settle_velocity,
-        take_joints,
     )
+    from lcpstep.stepping.pieces.joints import accelerate as join_acceleration
+    from lcpstep.stepping.pieces.joints import reduce as reduce_mobility
+    from lcpstep.stepping.pieces.joints import take as take_joints
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
 
@@ -101,7 +101,7 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
         return False
     response(m, w.M, w.jolt, w.force, out)
     if w.joined:
-        join_acceleration(w, t, q, v, out)
+        join_acceleration(w.joints, w.M, t, w.low, w.high, q, v, out)
     return True
 
 
@@ -121,7 +121,7 @@ def mobility(m: Model, w: Work, c: int) -> None:
     """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
     response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
     if w.joined:
-        reduce_mobility(w, c)
+        reduce_mobility(w.joints, c, after(w.MG, c * w.n_q))
 
 
 def respond(m: Model, w: Work) -> None:
@@ -137,7 +137,7 @@ def refactor(m: Model, w: Work, t: float) -> bool:
     if not factor_mass(m, t, w.q, w.v, w.M):
         return False
     if w.joined:
-        take_joints(w, t)
+        take_joints(w.joints, w.M, t, w.q, w.v)
     return True
 
 

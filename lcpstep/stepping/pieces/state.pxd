@@ -1,8 +1,7 @@
 cimport cython
-from lcpstep.arrays cimport doubles, indices
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport after, indices_after
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.pieces.joints cimport Joints
 
 
@@ -14,13 +13,8 @@ cdef class Plan:
     cdef readonly bint trapezoidal, joined, stiff, steady, plain, constant, small, exact
     cdef readonly double slack, longest, period, margin
     cdef readonly Py_ssize_t per_step, many, n_corners
-    cdef double* corners
-    cdef double* A_inverse
-    cdef double* AG
-    cdef double* WA
-    cdef double* A
-    cdef double* unit
-    cdef Py_ssize_t* pivots
+    cdef Doubles corners, A_inverse, AG, WA, A, unit
+    cdef Indices pivots
 
 
 @cython.final
@@ -31,72 +25,12 @@ cdef class Work:
     cdef readonly Joints joints
     cdef Workspace lcp
     cdef Bracket bracket
-    cdef double* q
-    cdef double* v
-    cdef double* free
-    cdef double* a
-    cdef double* force
-    cdef double* next_force
-    cdef double* q_base
-    cdef double* q_try
-    cdef double* v_try
-    cdef double* a_try
-    cdef double* jolt
-    cdef double* q_from
-    cdef double* v_from
-    cdef double* a_from
-    cdef double* q_time
-    cdef double* swing
-    cdef double* v_struck
-    cdef double* gap
-    cdef double* rate
-    cdef double* half
-    cdef double* alpha
-    cdef double* bend
-    cdef double* bias
-    cdef double* gap_try
-    cdef double* gap_t
-    cdef double* gap_t_try
-    cdef double* end_s
-    cdef double* last
-    cdef double* force_now
-    cdef double* older
-    cdef double* older_time
-    cdef double* p
-    cdef double* b
-    cdef double* z
-    cdef double* residual
-    cdef double* change
-    cdef double* doubt
-    cdef double* before
-    cdef double* impulse_from
-    cdef double* since
-    cdef double* next_zero
-    cdef double* turned
-    cdef double* turns
-    cdef double* hops
-    cdef double* fall
-    cdef double* pushed
-    cdef double* impulse
-    cdef double* G
-    cdef double* G_try
-    cdef double* MG
-    cdef double* W
-    cdef double* M
-    cdef double* problem
-    cdef Py_ssize_t* status
-    cdef Py_ssize_t* grounded
-    cdef Py_ssize_t* hits
-    cdef Py_ssize_t* close_hits
-    cdef Py_ssize_t* plastic
-    cdef Py_ssize_t* chosen
-    cdef Py_ssize_t* held
-    cdef Py_ssize_t* place
-    cdef Py_ssize_t* first_coordinate
-    cdef Py_ssize_t* last_coordinate
-    cdef Py_ssize_t* first_contact
-    cdef Py_ssize_t* last_contact
-    cdef Py_ssize_t* pivots
+    cdef Doubles q, v, free, a, force, next_force, q_base, q_try, v_try, a_try, jolt, q_from, v_from, a_from
+    cdef Doubles q_time, swing, v_struck, gap, rate, half, alpha, bend, bias, gap_try, gap_t, gap_t_try, end_s
+    cdef Doubles last, force_now, older, older_time, p, b, z, residual, change, doubt, before, impulse_from
+    cdef Doubles since, next_zero, turned, turns, hops, fall, pushed, impulse, G, G_try, MG, W, M, problem
+    cdef Indices status, grounded, hits, close_hits, plastic, chosen, held, place, first_coordinate
+    cdef Indices last_coordinate, first_contact, last_contact, pivots
     cdef public double sigma, end, low, high, stalled, settled, ahead, blind, goal
     cdef public bint under_way, unchanged, touching, pausing, fresh
     cdef public Py_ssize_t events, closed_now, made_with

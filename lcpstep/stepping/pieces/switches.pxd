@@ -1,9 +1,6 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.pointers cimport abs, max, min
-from lcpstep.stepping.pieces.codes cimport CLOSED, GROUND, OPEN, RELEASE, STICK
-from lcpstep.stepping.pieces.magnitudes cimport acceleration_terms, faint
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double COLLAPSE, FIRST, SHORT_TOGETHER

@@ -1,11 +1,4 @@
 cimport cython
-from lcpstep.events.friction.equations cimport measure_rates, size_of
-from lcpstep.events.friction.guards cimport first_fall, read
-from lcpstep.events.friction.state cimport GUARDS, NOISE
-from lcpstep.events.hybrid.roots cimport DEGREE, NONE, taylor
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy, product
-from lcpstep.pointers cimport abs, after, max, min
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t OPEN, SLIDES

@@ -1,10 +1,4 @@
 cimport cython
-from libc.math cimport pow
-from lcpstep.events.friction.state cimport GUARDS
-from lcpstep.kernels.clock cimport RESOLUTION
-from lcpstep.kernels.vectors cimport copy, distance, largest
-from lcpstep.pointers cimport abs, after, inf, max, min
-from lcpstep.stepping.rubbing.found cimport curve, is_motion, measure_base, note_arrival, note_middle, read_guards
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL

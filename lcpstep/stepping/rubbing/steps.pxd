@@ -1,6 +1,5 @@
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.stepping.rubbing.stride cimport stride
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 

@@ -1,17 +1,6 @@
 cimport cython
-from lcpstep.events.friction.equations cimport add_impulse, measure
-from lcpstep.events.friction.held cimport count_impulses, hold_modes
-from lcpstep.events.friction.surfaces cimport project
-from lcpstep.events.friction.keep cimport keep, keep_event
-from lcpstep.events.friction.modes cimport decide, undecided
-from lcpstep.events.friction.state cimport GUARDS
-from lcpstep.events.friction.step cimport arrive, find_standing, of_force
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
-from lcpstep.kernels.vectors cimport copy
-from lcpstep.pointers cimport after, min
-from lcpstep.stepping.rubbing.found cimport NOWHERE, arm, first_event, locate, note_arrival, note_base
-from lcpstep.stepping.rubbing.paced cimport pace
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT

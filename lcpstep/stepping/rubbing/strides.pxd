@@ -1,9 +1,6 @@
 cimport cython
-from lcpstep.arrays cimport doubles
 from lcpstep.events.friction.smooth cimport Smooth
-from lcpstep.events.friction.state cimport GUARDS
-from lcpstep.kernels.vectors cimport add, clear, copy, finite
-from lcpstep.pointers cimport after, min
+from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t ARRIVAL
 
@@ -13,23 +10,8 @@ cdef class Strides(Smooth):
     cdef Py_ssize_t order, n_steps
     cdef double h, t_start, tolerance, span, size_q, size_v
     cdef bint going
-    cdef double* leaving
-    cdef double* arriving
-    cdef double* middle
-    cdef double* push
-    cdef double* begin_value
-    cdef double* begin_slope
-    cdef double* end_value
-    cdef double* end_slope
-    cdef double* middle_value
-    cdef double* half_value
-    cdef double* quarter_value
-    cdef double* late_value
-    cdef double* refined
-    cdef double* stored
-    cdef double* stored_rates
-    cdef double* stored_forces
-    cdef double* arrival
+    cdef Doubles leaving, arriving, middle, push, begin_value, begin_slope, end_value, end_slope, middle_value
+    cdef Doubles half_value, quarter_value, late_value, refined, stored, stored_rates, stored_forces, arrival
     cdef bint step(self, double t, double h) noexcept nogil
     cdef bint complete(self, double t, double h) noexcept nogil
     cdef double pressed(self, Py_ssize_t i, double x) noexcept nogil

@@ -1,8 +1,5 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport mass, total_force
-from lcpstep.kernels.linear cimport factorise, positive_definite, solve
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport add, copy, largest
 from lcpstep.stepping.theta_method.moving cimport State
 from lcpstep.stepping.theta_method.plan cimport Plan
 

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.pointers import after, indices_after
     from lcpstep.stepping.constraints.joint_rows import Elimination
 
-VECTORS, SQUARES = 11, 4  # of n_q numbers, and of n_q^2
+VECTORS, SQUARES = 10, 4  # of n_q numbers, and of n_q^2
 
 
 class State:
@@ -26,6 +26,7 @@ class State:
     g, u, closed     (n_c,) gaps and their velocities; 0 open, 1 struck in the last step, 2 closed for several steps
     sticks           (n_c,) 1 for contacts that the last step kept from sliding
     impulse          (n,) of all rows since the last kept state
+    n_moving         how many numbers q, v, force, g, u and impulse are, in one piece in this order
     next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
     q_between, v_between                  a state within it
     R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
@@ -39,17 +40,19 @@ class State:
 
     def __init__(self, q: Any, v: Any, n_c: int, n: int) -> None:
         self.n_q, self.n_c, n_q = len(q), n_c, len(q)
-        self.arrays = {"q": np.array(q), "v": np.array(v), "impulse": np.zeros(n)}
-        self.arrays |= {"g": np.zeros(n_c), "u": np.zeros(n_c), "marks": np.zeros(2 * n_c, dtype=np.intp)}
-        self.work, self.order = np.zeros((VECTORS + SQUARES * n_q) * n_q), np.zeros(n_q, dtype=np.intp)
-        self.q, self.v = doubles(self.arrays["q"]), doubles(self.arrays["v"])
-        self.g, self.u = doubles(self.arrays["g"]), doubles(self.arrays["u"])
-        self.closed, self.impulse = indices(self.arrays["marks"]), doubles(self.arrays["impulse"])
-        self.sticks = indices_after(self.closed, n_c)
+        self.n_moving = 3 * n_q + 2 * n_c + n
+        self.numbers, self.marks = np.zeros(self.n_moving), np.zeros(2 * n_c + n_q, dtype=np.intp)
+        parts = np.split(self.numbers, [n_q, 2 * n_q, 3 * n_q, 3 * n_q + n_c, 3 * n_q + 2 * n_c])
+        self.arrays = dict(zip(("q", "v", "force", "g", "u", "impulse"), parts, strict=True))
+        self.arrays["q"][:], self.arrays["v"][:] = q, v
+        self.q, self.v, self.force = doubles(self.numbers), doubles(parts[1]), doubles(parts[2])
+        self.g, self.u, self.impulse = doubles(parts[3]), doubles(parts[4]), doubles(parts[5])
+        self.closed = indices(self.marks)
+        self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
         self.steps = self.problems = self.forces = self.iteration = 0
         self.moved = 0.0
-        self.force = doubles(self.work)
-        self.next_force = after(self.force, n_q)
+        self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q)
+        self.next_force = doubles(self.work)
         self.next_q = after(self.next_force, n_q)
         self.next_v = after(self.next_q, n_q)
         self.v_free = after(self.next_v, n_q)
@@ -63,7 +66,6 @@ class State:
         self.M_start = after(self.M, n_q * n_q)
         self.A = after(self.M_start, n_q * n_q)
         self.J = after(self.A, n_q * n_q)
-        self.pivots = indices(self.order)
 
 
 class Rows:

@@ -1,10 +1,4 @@
-from lcpstep.kernels.acceleration cimport factor_mass, response
-from lcpstep.kernels.dynamics cimport gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport abs, after, inf, max
-from lcpstep.kernels.coulomb cimport solve_contacts
-from lcpstep.stepping.constraints.directions cimport mobilities
-from lcpstep.stepping.constraints.joint_rows cimport arrived, distribute, eliminate
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 

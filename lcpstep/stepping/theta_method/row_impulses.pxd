@@ -1,16 +1,5 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport gap_rates
-from lcpstep.kernels.energetic cimport strike_in_turn
-from lcpstep.kernels.linear cimport solve as solve_equations
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.vectors cimport copy, finite, largest, product
-from lcpstep.kernels.repose cimport AT_REST
-from lcpstep.kernels.stiction cimport rest_where_possible, solve_steps
-from lcpstep.pointers cimport abs, after, max
-from lcpstep.kernels.coulomb cimport motion_of, solve_contacts
-from lcpstep.stepping.constraints.directions cimport mobilities
-from lcpstep.stepping.constraints.joint_rows cimport CONTRADICTION, distribute, eliminate
-from lcpstep.stepping.theta_method.implicit cimport REFRESH
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 

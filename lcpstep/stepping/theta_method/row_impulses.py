@@ -35,15 +35,7 @@ NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
 def impulses(
-    m: Model,
-    plan: Plan,
-    s: State,
-    c: Rows,
-    n_a: int,
-    n_f: int,
-    t_next: float,
-    external: bool,
-    solved: bool,
+    m: Model, plan: Plan, s: State, c: Rows, n_a: int, n_f: int, t_next: float, external: bool, solved: bool
 ) -> int:
     """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
     n_k, ids, rate = n_a + n_f + c.n_j, c.problem.ids, c.problem.rate

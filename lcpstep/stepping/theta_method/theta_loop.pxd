@@ -1,12 +1,8 @@
-from lcpstep.kernels.course cimport AHEAD, ARRIVED, Stepwise
-from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps, obstacle, total_force
+from lcpstep.kernels.course cimport Stepwise
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport copy, finite, product
-from lcpstep.pointers cimport min
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
-from lcpstep.stepping.theta_method.theta_step cimport take_step
 
 cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
 cdef double LATE

@@ -1,14 +1,8 @@
 cimport cython
-from lcpstep.kernels.dynamics cimport external_force, gap_rates, gaps
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport COLUMNS, Record
-from lcpstep.kernels.vectors cimport clear, copy, finite, product
-from lcpstep.pointers cimport after, whole
-from lcpstep.stepping.theta_method.implicit cimport linearise
+from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
-from lcpstep.stepping.theta_method.repair cimport project
-from lcpstep.stepping.theta_method.row_impulses cimport apply, apply_once, impulses, joints_hold, note_sticking, take_part
 
 cdef Py_ssize_t FINISHED, IMPACT, JOINTS_FAILED, NEWTON_FAILED, NOT_FINITE, RELEASE, STICK
 cdef Py_ssize_t MAX_ITERATIONS
