@@ -6,6 +6,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.tally cimport Tally
+from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ALL, GUARDS, BEGIN, NOT_FINITE
 cdef double NOISE
@@ -25,67 +26,12 @@ cdef class Rubbing(RungeKutta):
     cdef Py_ssize_t guard, paced
     cdef double found, slope
     cdef bint constant, moving, plain, measured, mapped, risen
-    cdef double* nodes
-    cdef double* weights
-    cdef double* q
-    cdef double* v
-    cdef double* a_free
-    cdef double* a
-    cdef double* force
-    cdef double* work
-    cdef double* shifted
-    cdef double* dy
-    cdef double* seen
-    cdef double* dv
-    cdef double* M
-    cdef double* R
-    cdef double* MR
-    cdef double* G
-    cdef double* W
-    cdef double* S
-    cdef double* L
-    cdef double* rate
-    cdef double* bias
-    cdef double* gap
-    cdef double* velocity
-    cdef double* x
-    cdef double* change
-    cdef double* multiplier
-    cdef double* impulse
-    cdef double* account
-    cdef double* instant
-    cdef double* paces
-    cdef double* turn_velocity
-    cdef double* turn_start
-    cdef double* turn_impulse
-    cdef double* shifted_rate
-    cdef double* counted
-    cdef double* total
-    cdef double* loads
-    cdef double* doubt
-    cdef double* effect
-    cdef double* effects
-    cdef double* mu
-    cdef double* mu_s
-    cdef double* slip
-    cdef double* tangential
-    cdef double* direction
-    cdef double* was_direction
-    cdef double* new_direction
-    cdef double* terms
-    cdef double* before
-    cdef double* owed
-    cdef Py_ssize_t* mode
-    cdef Py_ssize_t* was_mode
-    cdef Py_ssize_t* new_mode
-    cdef Py_ssize_t* loaded
-    cdef Py_ssize_t* new_loaded
-    cdef Py_ssize_t* free
-    cdef Py_ssize_t* touches
-    cdef Py_ssize_t* parting
-    cdef Py_ssize_t* held
-    cdef double* value
-    cdef double* band
-    cdef double* samples
-    cdef Py_ssize_t* armed
+    cdef Doubles nodes, weights, q, v, a_free, a, force, work, shifted, dy, seen, dv, M, R, MR, G, W, S, L
+    cdef Doubles rate, bias, gap, velocity, x, change, multiplier, impulse, account, instant, paces
+    cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
+    cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
+    cdef Doubles owed
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, held
+    cdef Doubles value, band, samples
+    cdef Indices armed
     cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

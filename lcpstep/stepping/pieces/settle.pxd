@@ -1,23 +1,7 @@
 cimport cython
-from libc.math cimport pow
-from lcpstep.kernels.dynamics cimport gap_rates
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.vectors cimport product
-from lcpstep.pointers cimport abs, max, min
-from lcpstep.stepping.pieces.codes cimport (
-    ACCUMULATION, CLOSED, FINISHED, GROUND, IMPACT, INERTIA, LCP_FAILED, NOT_FINITE, ROUNDING
-)
-from lcpstep.stepping.pieces.jointed cimport answer_impulse, hold_joints, turn_with_joints
-from lcpstep.stepping.pieces.keep cimport keep
-from lcpstep.stepping.pieces.magnitudes cimport speed_terms
-from lcpstep.stepping.pieces.refine cimport NONE, solve_chosen
-from lcpstep.stepping.pieces.smooth cimport (
-    gap_bias, measure, put_on_surface, refactor, renew_forces, respond
-)
 from lcpstep.stepping.pieces.state cimport Plan, Work
-from lcpstep.stepping.pieces.switches cimport release, stick
-from lcpstep.stepping.pieces.times cimport within
 
 cdef double UNTOLD
 
