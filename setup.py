@@ -23,9 +23,11 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 HERE = Path(__file__).resolve().parent
+IN_C = Path("build", "cython")
 DIGESTS = HERE / "build" / "digests"  # of what lies built beside its source, a file for each module
 sys.path.insert(0, str(HERE))
 import ready  # noqa: E402
+import translating  # noqa: E402
 
 HEADERS = {
     "lcpstep.pointers",
@@ -40,6 +42,10 @@ DIRECTIVES = {
     "infer_types": True,  # of local variables, from what they are assigned
     "annotation_typing": False,  # types of kernels stand in the .pxd; annotations are for readers and mypy
     "cdivision": True,
+    # Half of what the compiler would have to do: nobody pickles what kernels work in, or asks their Python functions
+    # for more than to be called
+    "auto_pickle": False,
+    "binding": False,
 }
 # Nothing is fused, so that every processor rounds alike
 OPTIONS = (
@@ -164,16 +170,16 @@ def translate(modules: list[Module]) -> None:
     Done by the command that compiles, and not when this file is run: pip and build run it several times, to ask for
     requirements and metadata, each time in a process of its own.
     """
-    in_c = cythonize(
-        modules,
-        nthreads=os.cpu_count() or 1,
-        force=True,
-        compiler_directives=DIRECTIVES,
-        build_dir="build/cython",
-    )
-    sources = {made.name: made.sources for made in in_c}
+    processes, left = os.cpu_count() or 1, modules
+    in_c = {m.name: str(IN_C / Path(m.sources[0]).with_suffix(".c")) for m in modules}
+    if sys.platform == "linux":
+        sources = {m.name: (m.sources[0], in_c[m.name]) for m in modules}
+        names = translating.translate(sources, DIRECTIVES, processes)
+        left = [m for m in modules if m.name in names]
+    if left:
+        cythonize(left, nthreads=processes, force=True, compiler_directives=DIRECTIVES, build_dir=str(IN_C))
     for module in modules:
-        module.sources = sources[module.name]
+        module.sources = [in_c[module.name]]
 
 
 if __name__ == "__main__":
