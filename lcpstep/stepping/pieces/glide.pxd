@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.kernels.dynamics cimport external_force, moves, obstacle
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.quadratic cimport first_zero, may_reach_zero
-from lcpstep.kernels.record cimport LENGTH, Record, TIME
+from lcpstep.kernels.record cimport Record, TIME
 from lcpstep.pointers cimport abs, inf
 from lcpstep.stepping.pieces.carried cimport PUT_BACK
 from lcpstep.stepping.pieces.codes cimport SAME_TIME
