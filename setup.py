@@ -42,6 +42,10 @@ DIRECTIVES = {
     "infer_types": True,  # of local variables, from what they are assigned
     "annotation_typing": False,  # types of kernels stand in the .pxd; annotations are for readers and mypy
     "cdivision": True,
+    # Half of what the compiler would have to do: nobody pickles what kernels work in, or asks their Python functions
+    # for more than to be called
+    "auto_pickle": False,
+    "binding": False,
 }
 # Nothing is fused, so that every processor rounds alike
 OPTIONS = (

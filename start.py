@@ -21,13 +21,8 @@ ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 LAST = 60  # lines of pip's that are shown where it fails
-CHECKS = (
-    ["ruff", "check", "."],
-    ["ruff", "format", "--check", "."],
-    ["mypy"],
-    ["lint-imports"],
-    ["pytest"],
-)
+BUILD = "pyproject.toml", "setup.py", "ready.py"
+BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"], ["lint-imports"])
 
 
 def main(arguments: list[str]) -> int:
@@ -40,17 +35,32 @@ def main(arguments: list[str]) -> int:
     if not arguments:
         return subprocess.call([BIN / "lcpstep", "compare", "cam-follower"], cwd=ROOT)
     set_up_checks()
-    for check in CHECKS:
-        print("==", *check, flush=True)
-        status = subprocess.call([BIN / check[0], *check[1:]], cwd=ROOT)
-        if status != 0:
-            return status
-    return 0
+    return check()
+
+
+def check() -> int:
+    """Run the tests, and beside them the short checks, in what the tests leave idle; one that fails ends all."""
+    print("== pytest, and beside it:", *(words[0] for words in BESIDE), flush=True)
+    tests = subprocess.Popen([BIN / "pytest"], cwd=ROOT)
+    for words in BESIDE:
+        done = subprocess.run(
+            [BIN / words[0], *words[1:]],
+            cwd=ROOT,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        print(f"\n== {' '.join(words)}\n{done.stdout}", end="", flush=True)
+        if done.returncode != 0:
+            tests.terminate()
+            tests.wait()
+            return done.returncode
+    return tests.wait()
 
 
 def set_up() -> None:
     """Make the virtual environment and install the project into it, unless that has been done with these sources."""
-    if is_done("installed", "pyproject.toml", "setup.py", "ready.py", *kernels()):
+    if is_done("installed", *BUILD, *kernels()):
         return
     print("setting up .venv, and building; this takes three to ten minutes", flush=True)
     if os.name != "nt" and "CC" not in os.environ and not any(map(shutil.which, ("cc", "gcc", "clang"))):
@@ -58,7 +68,7 @@ def set_up() -> None:
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
     install("--editable", ".")
-    note_done("installed", "pyproject.toml", "setup.py", "ready.py", *kernels())
+    note_done("installed", *BUILD, *kernels())
 
 
 def set_up_checks() -> None:

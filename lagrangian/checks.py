@@ -28,7 +28,12 @@ def array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
         result = result.reshape((1,) * len(shape))
     if result.shape != shape:
         raise ValueError(f"{name}: expected shape {shape}, got {np.shape(given)}")
-    if not np.all(np.isfinite(result)):
+    return _finite(name, value, result)
+
+
+def _finite(name: str, value: ArrayLike, result: Array) -> Array:
+    """An array of one's own, read-only from here on; ValueError where it is not finite."""
+    if not np.isfinite(result).all():
         raise ValueError(f"{name}: expected finite numbers, got {value!r}")
     result.flags.writeable = False
     return result
@@ -93,7 +98,7 @@ def vector(name: str, value: ArrayLike) -> Array:
     given = np.atleast_1d(_real(name, value))
     if given.ndim != 1:
         raise ValueError(f"{name}: expected one dimension, got shape {given.shape}")
-    return array(name, given, given.shape)
+    return _finite(name, given, given)
 
 
 def increasing(parameter: str, values: ArrayLike) -> Array:

@@ -55,7 +55,7 @@ class Kept:
             times = np.array(checks.vector("keep", keep))
         except ValueError:
             raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
-        if np.ndim(keep) != 1 or len(times) == 0 or not np.all(np.diff(times) > 0.0):
+        if np.ndim(keep) != 1 or len(times) == 0 or not (times[1:] > times[:-1]).all():
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(
@@ -215,7 +215,8 @@ class Recorder:
         """All states kept so far."""
         if self._free > 0 or not self._states:
             self._close(0)
-        t, mode, length, q, v, impulse = map(joined, zip(*self._states, strict=True))
+        first, *more = self._states
+        t, mode, length, q, v, impulse = map(joined, zip(first, *more, strict=True)) if more else first
         return States(t, q, v, impulse, mode, length)
 
     def dense(self) -> Array:

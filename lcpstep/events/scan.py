@@ -22,6 +22,9 @@ PER_PERIOD, PER_FORCING, PER_SPAN = (
     50,
 )  # intervals per period of each oscillation, of the forcing, of the span
 SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
+PLACES = (
+    np.arange(SAMPLES) + np.arange(SAMPLES) * GOLDEN % 1.0
+)  # irregular: no oscillation hides between them
 SLOPE = 1e-7  # of the time looked at: step of a difference
 
 
@@ -78,10 +81,9 @@ def fastest_turn(scene: Scene, m: Model, samples: Seen | None) -> float:
     samples = samples or seen(scene, m)
     even = turns(scene).elsewhere(samples.times, scene.period)
     for rates in _rates(scene, m, samples, SLOPE * sampled_length(scene)):
-        size = np.abs(rates)
-        size[~even] = 0.0
-        largest = size.reshape(windows, -1, rates.shape[1], 2).max(axis=1)
-        speed, acceleration = largest[..., 0], largest[..., 1]
+        size = np.abs(rates.T, order="C")  # times last: maxima over what lies side by side
+        size[..., ~even] = 0.0
+        speed, acceleration = size.reshape(2, rates.shape[1], windows, -1).max(axis=-1)
         turning = (speed > 0.0) & np.isfinite(acceleration / np.where(speed > 0.0, speed, 1.0))
         fastest = max(fastest, np.max(acceleration[turning] / speed[turning], initial=0.0))
     return 2.0 * math.pi / fastest if fastest > 0.0 else math.inf
@@ -93,9 +95,8 @@ def sampled_length(scene: Scene) -> float:
 
 
 def sample_times(scene: Scene) -> Array:
-    """Times at which it is looked at, (SAMPLES,); irregular, so that no oscillation hides between them."""
-    k = np.arange(SAMPLES)
-    return np.asarray(scene.t_span[0] + sampled_length(scene) * (k + k * GOLDEN % 1.0) / SAMPLES)
+    """Times at which it is looked at, (SAMPLES,)."""
+    return np.asarray(scene.t_span[0] + sampled_length(scene) * PLACES / SAMPLES)
 
 
 def _rates(scene: Scene, m: Model, samples: Seen, step: float) -> Iterator[Array]:

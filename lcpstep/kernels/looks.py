@@ -123,7 +123,19 @@ def find_highest(
 
 def all_finite(x: Any) -> bool:
     """Whether no number of a contiguous array is infinite or not-a-number."""
-    return bool(finite(doubles(x), x.size))
+    return bool(four_at_once(doubles(x), x.size))
+
+
+def four_at_once(x: Doubles, n: int) -> bool:
+    """Kernel of `all_finite`: sums that do not wait for each other."""
+    a, b, c, d, whole_fours = 0.0, 0.0, 0.0, 0.0, n - n % 4
+    with cython.nogil:
+        for i in range(0, whole_fours, 4):
+            a += x[i] - x[i]
+            b += x[i + 1] - x[i + 1]
+            c += x[i + 2] - x[i + 2]
+            d += x[i + 3] - x[i + 3]
+    return a + b + c + d == 0.0 and finite(after(x, whole_fours), n - whole_fours)
 
 
 def turning(

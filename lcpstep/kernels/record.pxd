@@ -14,7 +14,7 @@ cdef class Record:
     cdef double* last_row(self) noexcept nogil
     cdef double* dense_row(self, Py_ssize_t row) noexcept nogil
     cdef void keep(self, double t, double mode, double* q, double* v, double* impulse) noexcept nogil
-    cdef void keep_one(self, double t, double q, double v, double* impulse) noexcept nogil
+    cdef void keep_one(self, double t, double length, double q, double v, double* impulse) noexcept nogil
     cdef void keep_awaited(self, double* q, double* v, double* impulse) noexcept nogil
     cdef void store(self, double* motion, double length) noexcept nogil
     cdef void note(
@@ -24,6 +24,9 @@ cdef class Record:
     cdef double awaited(self) noexcept nogil
     cdef bint wants(self, double stop, bint last) noexcept nogil
     cdef void split(
+        self, double* t, double* mode, double* length, double* q, double* v, double* impulse
+    ) noexcept nogil
+    cdef void split_one(
         self, double* t, double* mode, double* length, double* q, double* v, double* impulse
     ) noexcept nogil
     cdef bint is_due(self, Py_ssize_t step) noexcept nogil

@@ -67,10 +67,10 @@ class Record:
             impulse[c] = 0.0
         self.row += 1
 
-    def keep_one(self, t: float, q: float, v: float, impulse: Doubles) -> None:
+    def keep_one(self, t: float, length: float, q: float, v: float, impulse: Doubles) -> None:
         """`keep` where there are one coordinate and one impulse, mode 0."""
         row = after(self.rows, self.row * self.row_size)
-        row[TIME], row[MODE], row[LENGTH] = t, 0.0, 0.0
+        row[TIME], row[MODE], row[LENGTH] = t, 0.0, length
         row[LEAD], row[LEAD + 1], row[LEAD + 2] = q, v, impulse[0]
         impulse[0] = 0.0
         self.row += 1
@@ -111,6 +111,9 @@ class Record:
     ) -> None:
         """The rows, each quantity into an array of its own; where zeros are most of it, the others alone."""
         n, n_c = self.n_q, self.n_c
+        if n == 1 and n_c == 1:
+            self.split_one(t, mode, length, q, v, impulse)
+            return
         for k in range(self.row):
             row = after(self.rows, k * self.row_size)
             t[k] = row[TIME]
@@ -123,6 +126,20 @@ class Record:
             for i in range(n_c):
                 if row[LEAD + 2 * n + i] != 0.0:
                     impulse[k * n_c + i] = row[LEAD + 2 * n + i]
+
+    def split_one(
+        self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
+    ) -> None:
+        """`split` where there are one coordinate and one impulse."""
+        for k in range(self.row):
+            row = after(self.rows, k * (LEAD + 3))
+            t[k], q[k], v[k] = row[TIME], row[LEAD], row[LEAD + 1]
+            if row[MODE] != 0.0:
+                mode[k] = row[MODE]
+            if row[LENGTH] != 0.0:
+                length[k] = row[LENGTH]
+            if row[LEAD + 2] != 0.0:
+                impulse[k] = row[LEAD + 2]
 
     def room_for(self, rows: int) -> Columns:
         """Arrays for times, modes, durations, positions, velocities and impulses of so many rows.

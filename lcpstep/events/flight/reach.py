@@ -52,7 +52,7 @@ def reach(scene: Scene, m: Model, all_seen: Seen | None = None) -> Reach:
     still = np.zeros((1, 1, 3))
     at_regular = (G * (still if frame is None else frame) + (still if motion is None else motion))[:, 0]
     found = np.concatenate([at_regular, samples(_between_corners(scene))])
-    size = np.max(np.abs(found), axis=0)
+    size = np.max(np.abs(found.T, order="C"), axis=1)
     far = Reach(math.inf, 0.0, float(size[0]), float(size[1]))
     if not math.isfinite(scene.period):
         return far

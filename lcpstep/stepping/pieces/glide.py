@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import LENGTH, TIME, Record
+    from lcpstep.kernels.record import TIME, Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.carried import PUT_BACK
     from lcpstep.stepping.pieces.codes import SAME_TIME
@@ -35,6 +35,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         if moving:
             obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
+    kept = record.last_row()[TIME] if record.row > 0 else -inf
     k = start = w.steps
     due = k + record.every - k % record.every if record.every > 0 else 0
     while k < last:
@@ -74,14 +75,14 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         if k == due:
             due += record.every
             now = t0 + h * (k - first)
-            if not contact or (record.row > 0 and record.last_row()[TIME] >= now):
+            if not contact or kept >= now:
                 w.q[0], w.v[0] = q, v
                 keep(w, record, now, 0.0)
             elif m.carried and now == t:  # the obstacle has told where the frame is
-                record.keep_one(now, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
-                record.last_row()[LENGTH] = PUT_BACK
+                record.keep_one(now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
             else:
-                record.keep_one(now, q, v, w.impulse)
+                record.keep_one(now, 0.0, q, v, w.impulse)
+            kept = now
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:
         w.gap[0], w.rate[0], w.half[0] = g, u, bent

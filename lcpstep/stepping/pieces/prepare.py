@@ -100,10 +100,16 @@ def longest(scene: Scene, m: Model, method: Located) -> float:
     if method.order != "exact":
         return np.inf
     a = m.arrays
-    own = (a["M_inverse"] @ a[name] if a[name].any() else np.zeros((0, 0)) for name in ("K", "C"))
-    stiffness, damping = (np.max(np.abs(np.linalg.eigvals(A)), initial=0.0) for A in own)
+    stiffness, damping = (largest_eigenvalue(a["M_inverse"] @ a[name]) for name in ("K", "C"))
     rate = max(np.sqrt(stiffness), damping, abs(m.omega), 2.0 * np.pi / PER_PERIOD / scene.period)
     return float(1.0 / rate) if rate > 0.0 else np.inf
+
+
+def largest_eigenvalue(A: Array) -> float:
+    """Magnitude of the largest eigenvalue; of one number, or of zeros, without asking LAPACK."""
+    if A.size == 1 or not A.any():
+        return float(abs(A[0, 0]))
+    return float(np.max(np.abs(np.linalg.eigvals(A))))
 
 
 def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:

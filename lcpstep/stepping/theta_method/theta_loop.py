@@ -128,7 +128,7 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
         left -= 1
         if left == 0 and g - g == 0.0 and u - u == 0.0:
             left = record.every
-            record.keep_one(t, q, v, s.impulse)
+            record.keep_one(t, 0.0, q, v, s.impulse)
     s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
     s.forces += k - s.steps
     s.steps = k
