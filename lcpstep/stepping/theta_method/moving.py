@@ -40,13 +40,14 @@ class State:
 
     def __init__(self, q: Any, v: Any, n_c: int, n: int) -> None:
         self.n_q, self.n_c, n_q = len(q), n_c, len(q)
-        self.n_moving = 3 * n_q + 2 * n_c + n
+        self.n_moving, self.arrays = 3 * n_q + 2 * n_c + n, dict[str, Any]()
         self.numbers, self.marks = np.zeros(self.n_moving), np.zeros(2 * n_c + n_q, dtype=np.intp)
-        parts = np.split(self.numbers, [n_q, 2 * n_q, 3 * n_q, 3 * n_q + n_c, 3 * n_q + 2 * n_c])
-        self.arrays = dict(zip(("q", "v", "force", "g", "u", "impulse"), parts, strict=True))
-        self.arrays["q"][:], self.arrays["v"][:] = q, v
-        self.q, self.v, self.force = doubles(self.numbers), doubles(parts[1]), doubles(parts[2])
-        self.g, self.u, self.impulse = doubles(parts[3]), doubles(parts[4]), doubles(parts[5])
+        x, first = self.arrays, 0
+        for name, size in (("q", n_q), ("v", n_q), ("force", n_q), ("g", n_c), ("u", n_c), ("impulse", n)):
+            x[name], first = self.numbers[first : first + size], first + size
+        x["q"][:], x["v"][:] = q, v
+        self.q, self.v, self.force = doubles(self.numbers), doubles(x["v"]), doubles(x["force"])
+        self.g, self.u, self.impulse = doubles(x["g"]), doubles(x["u"]), doubles(x["impulse"])
         self.closed = indices(self.marks)
         self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
         self.steps = self.problems = self.forces = self.iteration = 0
