@@ -201,4 +201,16 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located-4", "located-4-tolerance"),
     ),
+    # A small force beside two large ones, nearly opposite, turned round; it was known too late, and had pulled
+    "a light body jammed between two walls in a wedge": (
+        Description(
+            M=((430.0, 0.0, 0.0), (0.0, 0.000281, 0.0), (0.0, 0.0, 5440.0)), q0=(-1.04, -0.143, -0.981),
+            v0=(0.0785, -0.0191, 0.0869), t_span=(0.0, 7.2), h=0.0203,
+            G=((0.278, 0.369, 0.887), (-0.698, 0.526, 0.486), (-0.55, -0.73, 0.406), (0.701, -0.528, 0.479)),
+            offset=(1.275334, -0.17393600000000004, -0.237104, 1.123435), restitution=(0.23, 0.0, 1.0, 1.0),
+            C=((2.42, 0.0, 0.0), (0.0, 1.59e-06, 0.0), (0.0, 0.0, 30.7)),
+            constant=(0.0, 0.0, -53400.0), cosine=(-118.0, -4.8e-05, -812.0), force_omega=1.11, family='wedge',
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
 }  # fmt: skip
