@@ -54,3 +54,24 @@ def test_a_particle_leaves_one_of_two_walls():
     np.testing.assert_allclose(m.at(t)[0][:, 0], x, atol=1e-12)
     np.testing.assert_array_equal(m.at(t)[0][:, 1], q0[1])
     assert m.impacts[m.impacts.kind == Kind.RELEASE].contact.tolist() == [0]
+
+
+def test_a_wedge_lets_go_of_what_it_jams_when_its_force_ends():
+    """Two nearly opposite walls press with 55 kN on 0.3 g, and rounding of that hides a third force that turns round.
+
+    At rest G^T lambda = -f: lambda_0 = A + B cos(wt) ends at a time known in closed form. It was 0.05 s late, and the
+    force had pulled up to there.
+    """
+    G = np.array([[0.278, 0.369, 0.887], [-0.698, 0.526, 0.486], [0.701, -0.528, 0.479]])
+    load, swing, w = np.array([0.0, 0.0, -53400.0]), np.array([-118.0, -4.8e-5, -812.0]), 1.11
+    A, B = np.linalg.solve(G.T, -load)[0], np.linalg.solve(G.T, -swing)[0]
+    system = LinearSystem(
+        M=np.diag([430.0, 2.81e-4, 5440.0]), force=Harmonic(constant=load, cosine=swing, omega=w)
+    )
+    scene = Scene(system, np.zeros(3), np.zeros(3), (6.0, 7.2), LinearContacts(G, np.zeros(3)))
+    for tolerance in (1e-12, 1e-6):
+        m = simulate(scene, EventDriven(tolerance, tolerance))
+        released = m.impacts[m.impacts.kind == Kind.RELEASE]
+        assert list(released.contact) == [0]
+        assert released.time[0] == pytest.approx((2.0 * np.pi + np.arccos(-A / B)) / w, abs=1e-11)
+        assert np.min(m.impulse) >= 0.0

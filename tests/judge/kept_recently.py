@@ -276,4 +276,30 @@ RECENTLY: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("moreau",),
     ),
+    # A small force beside two large ones, nearly opposite, turned round; it was known too late, and had pulled
+    "a light body jammed between two walls in a wedge": (
+        Description(
+            M=((430.0, 0.0, 0.0), (0.0, 0.000281, 0.0), (0.0, 0.0, 5440.0)), q0=(-1.04, -0.143, -0.981),
+            v0=(0.0785, -0.0191, 0.0869), t_span=(0.0, 7.2), h=0.0203,
+            G=((0.278, 0.369, 0.887), (-0.698, 0.526, 0.486), (-0.55, -0.73, 0.406), (0.701, -0.528, 0.479)),
+            offset=(1.275334, -0.17393600000000004, -0.237104, 1.123435), restitution=(0.23, 0.0, 1.0, 1.0),
+            C=((2.42, 0.0, 0.0), (0.0, 1.59e-06, 0.0), (0.0, 0.0, 30.7)),
+            constant=(0.0, 0.0, -53400.0), cosine=(-118.0, -4.8e-05, -812.0), force_omega=1.11, family='wedge',
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
+    # What a time is rounded by put hops of 1e-12 m inside of obstacles, and their speed was forgotten
+    "low hops of a body in a shaken wedge a day before time zero": (
+        Description(
+            M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(0.0, 0.0, 0.0),
+            v0=(-0.16304926249570165, -0.3909133729093478, 0.07367708050356608), t_span=(-86200.0, -86188.0),
+            h=0.0192, G=((0.227, -0.957, 0.183), (0.489, -0.0398, 0.871), (0.0707, 0.169, 0.983),
+            (-0.174, 0.149, 0.973), (-0.487, -0.297, 0.821)), offset=(0.5498269626561366, -0.09484794511842509,
+            -0.07907303734386337, 0.11882696265613663, -0.06897303734386337),
+            restitution=(0.0, 0.78, 0.99, 0.51, 0.18), constant=(0.0, 0.0, -9.81),
+            amplitude=(0.131, 0.131, 0.131, 0.131, 0.131),
+            phase=(0.0, 4.81, 0.0, 0.0, 0.0), omega=1.26, general=True, family='wedge',
+        ),
+        ("event-driven",),
+    ),
 }  # fmt: skip

@@ -169,8 +169,9 @@ def observe(s: Mechanism, tau: float) -> bool:
 
 
 def gap_noise(s: Mechanism, c: int) -> float:
-    """Rounding of a gap, at the state last observed."""
-    return gap_rounding(s.model, s.contact.G, s.q, c, 0.0)
+    """Rounding of a gap, at the state last observed: of its terms, and of the time at which an obstacle is there."""
+    strayed = s.untold(s.length) * abs(s.contact.rate[c])
+    return gap_rounding(s.model, s.contact.G, s.q, c, 0.0) + strayed
 
 
 def multiplier_noise(s: Mechanism) -> float:

@@ -36,7 +36,7 @@ PARTS, MOST_PARTS = 4, 4096  # scan intervals of a step, and where gaps turn fas
 REFINEMENTS, FAR = 3, 1e-3  # of an event's time by repeated steps: how many, and of that time how far at most
 LOOK_AHEAD = 1e-6  # of a step: where the forces after a release are looked at
 BALANCED = 1e-4  # the same where the multiplier has been no more than this share of what it will be
-LOOKS, FURTHER = 2, 10.0  # how often, and by how much further each time, unless they tell
+LOOKS, FURTHER = 6, 10.0  # how often, by how much further each time, unless they tell: to a tenth of a step
 
 
 def step(s: Mechanism) -> int:
