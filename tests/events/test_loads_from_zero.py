@@ -210,13 +210,47 @@ def test_a_joint_shares_the_pull(name, mu, share, sign):
     assert abs(x - 0.5 * slid(mu, a, 3.0 - math.sin(3.0))) < 10.0 * close
 
 
+def pulled(share, omega, start=0.0, beside=False):
+    """1 - cos x + b sin x = 2 sin(x/2) (sin(x/2) + b cos(x/2)), x = omega t, is negative from 2 pi k - 2 atan b.
+
+    `beside`: with a second coordinate that moves by itself. The scene, and the times at which its wall lets go.
+    """
+    load = {"constant": [20.3], "cosine": [-20.3], "sine": [20.3 * share]}
+    M, K, G, q0 = [2.4], [0.0], [-1.0], [2.5]
+    if beside:
+        load = {name: [*values, 0.0] for name, values in load.items()}
+        M, K, G, q0 = [*M, 1.0], [*K, 1.0], [*G, 0.0], [*q0, 0.1]
+    block = LinearSystem(M=np.diag(M), K=np.diag(K), force=Harmonic(omega=omega, **load))
+    wall = LinearContacts(G=[G], offset=2.5, restitution=0.0)
+    span = (start, start + 10.9)
+    scene = Scene(block, q0=q0, v0=np.zeros(len(q0)), t_span=span, contacts=wall, name="pulled for a moment")
+    expected = (2.0 * np.pi * np.arange(1, 20) - 2.0 * np.arctan(share)) / omega
+    return scene, expected[(expected > span[0]) & (expected < span[1])]
+
+
 @pytest.mark.parametrize("share", [0.3, 0.0243, 3e-3, 1e-4])
 @pytest.mark.parametrize("omega", [5.0, 5.4, 6.2, 6.9])
 def test_a_force_that_pulls_for_a_moment_lets_go_wherever_samples_of_it_fall(share, omega):
-    """1 - cos x + b sin x = 2 sin(x/2) (sin(x/2) + b cos(x/2)), x = omega t, is negative from 2 pi k - 2 atan b."""
-    block = LinearSystem(M=2.4, force=Harmonic(constant=20.3, cosine=-20.3, sine=20.3 * share, omega=omega))
-    wall = LinearContacts(G=-1.0, offset=2.5, restitution=0.0)
-    scene = Scene(block, q0=2.5, v0=0.0, t_span=(0.0, 10.9), contacts=wall, name="pulled for a moment")
+    scene, expected = pulled(share, omega)
     log = simulate(scene, EventDriven()).impacts
-    expected = (2.0 * np.pi * np.arange(1, 20) - 2.0 * np.arctan(share)) / omega
-    np.testing.assert_allclose(log.time[log.kind == Kind.RELEASE], expected[expected < 10.9], atol=1e-9)
+    np.testing.assert_allclose(log.time[log.kind == Kind.RELEASE], expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2589, 0.2697, 0.31, 0.64, 0.87])
+@pytest.mark.parametrize("share", [0.0243, 3e-3])
+@pytest.mark.parametrize("beside", [False, True])
+@pytest.mark.parametrize(
+    "method",
+    [EventDriven(), Located(0.07, 4), Located(0.07, 4, tolerance=1e-6), Located(0.07, "exact")],
+    ids=["event-driven", "located-4", "located-4-tolerance", "located-exact"],
+)
+def test_it_does_by_every_method_of_high_order_beside_other_motion_and_near_the_end(
+    method, beside, share, start
+):
+    """In steps that are long beside the moment it may come back and leave again within it."""
+    scene, expected = pulled(share, 6.2, start, beside)
+    log = simulate(scene, method).impacts
+    times = log.time[log.kind == Kind.RELEASE]
+    assert len(expected) >= 10
+    assert np.max(np.min(np.abs(times - expected[:, None]), axis=1)) < 1e-9
+    assert len(times) <= len(expected) + 2

@@ -1,4 +1,5 @@
 from lcpstep.kernels.bracket cimport Bracket
+from lcpstep.kernels.turn cimport Turn
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.function cimport Function
 from lcpstep.kernels.model cimport Model
@@ -16,6 +17,7 @@ cdef class Flight(Clock):
     cdef readonly Record record
     cdef readonly Tally tally
     cdef Bracket bracket
+    cdef Turn turn
     cdef Function frame, motion
     cdef readonly bint contact
     cdef readonly double delta, w2, f0, X, Y, Omega, fc, fs, G, offset, r, response

@@ -25,6 +25,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import Clock
     from lcpstep.kernels.function import Function
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.turn import Turn
     from lcpstep.pointers import inf, nan
 
 
@@ -50,7 +51,7 @@ class Flight(Clock):
     peak            the largest gap acceleration of the flight so far
     tau, y_tau, w_tau, a_tau    the time after the base last asked for, and the absolute motion there
     c1, c2, c3      the cubic of the acceleration, see `near`
-    bracket         in which a root is sought
+    bracket, turn   in which a root, or a turn, is sought
     q, v : (1,)     the state last asked for
     moving : (3,)   work space of the functions
 
@@ -89,7 +90,7 @@ class Flight(Clock):
         self.scan, self.rtol, self.atol = given["scan"], given["rtol"], given["atol"]
         self.clear, self.bend = given["clear"], given["bend"]
         self.size, self.rate = given["size"], given["rate"]
-        self.bracket = Bracket()
+        self.bracket, self.turn = Bracket(), Turn()
         self.state, self.space = np.zeros((2, 1)), np.zeros(4)
         self.q, self.v = doubles(self.state[0]), doubles(self.state[1])
         self.moving, self.impulse = doubles(self.space[:3]), doubles(self.space[3:])

@@ -52,14 +52,17 @@ def contact_impulse(s: Flight, a: float, b: float) -> float:
 def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
     """First time in (a, b] at which alpha turns positive, or NONE.
 
-    It may do so for a moment between two samples; at the ends of the interval those beyond it tell.
+    It may do so for a moment between two samples; at the ends of the interval those beyond it tell, at the end of
+    the motion one more before it.
     """
     h = (b - a) / PROBES
     t_0, f_0, t_1, f_1 = a - h, inf, a, alpha_a
     for k in range(1, PROBES + 2):
         t_2 = b if k == PROBES else a + k * h
-        if k == PROBES + 1 and not (f_0 < f_1 and t_2 <= min(s.high, s.t_end)):
+        if k == PROBES + 1 and not f_0 < f_1:
             break
+        if k == PROBES + 1 and t_2 > min(s.high, s.t_end):
+            return last_release(s, t_0, f_0, t_1, f_1)
         f_2 = alpha_at(s, t_2)
         if k == 1 and f_2 <= f_1 and t_0 >= s.low:
             f_0 = alpha_at(s, t_0)
@@ -74,6 +77,13 @@ def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
     return NONE
 
 
+def last_release(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
+    """The same between the last two samples, not positive, of the motion."""
+    middle = 0.5 * (a + b)
+    top, f_top = summit(s, middle, b - middle, f_a, alpha_at(s, middle), f_b)
+    return alpha_root(s, a, f_a, top, f_top) if f_top > 0.0 else NONE
+
+
 def alpha_root(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
     """Where alpha turns positive between a and b."""
     s.bracket.span(a, f_a, b, f_b)
@@ -83,17 +93,8 @@ def alpha_root(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
 
 
 def summit(s: Flight, t_1: float, h: float, f_0: float, f_1: float, f_2: float) -> tuple[float, float]:
-    """Highest alpha near the middle one of three equidistant samples, by parabolas."""
-    best, f_best = t_1, f_1
-    for _ in range(4):
-        curvature = f_0 - 2.0 * f_1 + f_2
-        if curvature >= 0.0:
-            break
-        t_1 += 0.5 * h * (f_0 - f_2) / curvature
-        f_1 = alpha_at(s, t_1)
-        if f_1 > f_best:
-            best, f_best = t_1, f_1
-        h *= 0.25
-        f_0 = alpha_at(s, t_1 - h)
-        f_2 = alpha_at(s, t_1 + h)
-    return best, f_best
+    """Highest alpha near the middle one of three equidistant samples."""
+    s.turn.begin(t_1, h, -f_0, -f_1, -f_2)
+    while s.turn.seek():
+        s.turn.take(-alpha_at(s, s.turn.x))
+    return s.turn.lowest, -s.turn.least

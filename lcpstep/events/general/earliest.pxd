@@ -2,9 +2,14 @@ cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
 cdef Py_ssize_t MEETS, LANDS, OPENS, NEVER_LEFT, GAP, SPEED, CURVE, MULTIPLIER
-cdef double NONE, NEVER, UNSEEN
+cdef double NONE, NEVER, UNSEEN, FALLS
 
+@cython.locals(end=double)
 cdef double first_event(Mechanism s, double a, double b) noexcept nogil
+cdef bint falls(Mechanism s, Py_ssize_t c, double left, double right, double noise) noexcept nogil
+cdef (double, double) lowest(
+    Mechanism s, Py_ssize_t c, double a, double b, double left, double right, double noise
+) noexcept nogil
 cdef double opening(Mechanism s, Py_ssize_t c, double a, double b, double left, double right) noexcept nogil
 cdef double first_contact(
     Mechanism s, Py_ssize_t c, double a, double b, (double, double, double) left, (double, double, double) right

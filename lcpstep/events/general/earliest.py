@@ -3,7 +3,8 @@
 Gaps are looked at on the dense output of a Runge-Kutta step: on an interval short enough for a gap acceleration to
 change its sign at most once (`turns_unseen` says which is not), that change splits the gap velocity into monotone
 parts, whose changes of sign split the gap into monotone parts; so a gap that dips below zero and returns is found. A
-closed contact opens where its multiplier turns negative.
+closed contact opens where its multiplier turns negative, be it for a moment between two places looked at: one that
+changes by several times its least value may turn there.
 """
 
 from __future__ import annotations
@@ -18,12 +19,13 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs, max
+    from lcpstep.pointers import abs, max, min
 
 MEETS, LANDS, OPENS, NEVER_LEFT = range(4)  # what a contact does
 GAP, SPEED, CURVE, MULTIPLIER = range(4)  # of what a root is looked for
 NONE, NEVER = -1.0, -2.0  # in place of a root's time: not known; there is none
 UNSEEN = 0.02  # of a gap: what its turns may hide
+FALLS = 3.0  # of a multiplier: by how much it is larger beside a turn; a parabola five times
 
 
 def first_event(s: Mechanism, a: float, b: float) -> float:
@@ -37,9 +39,11 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
     for c in range(s.n_c):
         tau, kind = NONE, MEETS
         if s.contact.closed[c] == 1:
-            left, right = s.left.multiplier[c], s.right.multiplier[c]
-            if right < -noise and s.contact.held_until[c] < s.t0 + b:
-                tau, kind = opening(s, c, a, b, left, right), OPENS
+            left, right, end = s.left.multiplier[c], s.right.multiplier[c], b
+            if right >= -noise and falls(s, c, left, right, noise):
+                end, right = lowest(s, c, a, b, left, right, noise)
+            if right < -noise and s.contact.held_until[c] < s.t0 + end:
+                tau, kind = opening(s, c, a, end, left, right), OPENS
         elif s.contact.lands[c] != NONE:
             if a < s.contact.lands[c] <= b:
                 tau, kind = s.contact.lands[c], LANDS
@@ -55,6 +59,24 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
         if tau != NONE and (found == NONE or tau < found):
             found, s.event_contact, s.event_kind = tau, c, kind
     return found
+
+
+def falls(s: Mechanism, c: int, left: float, right: float, noise: float) -> bool:
+    """Whether the multiplier of contact c is so much larger at an end of an interval, or before, that it may turn."""
+    most = max(s.before.multiplier[c], max(left, right))
+    return most > noise and most > FALLS * min(left, right)
+
+
+def lowest(
+    s: Mechanism, c: int, a: float, b: float, left: float, right: float, noise: float
+) -> tuple[float, float]:
+    """Where in (a, b) the multiplier of closed contact c is lowest, or negative, and what it is there."""
+    observe(s, 0.5 * (a + b))
+    s.turn.begin(0.5 * (a + b), 0.5 * (b - a), left, s.contact.multiplier[c], right)
+    while s.turn.least >= -noise and s.turn.seek():
+        observe(s, s.turn.x)
+        s.turn.take(s.contact.multiplier[c])
+    return s.turn.lowest, s.turn.least
 
 
 def opening(s: Mechanism, c: int, a: float, b: float, left: float, right: float) -> float:

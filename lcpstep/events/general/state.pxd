@@ -3,6 +3,7 @@ from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.turn cimport Turn
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport Doubles, Indices
 
@@ -36,9 +37,10 @@ cdef class Mechanism(Clock):
     cdef readonly bint watched
     cdef readonly Contacts contact
     cdef Rows joint
-    cdef Seen start, left, right
+    cdef Seen start, before, left, right
     cdef Workspace lcp
     cdef Bracket bracket
+    cdef Turn turn
     cdef readonly bint constant
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit
     cdef readonly double scan, t_end, rtol, atol

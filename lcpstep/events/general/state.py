@@ -14,6 +14,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION, Clock
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.turn import Turn
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
@@ -138,6 +139,7 @@ class Mechanism(Clock):
     q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
     a_free, force     acceleration M^-1 f without contacts and joints, f
     contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
+    before            of contacts where the interval before it began
     start             of contacts at the base time of a step
     R, MR : (n_r, n_q)  rows of joints (first) and contacts, rows M^-1 R^T
     D, L : (n_r, n_r)   Delassus matrix R M^-1 R^T, Cholesky factor of the rows held
@@ -145,7 +147,7 @@ class Mechanism(Clock):
     kept              rows held, while others are tried
     doubt             relative error of the diagonal of L, in units of rounding
     change            work space by row
-    bracket           in which a root is sought
+    bracket, turn     in which a root, or a turn, is sought
     W                 matrix of the problem of the n_members members of it
     turned : (n_c, n_q)  Jacobian of the contacts beside the state
     culprit           joint that contradicts others, or -1
@@ -213,8 +215,9 @@ class Mechanism(Clock):
         self.row = indices(self.lists)
         self.kept = indices_after(self.row, r)
         self.contact, self.joint = Contacts(n_c), Rows(n_j)
-        self.bracket = Bracket()
-        self.start, self.left, self.right, self.lcp = Seen(n_c), Seen(n_c), Seen(n_c), Workspace(n_c)
+        self.bracket, self.turn = Bracket(), Turn()
+        self.start, self.before, self.left, self.right = Seen(n_c), Seen(n_c), Seen(n_c), Seen(n_c)
+        self.lcp = Workspace(n_c)
         self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
         self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
         for i in range(n):

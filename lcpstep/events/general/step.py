@@ -66,6 +66,7 @@ def scan(s: Mechanism, h: float) -> int:
         else:
             tau = first_event(s, a, b)
             if tau == NONE:
+                copy(s.before.gap, s.left.gap, 4 * s.n_c)
                 copy(s.left.gap, s.right.gap, 4 * s.n_c)
             a, part = b, part + 1
             while parts > PARTS and part % 2 == 0:

@@ -9,6 +9,7 @@ cdef Py_ssize_t answered(Plan plan, Work w, Py_ssize_t place) noexcept nogil
 cdef Py_ssize_t choose_resting(Work w) noexcept nogil
 cdef double leaving(Model m, Work w, double* W, Py_ssize_t k, Py_ssize_t n_k) noexcept nogil
 cdef bint pulls(Model m, Work w, Py_ssize_t c) noexcept nogil
+cdef bint weighs(Model m, Work w, Py_ssize_t c, double force) noexcept nogil
 cdef double force_rounding(Model m, Work w, Py_ssize_t c) noexcept nogil
 cdef double jerked(Work w, double* W, Py_ssize_t c) noexcept nogil
 @cython.locals(more=bint)

@@ -1,9 +1,10 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.turn cimport Turn
 from lcpstep.pointers cimport Doubles
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef Py_ssize_t DEGREE, QUINTIC, CORRECTIONS
+cdef Py_ssize_t DEGREE, QUINTIC, PROBES, CORRECTIONS
 cdef double DOUBTFUL
 cdef double[4] NODES, WEIGHTS
 
@@ -13,7 +14,8 @@ cdef class Polynomial:
     cdef readonly object kept
     cdef readonly double scale
     cdef readonly Py_ssize_t degree
-    cdef Doubles T, a, q, v, q_stage, v_stage, q_end, v_end, gap_from, rate_from, gap_to, rate_to, rate_now
+    cdef Doubles T, a, q, v, q_stage, v_stage, q_end, v_end, gap_from, rate_from, gap_to, rate_to, rate_now, pressed
+    cdef Turn turn
 
 
 cdef bint on_surface(Plan plan, Work w) noexcept nogil

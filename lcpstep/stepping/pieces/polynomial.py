@@ -22,6 +22,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
     from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.turn import Turn
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, after, max
     from lcpstep.stepping.pieces.codes import CLOSED
@@ -30,6 +31,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.times import within
 
 DEGREE, QUINTIC = 22, 5  # of Taylor's polynomials and of Hermite's
+PROBES = 4  # of contact forces on a piece
 DOUBTFUL = 64.0  # rounding of a factor's diagonal, in its own units, from which on forces are corrected,
 CORRECTIONS = 2  # so many times
 NODES = [0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263]
@@ -46,6 +48,7 @@ class Polynomial:
     q_stage, v_stage, q_end, v_end
     gap_from, rate_from, gap_to, rate_to    gaps and their velocities at both ends of an interval of the scan
     rate_now
+    pressed : (PROBES + 1, n_c)   contact forces at equal distances;  turn  in which their least is sought
 
     Parameters
     ----------
@@ -53,7 +56,7 @@ class Polynomial:
     """
 
     def __init__(self, n_q: int, n_c: int) -> None:
-        self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + 5 * n_c)
+        self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + (6 + PROBES) * n_c)
         x = doubles(self.kept)
         self.scale, self.degree = 1.0, 1
         self.T, self.a = x, after(x, (DEGREE + 1) * n_q)
@@ -62,7 +65,8 @@ class Polynomial:
         self.v_stage, self.q_end, self.v_end = after(x, 3 * n_q), after(x, 4 * n_q), after(x, 5 * n_q)
         x = after(x, 6 * n_q)
         self.gap_from, self.rate_from, self.gap_to = x, after(x, n_c), after(x, 2 * n_c)
-        self.rate_to, self.rate_now = after(x, 3 * n_c), after(x, 4 * n_c)
+        self.rate_to, self.rate_now, self.pressed = after(x, 3 * n_c), after(x, 4 * n_c), after(x, 5 * n_c)
+        self.turn = Turn()
 
 
 def on_surface(plan: Plan, w: Work) -> bool:

@@ -16,16 +16,16 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import moves
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.contact_forces import pulls
+    from lcpstep.stepping.pieces.contact_forces import pulls, weighs
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.polynomial import NODES, WEIGHTS, Polynomial, contacts_at, force_at
+    from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
     from lcpstep.stepping.pieces.state import Plan, Work
 
 NOWHERE = -2
 PARTS = 4  # intervals of a piece
-PROBES = 4  # of contact forces
+FALLS = 3.0  # of a force: by how much it is larger beside a turn; a parabola five times
 SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
 LOW = 1e9  # times the slack: rounding of positions is much of gaps below it
 BRIEF = 1.0 / 32.0  # of the longest piece: the mean velocity of so short a time is exact to rounding
@@ -140,32 +140,78 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
 
 
 def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
-    """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does."""
+    """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does.
+
+    It may do so for a moment between two probes; whether one has to be looked for tells the probe beyond them.
+    """
     if w.closed_now == 0:
         return NOBODY, end
-    a, found, first = w.ahead, NOBODY, end
+    n_c, found, first = w.n_c, NOBODY, end
+    copy(z.pressed, w.force_now, n_c)
     for probe in range(1, PROBES + 1):
-        b = end * probe / PROBES
-        force_at(m, plan, w, z, t, b)
-        copy(z.rate_to, w.p, w.n_c)
-        for c in range(w.n_c):
-            if w.status[c] == CLOSED and z.rate_to[c] < 0.0 and pulls(m, w, c):
-                tau = vanishing(m, plan, w, z, t, a, b, c)
-                copy(w.p, z.rate_to, w.n_c)  # forces were asked for at other times
-                if tau < first or found == NOBODY:
-                    found, first = c, tau
+        force_at(m, plan, w, z, t, end * probe / PROBES)
+        copy(after(z.pressed, probe * n_c), w.p, n_c)
+        found, first = brief_release(m, plan, w, z, t, end, probe - 1, probe)
+        if found == NOBODY:
+            found, first = release_at(m, plan, w, z, t, end, probe)
         if found != NOBODY:
             return found, first
-        a = b
-    return NOBODY, end
+    return brief_release(m, plan, w, z, t, end, PROBES, PROBES)
 
 
-def vanishing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
-    """Where the force of contact c vanishes in (a, b]."""
+def release_at(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float, probe: int
+) -> tuple[int, float]:
+    """Which contact that pulls at a probe has lost its force first since the one before, and when."""
+    n_c, found, first = w.n_c, NOBODY, end
+    forces, a, b = after(z.pressed, probe * n_c), from_probe(w, end, probe), end * probe / PROBES
+    copy(w.p, forces, n_c)
+    for c in range(n_c):
+        if w.status[c] == CLOSED and forces[c] < 0.0 and pulls(m, w, c):
+            tau = vanishing(m, plan, w, z, t, a, b, forces[c], c)
+            copy(w.p, forces, n_c)  # forces were asked for at other times
+            if tau < first or found == NOBODY:
+                found, first = c, tau
+    return found, first
+
+
+def brief_release(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float, probe: int, last: int
+) -> tuple[int, float]:
+    """The same of contacts that press at a probe and at the one before, and pull in between; `last` is known too."""
+    n_c, found, first, h, before = w.n_c, NOBODY, end, 0.5 * end / PROBES, probe - 2 if probe > 1 else 0
+    for c in range(n_c if probe > 0 else 0):
+        left, right = z.pressed[(probe - 1) * n_c + c], z.pressed[probe * n_c + c]
+        most = max(max(left, right), max(z.pressed[before * n_c + c], z.pressed[last * n_c + c]))
+        if w.status[c] != CLOSED or most <= FALLS * max(min(left, right), 0.0) or not weighs(m, w, c, most):
+            continue
+        x = (2 * probe - 1) * h
+        force_at(m, plan, w, z, t, x)
+        z.turn.begin(x, h, left, w.p[c], right)
+        while not (w.p[c] < 0.0 and pulls(m, w, c)) and z.turn.seek():
+            x = z.turn.x
+            force_at(m, plan, w, z, t, x)
+            z.turn.take(w.p[c])
+        if w.p[c] < 0.0 and pulls(m, w, c):
+            tau = vanishing(m, plan, w, z, t, from_probe(w, end, probe), x, w.p[c], c)
+            if tau < first or found == NOBODY:
+                found, first = c, tau
+    return found, first
+
+
+def from_probe(w: Work, end: float, probe: int) -> float:
+    """Where the part before a probe begins; forces are known from `ahead` on."""
+    return w.ahead if probe == 1 else end * (probe - 1) / PROBES
+
+
+def vanishing(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, f_b: float, c: int
+) -> float:
+    """Where the force of contact c, which is f_b at b, vanishes in (a, b]."""
     force_at(m, plan, w, z, t, a)
     if w.p[c] <= 0.0:
         return a
-    w.bracket.span(a, w.p[c], b, z.rate_to[c])
+    w.bracket.span(a, w.p[c], b, f_b)
     while w.bracket.seek(4.0 * EPS * (t + w.bracket.b)):
         force_at(m, plan, w, z, t, w.bracket.x)
         w.bracket.chord(w.p[c])
