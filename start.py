@@ -62,7 +62,7 @@ def set_up() -> None:
     """Make the virtual environment and install the project into it, unless that has been done with these sources."""
     if is_done("installed", *BUILD, *kernels()):
         return
-    print("setting up .venv, and building; this takes three to ten minutes", flush=True)
+    print("setting up .venv, and building; this takes two to ten minutes", flush=True)
     if os.name != "nt" and "CC" not in os.environ and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
