@@ -17,7 +17,8 @@ from lcpstep.intervals import Interval, Moving, NotEnclosed, enclose
 from lcpstep.intervals.callbacks import Enclosed, plain
 
 Array = NDArray[np.float64]
-LOOKS = 64  # per window, of a function that cannot be evaluated on intervals
+LOOKS, FEWEST = 64, 3  # per window, of a function that cannot be evaluated on intervals; where there are many windows
+MOST_LOOKS = 32_768  # at all windows of a size, unless these are FEWEST
 GOLDEN = 0.6180339887498949
 OURS = "lagrangian."  # modules whose functions turn no faster than their period, and name their corners
 
@@ -80,16 +81,19 @@ class Source:
     def values(self, times: Array) -> Array:
         """Place, speed and curve at many times, (n, rows, 3)."""
         if not self.sampled:
-            exact = self.bounds(times, times)
-            if not self.sampled:
-                return np.nan_to_num(exact.lo, nan=0.0, posinf=0.0, neginf=0.0)
-        return np.array([self.value(float(t)) for t in times])
+            try:
+                return _finite(self.enclosed(times, times).lo)
+            except NotEnclosed as why:
+                self.sampled = str(why)
+        return _finite(np.array([self.value(t) for t in times.tolist()]))
 
     def looked_at(self, a: Array, b: Array) -> Enclosed:
         """The same by samples, which need not show everything."""
-        k = np.arange(LOOKS)
-        shares = (k + k * GOLDEN % 1.0) / LOOKS
-        values = np.array([[self.value(x + s * (y - x)) for s in shares] for x, y in zip(a, b, strict=True)])
+        looks = min(LOOKS, max(FEWEST, MOST_LOOKS // max(len(a), 1)))
+        k = np.arange(looks)
+        shares = (k + k * GOLDEN % 1.0) / looks
+        times = (a[:, None] + shares * (b - a)[:, None]).ravel().tolist()
+        values = _finite(np.array([self.value(t) for t in times])).reshape(len(a), looks, self.rows, 3)
         return Enclosed(values.min(axis=1), values.max(axis=1), np.zeros(len(a), dtype=bool))
 
     def value(self, t: float) -> Array:
@@ -105,7 +109,12 @@ class Source:
                 out = np.stack([place, out, out], axis=1)
         except Exception:  # the motion may never come there
             return np.zeros((self.rows, 3))
-        return np.nan_to_num(out, nan=0.0, posinf=0.0, neginf=0.0)
+        return out
+
+
+def _finite(values: Array) -> Array:
+    """Zero in the place of what is no number."""
+    return np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
 
 
 @dataclass(eq=False)
