@@ -126,6 +126,8 @@ def jointed(rng: Any) -> Shape:
     pendulum = rng.random() < 0.4
     j = 1 if pendulum else int(rng.integers(1, min(n, 3)))
     J = np.zeros((j, n)) if pendulum else np.round(rng.normal(size=(j, n)), 1) + np.eye(n)[:j]
+    if not pendulum:
+        J = np.where(J.any(axis=1, keepdims=True), J, np.eye(n)[:j])  # a row of zeros holds nothing
     shape = {
         "G": rng.normal(size=(m, n)),
         "J": J,
