@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
+from lcpstep.errorbar.curves import merged
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
 from lcpstep.errorbar.looks import Looks, looks, seen
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
@@ -157,7 +158,10 @@ def against(
     around = ROUNDING * _latest(run) + 0.5 * resolution
     last = min(limit, until - around if reason else until)
     known_there = every and look is not None and found[0][0].seen
-    look = seen(look, last) if look is not None and known_there else looks(run, other, every, last, wide)
+    if look is not None and known_there:
+        look = seen(look, last)
+    else:
+        look = looks(run, other, every, last, wide, merged(logs[0].windows, around))
     t = look.t
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lcpstep.errorbar.breaks import close, increasing, spread
 from lcpstep.kernels.between import last_rows
+from lcpstep.stepping.interpolation import Parabolic
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]
@@ -22,12 +23,13 @@ EVEN = 3  # and one in so many at even times
 CLOSE = 16  # times as many kept states are looked at for those that are chosen
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it are all over (0, 1), and at no step of one size
 MANY = 600  # events; where there are more, breaks are anywhere: between events of a period they tell of one phase
-JUMP = (
-    10.0  # times the mean change of velocity in a step: what is more is an impact, at which there is a break
-)
+JUMP = 10.0  # times the mean change of velocity in a step: more is an impact, at which there is a break
 TINY = float(np.finfo(float).tiny)
 GRADES = 12  # times an interval after an event is halved towards it: that is where errors change fast
+SHORT = 0.25  # of a step: less of it is a parabola
+SOON = 0.01  # of a time in which one run alone has struck, after its end
 BRIEF = 1e-6  # of the span: within intervals between events that short dense output knows no velocities
+NOWHERE = np.zeros((0, 2))
 
 
 class Looks(NamedTuple):
@@ -46,23 +48,34 @@ class Looks(NamedTuple):
     even: Array | None = None
 
 
-def looks(run: Trajectory, other: Trajectory, every: bool, end: float, wide: Array | None = None) -> Looks:
+def looks(
+    run: Trajectory,
+    other: Trajectory,
+    every: bool,
+    end: float,
+    wide: Array | None = None,
+    windows: Array = NOWHERE,
+) -> Looks:
     """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone.
 
     wide : times between its steps at which the run has kept states too
+    windows : (k, 2) times in which one of the runs alone has struck
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)
     most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
-        return Looks(increasing(_telling(run, end, most), even), (True, False), False, True, even)
+        late = _soon_kept(run, _from_there(windows, end, most // EVEN))
+        t = increasing(_telling(run, end, most), late, even)
+        return Looks(t, (True, False), False, True, even)
     events, start = event_times(run, other), float(run.t[0])
     many = len(events) > MANY
     some = uneven(start, end, MANY) if many else events
     ends = np.concatenate([run.t[:1], some[:: 1 + len(some) // most], run.t[-1:]])
     after = spread(start, end, most // EVEN, ends, 1 + min(GRADES, most // len(ends)))
-    t = increasing(after, some, _left_out(run, most), _telling(run, end, most), low=start, high=end)
+    late = _from_there(windows, end, most // EVEN)
+    t = increasing(after, some, late, _left_out(run, most), _telling(run, end, most), low=start, high=end)
     return Looks(t, (False, False), True, many)
 
 
@@ -77,7 +90,10 @@ def seen(look: Looks, end: float) -> Looks:
 
 
 def _telling(run: Trajectory, end: float, most: int) -> Array:
-    """Kept times, or as many as are to be looked at: they lie as near to each other as time and velocities go on."""
+    """Kept times, or as many as are to be looked at, as near to each other as time, velocities and steps go on.
+
+    By their number there are some where chattering ends: it is over soon, at small speeds, and its errors are large.
+    """
     n = int(np.searchsorted(run.t, end, side="right"))
     if n <= most:
         return run.t[:n]
@@ -85,9 +101,23 @@ def _telling(run: Trajectory, end: float, most: int) -> Array:
     t, v = run.t[some], run.v[some]
     turns = np.abs(np.diff(v, axis=0)).sum(axis=1)
     share = np.minimum(turns, JUMP * turns.mean())
-    going = np.cumsum(np.diff(t) / (t[-1] - t[0]) + share / max(share.sum(), TINY))
+    going = np.cumsum(np.diff(t) / (t[-1] - t[0]) + share / max(share.sum(), TINY) + 1.0 / len(share))
     places = np.searchsorted(going, np.linspace(0.0, going[-1], most))
     return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
+
+
+def _from_there(windows: Array, end: float, most: int) -> Array:
+    """Just after the longest times in which one run alone has struck: there velocities can be compared again."""
+    length = np.diff(windows)[:, 0]
+    longest = np.argsort(-length, kind="stable")[:most]
+    t = windows[longest, 1] + SOON * length[longest]
+    return t[t < end]
+
+
+def _soon_kept(run: Trajectory, t: Array) -> Array:
+    """Those times at which a parabola tells the motion: in a small part of a step, between impacts."""
+    k = np.minimum(last_rows(run.t, t, 0, len(run.t) - 1), len(run.t) - 2)
+    return t[run.t[k + 1] - run.t[k] < SHORT * (run.t[-1] - run.t[0]) / max(run.counts.steps, 1)]
 
 
 def _left_out(run: Trajectory, most: int) -> Array:
@@ -115,8 +145,12 @@ def brief(run: Trajectory, other: Trajectory, span: float) -> Array:
 
 
 def at(run: Trajectory, t: Array, kept: bool) -> tuple[Array, Array]:
-    """States at times in their order, kept ones or any."""
+    """States at times in their order, any of them; or kept ones, and between these what soon follows one."""
     if not kept:
         return run.dense(t)
     k = last_rows(run.t, t, 0, len(run.t) - 1)
-    return run.q[k], run.v[k]
+    q, v = run.q[k], run.v[k]
+    later = np.flatnonzero(run.t[k] < t)
+    if len(later):
+        q[later], v[later] = Parabolic(run.t, run.q, run.v, True)(t[later])
+    return q, v
