@@ -66,7 +66,7 @@ def looks(
     most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
-        late = _soon_kept(run, _from_there(windows, end, most // EVEN))
+        late = _from_there(run, windows, end, most // EVEN)
         t = increasing(_telling(run, end, most), late, even)
         return Looks(t, (True, False), False, True, even)
     events, start = event_times(run, other), float(run.t[0])
@@ -74,8 +74,7 @@ def looks(
     some = uneven(start, end, MANY) if many else events
     ends = np.concatenate([run.t[:1], some[:: 1 + len(some) // most], run.t[-1:]])
     after = spread(start, end, most // EVEN, ends, 1 + min(GRADES, most // len(ends)))
-    late = _from_there(windows, end, most // EVEN)
-    t = increasing(after, some, late, _left_out(run, most), _telling(run, end, most), low=start, high=end)
+    t = increasing(after, some, _left_out(run, most), _telling(run, end, most), low=start, high=end)
     return Looks(t, (False, False), True, many)
 
 
@@ -106,16 +105,15 @@ def _telling(run: Trajectory, end: float, most: int) -> Array:
     return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
 
 
-def _from_there(windows: Array, end: float, most: int) -> Array:
-    """Just after the longest times in which one run alone has struck: there velocities can be compared again."""
+def _from_there(run: Trajectory, windows: Array, end: float, most: int) -> Array:
+    """Just after the longest times in which one run alone has struck: there velocities can be compared again.
+
+    Those in a small part of a step, between impacts in quick succession, where a parabola tells the motion.
+    """
     length = np.diff(windows)[:, 0]
     longest = np.argsort(-length, kind="stable")[:most]
     t = windows[longest, 1] + SOON * length[longest]
-    return t[t < end]
-
-
-def _soon_kept(run: Trajectory, t: Array) -> Array:
-    """Those times at which a parabola tells the motion: in a small part of a step, between impacts."""
+    t = t[t < end]
     k = np.minimum(last_rows(run.t, t, 0, len(run.t) - 1), len(run.t) - 2)
     return t[run.t[k + 1] - run.t[k] < SHORT * (run.t[-1] - run.t[0]) / max(run.counts.steps, 1)]
 
