@@ -19,6 +19,7 @@ from benchmarks.judge.runs import WAYS, run, silent
 from lcpstep import Status
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
+from tests.judge.kept_jointed import JOINTED
 from tests.judge.kept_lately import LATELY
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
@@ -37,12 +38,13 @@ LONG = {  # of these
     "contacts beside a joint, pressed by forces that begin at zero",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
-NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in (*KEPT, *LATELY, *RECENTLY)]
+KNOWN = KEPT | LATELY | RECENTLY | JOINTED
+NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in KNOWN]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_was_wrong_once_is_right(name):
-    d, methods = (KEPT | LATELY | RECENTLY)[name]
+    d, methods = KNOWN[name]
     assert judged(d, methods, share=1.0).findings == []
 
 
