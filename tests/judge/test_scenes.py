@@ -101,6 +101,20 @@ def test_hops_that_others_interrupt_end():
     assert speeds[-1] < 1e-10
 
 
+def test_elastic_hops_beside_what_yields_fade_as_between_events():
+    """Each brings six parts in seven of its speed to the next, down to the tolerance, and then there are no more."""
+    d = JOINTED["an elastic and a plastic wall that bring five masses on a sphere to rest on them"][0]
+    speeds = []
+    for method in ("located-4", "event-driven"):
+        motion = run(d, method).motion
+        log = motion.impacts
+        there = (log.contact == 1) & (log.kind == Kind.IMPACT) & (log.time > 5.59) & (log.time < 5.6)
+        speeds.append(log.before[there])
+        assert motion.status == Status.DONE
+    assert len(speeds[0]) == len(speeds[1]) > 100
+    assert np.allclose(*speeds, rtol=5e-3, atol=0.0)
+
+
 def judge(numbers, seed, methods, share):
     """Findings of new classes, each with its scene."""
     scenes = ((k, draw(seed, k)) for k in numbers)
