@@ -19,6 +19,7 @@ from benchmarks.judge.runs import WAYS, run, silent
 from lcpstep import Status
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
+from tests.judge.kept_jointed import JOINTED
 from tests.judge.kept_lately import LATELY
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
@@ -37,12 +38,13 @@ LONG = {  # of these
     "contacts beside a joint, pressed by forces that begin at zero",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
-NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in (*KEPT, *LATELY, *RECENTLY)]
+KNOWN = KEPT | LATELY | RECENTLY | JOINTED
+NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in KNOWN]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_was_wrong_once_is_right(name):
-    d, methods = (KEPT | LATELY | RECENTLY)[name]
+    d, methods = KNOWN[name]
     assert judged(d, methods, share=1.0).findings == []
 
 
@@ -97,6 +99,20 @@ def test_hops_that_others_interrupt_end():
     assert abs(motion.v[-1]).max() < 1e-40
     speeds = motion.impacts.after[(motion.impacts.contact == 1) & (motion.impacts.kind == Kind.IMPACT)]
     assert speeds[-1] < 1e-10
+
+
+def test_elastic_hops_beside_what_yields_fade_as_between_events():
+    """Each brings six parts in seven of its speed to the next, down to the tolerance, and then there are no more."""
+    d = JOINTED["an elastic and a plastic wall that bring five masses on a sphere to rest on them"][0]
+    speeds = []
+    for method in ("located-4", "event-driven"):
+        motion = run(d, method).motion
+        log = motion.impacts
+        there = (log.contact == 1) & (log.kind == Kind.IMPACT) & (log.time > 5.59) & (log.time < 5.6)
+        speeds.append(log.before[there])
+        assert motion.status == Status.DONE
+    assert len(speeds[0]) == len(speeds[1]) > 100
+    assert np.allclose(*speeds, rtol=5e-3, atol=0.0)
 
 
 def judge(numbers, seed, methods, share):

@@ -404,3 +404,20 @@ def test_order_four_takes_joints_alone():
 def test_joints_are_refused_where_they_are_not_treated(options):
     with pytest.raises(LcpStepError, match="joints"):
         simulate(scenes.pendulum_stop(form="rod"), Located(1e-2, **options))
+
+
+def test_a_start_beside_its_joints_by_rounding_is_at_rest():
+    """It has speeds of 1e-14 m/s, by as much off the joints, which no impulses of the contacts could satisfy."""
+    scene = Scene(
+        LinearSystem(M=np.eye(4), force=[0.0, 0.0, 0.0, -9.81]),
+        q0=[-1.1300000000000041, -0.409999999999983, -1.6200000000000025, 0.06160000000003222],
+        v0=[0.0, 0.0, 0.0, -5.678790770957676e-14], t_span=(0.32674, 0.3844),
+        contacts=LinearContacts(
+            G=[[0.888, 0.461, -0.292, -0.147], [-0.932, -1.16, 0.829, 0.547], [-0.32, -1.89, 0.555, 0.846]],
+            offset=[0.7284651999999998, -0.21947519999999976, -0.2895135999999998], restitution=0.99,
+        ),
+        joints=LinearJoints([[0.8, 0.7, 0.7, -0.3], [0.8, -0.2, 0.9, 0.2]], [2.3434799999999996, 2.26768]),
+    )  # fmt: skip
+    run = simulate(scene, Located(0.00961))
+    assert run.t[-1] == 0.3844
+    assert np.max(np.abs(run.q - scene.q0)) < 1e-13

@@ -212,8 +212,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     for c in range(s.n_c):
         i = s.n_j + c
         u, alpha = s.velocity[i], product(s.R, s.a, i, s.n_q) + s.bias[i]
-        hops = s.mode[c] == OPEN and s.touches[c] == 1 and alpha < 0.0 and s.contacts.restitution[c] < 1.0
-        if hops and is_over(s, c, u, -0.5 * u * u / alpha):
+        if s.mode[c] == OPEN and s.touches[c] == 1 and alpha < 0.0 and is_over(s, c, u, -0.5 * u * u / alpha):
             close(s, c)
             s.clock.log(record, tally, t, c, ACCUMULATION, u, 0.0, 0.0)
             return True
@@ -223,10 +222,13 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
 def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
     """Whether hops of contact c that begin with the speed u, and rise to this height, no longer matter.
 
-    What other contacts make of the impacts that are left out is of the size of the speed, not of the height.
+    What other contacts make of the impacts that are left out is of the size of the speed, not of the height; so is
+    what elastic ones would go on with for ever.
     """
-    slow = s.n_c == 1 or u <= speed_tolerance(s, s.n_j + c)
-    return height <= gap_tolerance(s, c) and (slow or height <= SEEN * RESOLUTION * gap_size(s, c))
+    slow = u <= speed_tolerance(s, s.n_j + c)
+    if s.contacts.restitution[c] < 1.0:
+        slow = slow or s.n_c == 1 or height <= SEEN * RESOLUTION * gap_size(s, c)
+    return slow and height <= gap_tolerance(s, c)
 
 
 def close(s: Rubbing, c: int) -> None:

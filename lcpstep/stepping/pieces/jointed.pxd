@@ -5,6 +5,7 @@ from lcpstep.stepping.pieces.state cimport Work
 cdef double ASTRAY
 
 cdef void put_on_joints(Work w, double t, double slack, double* q) noexcept nogil
+cdef void stay_at_base(Work w, double t) noexcept nogil
 cdef void meet_both(Model m, Work w, double t, double slack) noexcept nogil
 cdef void settle_velocity(Work w, double t) noexcept nogil
 cdef void turn_with_joints(Work w, double t) noexcept nogil

@@ -35,6 +35,16 @@ def put_on_joints(w: Work, t: float, slack: float, q: Doubles) -> None:
         w.joints.failed = PROJECTION_FAILED
 
 
+def stay_at_base(w: Work, t: float) -> None:
+    """Jacobian and directions of the joints at the base of the piece, at t, where a look ahead has left others.
+
+    How far a step is off the joints is put right along these: a gap is then one function of the time, and the motion
+    that is taken ends where the look saw it.
+    """
+    if w.joints.moved:
+        take(w.joints, w.M, t, w.q, w.v)
+
+
 def meet_both(m: Model, w: Work, t: float, slack: float) -> None:
     """The position onto the joints; the run cannot go on where closed contacts are not met beside them.
 

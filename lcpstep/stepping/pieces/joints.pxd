@@ -14,6 +14,7 @@ cdef class Joints:
     cdef readonly object numbers
     cdef readonly Py_ssize_t n_j, n_q
     cdef public Py_ssize_t failed, culprit
+    cdef bint moved
     cdef Doubles turning, stretch, curvature, free, load, piece, answer, push, J, J_try, MJ, S, share, before
     cdef Doubles shifted
 

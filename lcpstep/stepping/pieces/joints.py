@@ -48,6 +48,7 @@ class Joints:
     before, shifted : (n_q,)
     failed          why the run cannot go on, or 0;
     culprit         is then the joint that does not hold
+    moved           `put` has left the state that was taken before it, for one on its way
 
     Parameters
     ----------
@@ -59,6 +60,7 @@ class Joints:
         self.system = system
         self.rows, self.n_j, self.n_q = rows, rows.n_c, rows.n_q
         self.failed = self.culprit = 0
+        self.moved = False
         n, n_q, n_c = self.n_j, self.n_q, system.n_c
         self.elimination = Elimination(n, 0)
         self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + 2 * n_q)
@@ -82,6 +84,7 @@ class Joints:
 def take(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles) -> None:
     """Jacobian of the joints and their Delassus matrix; M is Cholesky's factor of a mass matrix that changes."""
     n, n_q = j.n_j, j.n_q
+    j.moved = False
     gap_rates(j.rows, t, q, v, j.J, j.turning)
     for k in range(n):
         response(j.system, M, j.shifted, after(j.J, k * n_q), after(j.MJ, k * n_q))
@@ -146,6 +149,7 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
             return False
         if worst > HELPS * before:
             take(j, M, t, q, v)
+            j.moved = True
         before = worst
         for k in range(j.n_j):
             j.elimination.y[k] = -j.stretch[k]

@@ -35,10 +35,11 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
     from lcpstep.stepping.pieces.event import remeasure
     from lcpstep.stepping.pieces.glide import glide
+    from lcpstep.stepping.pieces.jointed import turn_onto_joints
     from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.settle import endless, settle
-    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
+    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, refactor, respond
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import just_after, rounded_by, within
 
@@ -47,6 +48,10 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     """Forces, gaps and status of the initial state, which is kept where states are."""
     w.low, w.high = find_corners(plan, t)
     w.fresh = True
+    if w.joined:  # what rounding has put speeds as small off them by would let no impulse do
+        if not refactor(m, w, within(plan, w, t)):
+            return NOT_FINITE
+        turn_onto_joints(w, w.v)
     if plan.trapezoidal:
         external_force(m, within(plan, w, t), w.q, w.v, w.force)
     elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):

@@ -27,7 +27,7 @@ if not cython.compiled:
         SAME_TIME,
     )
     from lcpstep.stepping.pieces.contact_forces import hold, land
-    from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out
+    from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out, stay_at_base
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
@@ -198,6 +198,7 @@ def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
     for i in range(w.n_q):
         w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
     if w.joined:
+        stay_at_base(w, t)
         put_on_joints(w, t + tau, plan.slack, w.q_try)
     gaps(m, t + tau, w.q_try, w.v, w.gap_try)
 
@@ -215,6 +216,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
     """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
     now, first_row = t + w.sigma, record.row
     if w.joined:
+        stay_at_base(w, now)
         load_joints(w)
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
     wanted = record.awaited() < end

@@ -20,5 +20,7 @@ cdef bint is_motion(Strides s, Py_ssize_t g) noexcept nogil
 @cython.locals(moves=bint)
 cdef double curve(Strides s, Py_ssize_t g, double h) noexcept nogil
 cdef void elevate(Strides s) noexcept nogil
+@cython.locals(rises=bint)
+cdef double low_hop(Strides s, Py_ssize_t g, double h) noexcept nogil
 @cython.locals(crossed=bint)
 cdef double locate(Strides s, Py_ssize_t g, double h) noexcept nogil

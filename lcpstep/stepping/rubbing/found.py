@@ -167,6 +167,20 @@ def elevate(s: Strides) -> None:
             b[j] = share * b[j - 1] + (1.0 - share) * b[j]
 
 
+def low_hop(s: Strides, g: int, h: float) -> float:
+    """When the gap of guard g, which begins within its band, comes down again if it does not rise out of it; else 0.
+
+    Of so low a hop gaps tell but rounding: steps would come back to its beginning, or bodies land too fast.
+    """
+    c, u = g // GUARDS, s.begin_slope[g]
+    if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1 or u <= 0.0:
+        return 0.0
+    curve(s, g, h)
+    half = 3.0 * (s.scan.c[0] - 2.0 * s.scan.c[1] + s.scan.c[2]) / (h * h)
+    rises = half >= 0.0 or u * u > -4.0 * half * s.band[g]
+    return 0.0 if rises else min(-u / half, h)
+
+
 def locate(s: Strides, g: int, h: float) -> float:
     """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
 
@@ -176,6 +190,9 @@ def locate(s: Strides, g: int, h: float) -> float:
     t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < 0.0
     if tau <= 0.0:
         return 0.0
+    low = low_hop(s, g, h)
+    if low > 0.0:
+        return low if s.step(t0, low) and read_guards(s, t0 + low, s.y_new) else NOWHERE
     s.scan.bracket.begin(0.0, h, True, tau)
     while s.scan.bracket.seek(2.0 * RESOLUTION * (abs(t0) + tau)):
         tau = s.scan.bracket.x  # the step of that length is the motion taken, whatever is found of it

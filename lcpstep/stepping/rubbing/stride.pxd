@@ -12,6 +12,7 @@ cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
 @cython.locals(waits=bint)
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
+cdef bint changes(Strides s, Py_ssize_t c) noexcept nogil
 @cython.locals(put_back=bint)
 cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
 @cython.locals(put_back=bint)
