@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ALL, STAGES, EXTRA_STAGES, DONE, NOT_FINITE, STEP_TOO_SMALL, HOPELESS, POLYNOMIALS, NEEDED_LATER
-cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE
+cdef double UNDERFLOW, SAFETY, LEAST, MOST, STRETCH, TOLERANCES, LOOK, DEFECT, UNLIKE, UNSEEN, FALLS, SHORT, ROUNDINGS
 
 
 cdef class RungeKutta:
@@ -27,6 +27,7 @@ cdef class RungeKutta:
     cdef bint stages(self, double t, double h, Py_ssize_t first, Py_ssize_t end) noexcept nogil
     cdef void combine(self, double h, Py_ssize_t stage) noexcept nogil
     cdef double error_norm(self, double h) noexcept nogil
+    cdef double unresolved(self, double h, double error) noexcept nogil
     cdef bint refuse(self, double t, double scan) noexcept nogil
     cdef bint repeats(self, double h) noexcept nogil
     cdef void interpolant(self, double h) noexcept nogil

@@ -40,6 +40,10 @@ HOPELESS, STRETCH = 2000, 1e-3
 TOLERANCES = 3.0  # within which the dense output must be
 LOOK, DEFECT = 0.7, 7.0  # where it is looked at, and what one sees there
 UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
+UNSEEN = 1e-3  # of the motion within a step: an error by which it is not resolved, however small it is
+FALLS = 0.7  # an error that a shorter step has no less of is rounding
+SHORT = 1e-8  # of the scan: shorter steps resolve any motion
+ROUNDINGS = 16.0  # of places, in the error of a step
 POLYNOMIALS = 7  # of the dense output, each a number for every component
 COEFFICIENTS = np.concatenate([*table([*WEIGHTS, *DENSE, ERROR_3, ERROR_5]), TIMES])
 
@@ -97,7 +101,7 @@ class RungeKutta:
         scan : the longest step that makes sense
         """
         h = min(self.next_step, longest)
-        truncated, again = h < self.next_step, False
+        truncated, again, before = h < self.next_step, False, inf
         while True:
             good = self.step(t, h)
             self.evaluations += STAGES + 1
@@ -110,7 +114,11 @@ class RungeKutta:
                 self.evaluations += EXTRA_STAGES
                 error = max(error, self.dense_error(h))
             if error <= 1.0:
-                break
+                share = self.unresolved(h, error)
+                if share <= 1.0 or share > FALLS * before or h < SHORT * scan:
+                    error = max(error, share) if share <= 1.0 else error
+                    break
+                error = before = share
             # the field may have no value, or an infinite one, beyond what a shorter step reaches
             known = error < inf
             h *= max(LEAST, factor(error)) if known else LEAST
@@ -198,6 +206,21 @@ class RungeKutta:
         if err5 + 0.01 * err3 <= UNDERFLOW:
             return 0.0
         return abs(h) * err5 / sqrt((err5 + 0.01 * err3) * n)
+
+    def unresolved(self, h: float, error: float) -> float:
+        """An error of the step, over the tolerance, as a share of what a step may have that resolves the motion.
+
+        Below the tolerance one longer than the periods of a motion makes it grow; rounding of places is no motion.
+        """
+        n, K, moved, places = self.n, self.K, 0.0, 0.0
+        for i in range(n):
+            y = max(abs(self.y[i]), abs(self.y_new[i]))
+            scale = self.atol + self.rtol * y
+            moved = max(moved, max(abs(K[i]), abs(K[STAGES * n + i])) / scale)
+            if i < self.positions:
+                places = max(places, y / scale)
+        allowed = max(UNSEEN * h * moved, ROUNDINGS * RESOLUTION * places)
+        return error / allowed if allowed > 0.0 else 0.0
 
     def refuse(self, t: float, scan: float) -> bool:
         """Take note of a step from t that is refused; False where so many are that shorter ones will not help."""

@@ -8,7 +8,7 @@ The caller keeps the function, and asks where to look:
     turn.lowest, turn.least                 where it was seen lowest, and what it is there
 
 Parabolas through samples ever nearer to each other follow a smooth turn to eight digits of its depth. Where the
-samples show none the search ends.
+samples show none the search ends. It never looks beyond the two outer samples: what is there is not the caller's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max, min
 
 ROUNDS = 4  # parabolas
 NEARER = 0.25  # of the distance of samples, each time
@@ -26,6 +26,7 @@ class Turn:
     """Three samples, and the place to look at.
 
     x                the place to look at;  lowest, least  the best one so far, and the function there
+    low, high        the outer samples that it began with
     at, h            the middle sample, and how far the others are;  f_0, f_1, f_2  of the function
     rounds, sample   parabolas left, and which sample of the next one is looked at
     """
@@ -36,6 +37,7 @@ class Turn:
     def begin(self, x: float, h: float, f_0: float, f_1: float, f_2: float) -> None:
         """Seek beside x, with the function known there and at x - h and x + h."""
         self.at = self.lowest = self.x = x
+        self.low, self.high = x - h, x + h
         self.h, self.f_0, self.f_1, self.f_2, self.least = h, f_0, f_1, f_2, f_1
         self.rounds, self.sample = ROUNDS, 0
 
@@ -48,12 +50,12 @@ class Turn:
             move = 0.5 * self.h * (self.f_0 - self.f_2) / bend
             if abs(move) > self.h:
                 return False
-            self.at += move
             self.h *= NEARER
+            self.at = min(max(self.at + move, self.low + self.h), self.high - self.h)
             self.rounds -= 1
             self.x = self.at
         else:
-            self.x = self.at - self.h if self.sample == 1 else self.at + self.h
+            self.x = max(self.at - self.h, self.low) if self.sample == 1 else min(self.at + self.h, self.high)
         return True
 
     def take(self, f: float) -> None:

@@ -55,3 +55,13 @@ def test_a_start_within_the_tolerance_of_a_surface_keeps_its_height(speed):
         strikes = m.impacts.before
         assert len(strikes) > 10
         assert strikes == pytest.approx(-np.sqrt(speed**2 + 2.0 * pressure * gap), rel=1e-5)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10])
+def test_impacts_of_a_motion_that_dies_away_below_the_tolerance_are_those_of_a_tight_one(tolerance):
+    """Steps longer than its periods had let a contact go, and held it again, thousands of times."""
+    scene = scenes.double_pendulum(t_end=432.0)
+    tight = simulate(scene, EventDriven(1e-13, 1e-13)).impacts
+    loose = simulate(scene, EventDriven(tolerance, tolerance)).impacts
+    assert len(loose) == len(tight)
+    assert np.array_equal(loose.kind, tight.kind)

@@ -16,11 +16,12 @@ from benchmarks.judge.checks import within_a_step
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
 from benchmarks.judge.runs import WAYS, run, silent
-from lcpstep import Status
+from lcpstep import EventDriven, Status, simulate
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
 from tests.judge.kept_jointed import JOINTED
 from tests.judge.kept_lately import LATELY
+from tests.judge.kept_loose import LOOSE
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
 from tests.marks import shared
@@ -38,7 +39,7 @@ LONG = {  # of these
     "contacts beside a joint, pressed by forces that begin at zero",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
-KNOWN = KEPT | LATELY | RECENTLY | JOINTED
+KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE
 NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in KNOWN]
 
 
@@ -89,6 +90,18 @@ def test_walls_that_close_upon_a_body_end_every_run():
         assert within_a_step(replace(d, h=h), r, 0.0)
     exact = run(d, "located-exact")
     assert exact.motion.t[-1] == pytest.approx(closed, abs=5e-5)
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 1e-8, 1e-9])
+def test_walls_that_squeeze_a_body_out_end_a_run_at_one_time(tolerance):
+    """Its gaps stay closed up to there, and its speed has grown beyond all that springs could give."""
+    d = LOOSE["a body squeezed out between two walls that become parallel"][0]
+    m = simulate(d.scene(), EventDriven(tolerance, tolerance))
+    assert m.status == Status.LCP_FAILED
+    assert "closed contacts [0, 2]" in m.message
+    assert m.t[-1] == pytest.approx(0.00568476824870, rel=1e-11)  # of 1e-13, by ever shorter steps
+    normals = physics.jacobians(d, m.q[-1])[[0, 2]]
+    assert abs(np.linalg.det(normals)) < 1e-6 * np.prod(np.linalg.norm(normals, axis=1))
 
 
 def test_hops_that_others_interrupt_end():

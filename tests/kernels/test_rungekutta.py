@@ -102,6 +102,24 @@ def test_steps_that_are_controlled_meet_the_tolerance(positions):
     assert y[-1] == pytest.approx(exact.y, abs=100 * TOLERANCE)
 
 
+def test_a_motion_below_the_tolerance_is_followed_by_steps_that_see_its_periods():
+    """Any step would meet the tolerance; those of many periods had made it grow up to there."""
+    t, y, ended = Field(lambda t, y: np.array([y[1], -y[0]]), [1e-13, 0.0], 1).walk(0.0, 200.0, scan=40.0)
+    assert ended == Status.DONE
+    assert len(t) < 400
+    assert np.hypot(*y.T) == pytest.approx(np.full(len(t), 1e-13), rel=0.2)
+
+
+def test_forces_that_cancel_to_rounding_need_no_short_steps():
+    """What is left of their sum is no motion, and has no less of an error by shorter steps."""
+    noise = np.random.default_rng(1).normal(size=10_000)
+    t, _, ended = Field(lambda t, y: np.array([y[1], 1e-15 * noise[int(97.0 * t)]]), [0.0, 0.0], 1).walk(
+        0.0, 100.0
+    )
+    assert ended == Status.DONE
+    assert len(t) < 1000
+
+
 def test_a_field_that_ends_is_left_where_it_is_not_finite():
     def root(t, y):
         return np.array([math.sqrt(1.0 - t) if t < 1.0 else math.nan])

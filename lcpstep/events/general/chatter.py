@@ -18,8 +18,7 @@ from lcpstep.events.general.ends import ACCUMULATION
 if not cython.compiled:
     from lcpstep.events.general.equations import bias_of, biases, constraint_rows, measure_again
     from lcpstep.events.general.held import constrain, hold_contacts, is_held, right_hand_side, solve_held
-    from lcpstep.events.general.impact import apply, speed_noise
-    from lcpstep.events.general.motion import gap_tolerance, speed_tolerance
+    from lcpstep.events.general.impact import apply, gap_tolerance, speed_noise, speed_tolerance
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.quadratic import first_zero

@@ -14,7 +14,7 @@ import cython
 if not cython.compiled:
     from lcpstep.events.general.equations import biases, constraint_rows
     from lcpstep.events.general.held import note, right_hand_side
-    from lcpstep.events.general.impact import speed_noise
+    from lcpstep.events.general.impact import gap_tolerance, speed_noise
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rounding, gaps
@@ -54,7 +54,11 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
                 tau = a
             else:
                 tau = first_contact(s, c, a, b, left_end, right_end)
-            if tau == NONE and left_end[0] <= 0.0 and right_end[0] < -gap_noise(s, c):
+            if (
+                tau == NONE
+                and left_end[0] <= 0.0
+                and right_end[0] < -max(gap_noise(s, c), gap_tolerance(s, c))
+            ):
                 tau, kind = a, NEVER_LEFT
         if tau != NONE and (found == NONE or tau < found):
             found, s.event_contact, s.event_kind = tau, c, kind

@@ -133,14 +133,15 @@ def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:
     """dy = (v, v') with the rows held; False where it is not finite or the rows have become dependent."""
     n = s.n_q
     q, v, a = y, after(y, n), after(dy, n)
-    t = s.inside(t)
+    t, s.parallel = s.inside(t), False
     total_force(s.model, t, q, v, a)
     if s.n_held > 0:
         copy(s.force, a, n)
     if not divide_by_mass(s.model, t, q, v, s.M, s.work, a):
         return False
     if s.n_held > 0:
-        if not hold_again(s, t, q, v):
+        s.parallel = not hold_again(s, t, q, v)
+        if s.parallel:
             return False
         constrain(s, a)
     copy(dy, v, n)

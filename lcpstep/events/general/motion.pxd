@@ -10,12 +10,9 @@ cdef bint arrive(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void lift_by(Mechanism s, Py_ssize_t c, double g) noexcept nogil
 @cython.locals(downwards=bint)
 cdef bint has_room(Mechanism s, Py_ssize_t c, double g) noexcept nogil
-cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double touching(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(still=bint)
 cdef double closed_from(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef double rounding_of_gap(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef double speed_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef double least_effect(Mechanism s, Py_ssize_t c, double* x) noexcept nogil
 cdef void press(Mechanism s, double tau) noexcept nogil
 cdef void press_between(Mechanism s, double a, double b) noexcept nogil

@@ -6,10 +6,11 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.earliest import observe
+    from lcpstep.events.general.impact import gap_tolerance, speed_tolerance
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.dynamics import gap_rates, gap_rounding
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+    from lcpstep.pointers import abs, after, max
 
 SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
 
@@ -86,14 +87,6 @@ def has_room(s: Mechanism, c: int, g: float) -> bool:
     return not (downwards and (g < 0.0 or s.contact.rate[c] < 0.0))
 
 
-def gap_tolerance(s: Mechanism, c: int) -> float:
-    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance.
-
-    Zero where it depends on no coordinate, as in the middle of a bowl.
-    """
-    return least_effect(s, c, s.q)
-
-
 def touching(s: Mechanism, c: int) -> float:
     """The gap below which contact c is closed at the start: rounding, and the tolerance where gaps are not exact."""
     rounding = rounding_of_gap(s, c)
@@ -118,21 +111,6 @@ def rounding_of_gap(s: Mechanism, c: int) -> float:
             way += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
         way *= s.length
     return gap_rounding(s.model, s.contact.G, s.q, c, way)
-
-
-def speed_tolerance(s: Mechanism, c: int) -> float:
-    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
-    return least_effect(s, c, s.v)
-
-
-def least_effect(s: Mechanism, c: int, x: Doubles) -> float:
-    """The gap, or gap velocity, that contact c can change without changing an x by more than its tolerance."""
-    i, least = s.n_j + c, inf
-    for j in range(s.n_q):
-        moved = abs(s.MR[i * s.n_q + j])
-        if moved > 0.0:
-            least = min(least, (s.atol + s.rtol * abs(x[j])) * s.D[i * s.n_r + i] / moved)
-    return least if least < inf else 0.0
 
 
 def press(s: Mechanism, tau: float) -> None:

@@ -40,7 +40,17 @@ LOOKS, FURTHER = 6, 10.0  # how often, by how much further each time, unless the
 
 
 def step(s: Mechanism) -> int:
-    """One DOP853 step, and the first event within it; `complete` takes it over."""
+    """One DOP853 step, and the first event within it; `complete` takes it over.
+
+    Held by surfaces that become parallel, as between walls that close, a motion has no bounds: no forces keep it so.
+    """
+    code = attempt(s)
+    squeezed = s.parallel and s.n_held > s.n_held_joints
+    return NO_FORCES if code == NOT_FINITE and squeezed else code
+
+
+def attempt(s: Mechanism) -> int:
+    """The same, whatever ends it."""
     copy(s.left.gap, s.contact.gap, 4 * s.n_c)
     copy(s.start.gap, s.contact.gap, 4 * s.n_c)
     longest = min(s.t_end, s.high) - s.t0
