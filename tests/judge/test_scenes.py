@@ -20,6 +20,7 @@ from lcpstep import Status
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
 from tests.judge.kept_lately import LATELY
+from tests.judge.kept_other import OTHER
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
 from tests.marks import shared
@@ -37,12 +38,14 @@ LONG = {  # of these
     "contacts beside a joint, pressed by forces that begin at zero",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
-NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in (*KEPT, *LATELY, *RECENTLY)]
+NAMES = [
+    pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in (*KEPT, *LATELY, *RECENTLY, *OTHER)
+]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_what_was_wrong_once_is_right(name):
-    d, methods = (KEPT | LATELY | RECENTLY)[name]
+    d, methods = (KEPT | LATELY | RECENTLY | OTHER)[name]
     assert judged(d, methods, share=1.0).findings == []
 
 
