@@ -11,6 +11,7 @@ import numpy as np
 from benchmarks.judge import physics
 from benchmarks.judge.breaking import breaks_down, judged_until, up_to
 from benchmarks.judge.describe import Description
+from benchmarks.judge.endless import closed_up, grows_beyond
 from benchmarks.judge.runs import CPU_EACH, Finding, Run, run
 from benchmarks.judge.scales import EPS, drift
 from benchmarks.judge.told import whole
@@ -23,13 +24,13 @@ EXACT = ("event-driven", "located-exact")
 
 
 def finite(d: Description, r: Run) -> Iterator[Finding]:
-    """No state and no impulse is infinite or not a number."""
+    """No state and no impulse is infinite or not a number, unless the motion itself has come to its end."""
     m = r.motion
     for name in ("t", "q", "v", "impulse", "joint_impulse"):
         bad = ~np.isfinite(getattr(m, name))
         if np.any(bad):
             yield Finding(r.method, "not finite", f"{name} in {int(np.sum(bad))} entries, status {r.status}")
-    if r.status == "NOT_FINITE" and breaks_down(d, r) == np.inf:
+    if r.status == "NOT_FINITE" and breaks_down(d, r) == np.inf and not closed_up(d, r):
         yield Finding(r.method, "not finite", r.text)
 
 
@@ -72,14 +73,15 @@ def slowness() -> float:
 def between(d: Description, r: Run) -> Iterator[Finding]:
     """States between the kept ones are told, right up to the end of what was computed.
 
-    Where a run breaks down its last step has led nowhere, and what is between may be as far from what is kept.
+    Where a run breaks down its last step has led nowhere, and what is between may be as far from what is kept; so are
+    the events within the very step that the turn lies in, a little before it.
     """
     try:
         q, _ = r.at(whole(r))
     except (IndexError, ValueError) as error:
         yield Finding(r.method, "no states between", f"{type(error).__name__}: {error}, status {r.status}")
         return
-    if r.motion.t[-1] > judged_until(d, r):
+    if r.motion.t[-1] > judged_until(d, r) - d.h:
         return
     if not np.allclose(q[-1], r.motion.q[-1], rtol=1e-12, atol=1e-9 * r.scales(d).length):
         text = f"at the end {q[-1].tolist()}, kept {r.motion.q[-1].tolist()}"
@@ -243,10 +245,12 @@ CHECKS: tuple[Callable[[Description, Run], Iterator[Finding]], ...] = (
 
 
 def check(d: Description, r: Run) -> list[Finding]:
-    """All findings of one run."""
+    """All findings of one run; of states that have grown to the largest numbers not even energies can be asked."""
     if r.status == "raised":
         return [Finding(r.method, "raised", r.text)]
     if r.motion is None or not len(r.motion.t):
+        return []
+    if r.status == "NOT_FINITE" and grows_beyond(d, r):
         return []
     found = list(finite(d, r))
     return found or [x for each in CHECKS[1:] for x in each(d, r)]

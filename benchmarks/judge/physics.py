@@ -118,3 +118,25 @@ def room(d: Description, t: float) -> float:
     rows, right = np.vstack([G.T, np.ones(len(G))]), np.append(np.zeros(d.n), 1.0)
     found = linprog(open_by, A_eq=rows, b_eq=right)
     return float(found.fun) if found.success else np.inf
+
+
+def highest(d: Description, t: float) -> Any:
+    """The largest gap of each contact at any place: that of a dome, whose row is less than its bend (contacts,).
+
+    Along its row a gap is |G| x + bend r(x), largest where the slopes are opposite; else it has no bound.
+    """
+    found = np.full(d.contacts, np.inf)
+    if not d.curved:
+        return found
+    row, bend, size = (
+        np.linalg.norm(np.array(d.G), axis=1),
+        d.row("bend", d.contacts),
+        d.row("round", d.contacts),
+    )
+    base = d.row("offset", d.contacts) - obstacles(d, np.array(t), 0)
+    for c in np.flatnonzero(bend < 0.0):
+        if size[c] == 0.0:
+            found[c] = base[c] - 0.5 * row[c] ** 2 / bend[c]
+        elif row[c] < -bend[c]:
+            found[c] = base[c] - size[c] * np.sqrt(bend[c] ** 2 - row[c] ** 2)
+    return found

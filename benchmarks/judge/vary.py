@@ -63,7 +63,7 @@ def base(d: Description, r: Run) -> Base:
     events = r.motion.counts.events + r.motion.counts.steps
     floor = (1e-9 + 1e-14 * events + (10.0 + 0.1 * events) * r.tolerance) * size
     floor += r.tolerance + 1e3 * EPS * float(np.max(np.abs(q), initial=0.0))
-    floor += 1e2 * EPS * max(map(abs, d.t_span)) * float(np.max(np.abs(r.motion.v), initial=0.0))
+    floor += 1e2 * EPS * max(map(abs, d.t_span)) * fastest(d, r)
     unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
     told = float(times[unclear[0]]) if len(unclear) else np.inf
     start = d.t_span[0]
@@ -75,6 +75,12 @@ def base(d: Description, r: Run) -> Base:
     b = Base(d, r, times, q, allowed, told)
     unlike = [x[0] for other in companions if other.done and (x := without_partner(b, other, Variant("", d)))]
     return replace(b, alone=min(unlike, default=np.inf))
+
+
+def fastest(d: Description, r: Run) -> float:
+    """The largest speed of the motion and of what carries it: rounding of a time moves both by it."""
+    frame = float(np.max(np.abs(d.row("frame")), initial=0.0))
+    return max(float(np.max(np.abs(r.motion.v), initial=0.0)), d.omega * frame)
 
 
 def distance(r: Run, times: Any, q: Any, variant: Variant | None = None) -> Any:

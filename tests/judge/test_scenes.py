@@ -22,6 +22,7 @@ from tests.judge.kept import KEPT
 from tests.judge.kept_jointed import JOINTED
 from tests.judge.kept_lately import LATELY
 from tests.judge.kept_loose import LOOSE
+from tests.judge.kept_other import OTHER
 from tests.judge.kept_recently import RECENTLY
 from tests.judge.open import OPEN
 from tests.marks import shared
@@ -39,7 +40,7 @@ LONG = {  # of these
     "contacts beside a joint, pressed by forces that begin at zero",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
-KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE
+KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE | OTHER
 NAMES = [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in KNOWN]
 
 

@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
     from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.impulses import strike
+    from lcpstep.stepping.pieces.impulses import strike, zero_speeds
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.smooth import mobility, refactor, renew_forces, respond
@@ -44,6 +44,7 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
             straighten(m, plan, w, d)
         if n_s > 1:
             straighten_all(m, w, n_s)
+        zero_speeds(w)
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
     if record.keeps_events():

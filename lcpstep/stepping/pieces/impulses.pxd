@@ -11,6 +11,7 @@ cdef Py_ssize_t strike(Model m, Plan plan, Work w, Record record, Py_ssize_t fir
 cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first) noexcept nogil
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t first, Py_ssize_t c) noexcept nogil
 cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
+cdef void zero_speeds(Work w) noexcept nogil
 @cython.locals(touches=bint)
 cdef void push(Plan plan, Work w, Py_ssize_t d, double p) noexcept nogil
 cdef void after_impact(

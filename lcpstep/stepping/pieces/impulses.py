@@ -157,12 +157,21 @@ def jump(plan: Plan, w: Work, n_s: int) -> float:
                 w.v_try[i] += abs(w.MG[c * w.n_q + i] * p)
     for i in range(n):
         w.swing[i] = max(w.swing[i], w.v_try[i])
-        if abs(w.v[i]) <= ROUNDING * w.v_try[i]:
-            w.v[i] = 0.0
+    zero_speeds(w)
     for k in range(n_s):
         if w.z[k] > 0.0:
             push(plan, w, w.chosen[k], w.z[k])
     return largest
+
+
+def zero_speeds(w: Work) -> None:
+    """Velocities after an impact that are rounding of what they are made of, w.v_try, are zero.
+
+    A damper would pull by them at a body that rests, and let it go from its obstacle.
+    """
+    for i in range(w.n_q):
+        if abs(w.v[i]) <= ROUNDING * w.v_try[i]:
+            w.v[i] = 0.0
 
 
 def push(plan: Plan, w: Work, d: int, p: float) -> None:
