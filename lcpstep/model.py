@@ -8,22 +8,20 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, HybridScene, LinearContacts, LinearSystem, Scene, System
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lagrangian.checks import Callback
 from lagrangian.friction import sway, swaying
-from lagrangian.joints import state as joint_state
 from lagrangian.system import Harmonic
 from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
-from lcpstep.faults import fault
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.function import Functions
@@ -167,38 +165,6 @@ def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, i
     return addresses
 
 
-def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
-    """Which callback has raised an exception, or is not finite at one of the times, in words."""
-    found = failing(scene, times, q, v)
-    return found or "the motion left the finite numbers, or a matrix is singular or not positive definite,"
-
-
-def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
-    """The callback that has raised an exception, or is not finite at one of the times; "" if none does.
-
-    It is asked for at the state that the motion has reached, and at those that this leads to in a straight line.
-    """
-    raised, times = fault(), list(times)
-    states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
-    if (
-        raised is not None and len(raised.v) == scene.n_q
-    ):  # coefficients of friction have sliding velocities there
-        states = [(raised.t, raised.q, raised.v)]
-    try:
-        for t, x, x_t in states:
-            at = t, x, x_t, np.array(scene.p)
-            scene.system.trial(*at)
-            if scene.contacts is not None:
-                scene.contacts.state(*at)
-            if scene.joints is not None:
-                joint_state(scene.joints, *at)
-    except ValueError as error:
-        return str(error) + ";"
-    if raised is not None:
-        return f"{raised};"
-    return ""
-
-
 def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:
     """The callbacks that answer the same question twice with other numbers."""
     n_q, n_c = scene.n_q, scene.n_c
@@ -215,18 +181,6 @@ def unrepeatable(scene: Scene, t: float, q: Array, v: Array) -> list[str]:
                     found.append(name)
                     break
     return found
-
-
-def hybrid_culprit(scene: HybridScene, mode: str) -> str:
-    """The same of a system with modes that has stopped in this one."""
-    raised = fault()
-    if raised is None:
-        return f"the field of mode {mode!r}, a guard of it or the state is not finite"
-    try:
-        scene.system.trial(raised.t, raised.q, np.array(scene.p))
-    except ValueError as error:
-        return str(error)
-    return str(raised)
 
 
 def _system(scene: Scene) -> dict[str, Any]:

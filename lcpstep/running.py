@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import checks
+from lcpstep.culprits import culprit
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.kernels.status import BUFFER_FULL
-from lcpstep.model import culprit
 from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.trajectory import Counts, Status, Trajectory

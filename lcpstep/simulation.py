@@ -120,7 +120,7 @@ def simulate(
             raise refused("modes-audit", scene)
         moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
         if fault() is not None:
-            from lcpstep.model import hybrid_culprit
+            from lcpstep.culprits import hybrid_culprit
 
             raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
         return moved
@@ -139,7 +139,7 @@ def simulate(
     if kept is not asked:
         run = narrowed(run, kept)
     if fault() is not None:
-        from lcpstep.model import culprit
+        from lcpstep.culprits import culprit
 
         raise _raised(run, culprit(scene, (), run.q, run.v))
     run = _looked_over(run)

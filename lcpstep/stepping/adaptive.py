@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
+from lcpstep.culprits import failing
 from lcpstep.kernels.status import BUFFER_FULL
-from lcpstep.model import failing
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 from lcpstep.trajectory import Status
 

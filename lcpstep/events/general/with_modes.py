@@ -11,6 +11,7 @@ import numpy as np
 
 from lagrangian import HybridScene, Scene
 from lagrangian.mechanical import mechanics
+from lcpstep.culprits import hybrid_culprit
 from lcpstep.events.general.ends import INSIDE
 from lcpstep.events.general.run import General, mechanism
 from lcpstep.events.general.smooth import Watched
@@ -18,7 +19,7 @@ from lcpstep.events.general.state import Mechanism
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.run import SWITCHES, switch_log, undecided
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
-from lcpstep.model import hybrid_culprit, model_of_modes
+from lcpstep.model import model_of_modes
 from lcpstep.recording import Kept
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Status

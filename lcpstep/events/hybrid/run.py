@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene
+from lcpstep.culprits import hybrid_culprit
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
@@ -15,7 +16,6 @@ from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
-from lcpstep.model import hybrid_culprit
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept
 from lcpstep.refusals import refused
