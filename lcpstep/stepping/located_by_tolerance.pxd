@@ -10,5 +10,7 @@ cdef class Attempts(Parts):
     cdef Py_ssize_t attempt(self) noexcept nogil
     @cython.locals(event_first=bint)
     cdef void weigh(self, double length) noexcept nogil
+    @cython.locals(asked=bint)
     cdef double depth(self) noexcept nogil
+    cdef double astray(self) noexcept nogil
     cdef double wrong(self, double length) noexcept nogil

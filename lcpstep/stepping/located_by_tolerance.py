@@ -14,10 +14,12 @@ from lcpstep.stepping.adaptive import REACHED
 from lcpstep.stepping.located_parts import Parts
 
 if not cython.compiled:
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.record import COLUMNS
     from lcpstep.kernels.vectors import distance, largest
-    from lcpstep.pointers import abs, after, inf, max, min
+    from lcpstep.pointers import abs, after, inf, max, min, whole
     from lcpstep.stepping.hidden_forces import hidden, late
-    from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, STOPPED
+    from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, IMPACT, STOPPED
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -60,7 +62,7 @@ class Attempts(Parts):
         if not event_first:
             self.failed = self.failed or not self.one.good()
             if not self.failed:
-                wrong_q, wrong_v = self.depth(), self.wrong(length)
+                wrong_q, wrong_v = max(self.depth(), self.astray()), self.wrong(length)
             wrong_q = max(wrong_q, distance(self.one.q, self.two.q, self.w.n_q))
             wrong_v = max(wrong_v, distance(self.one.v, self.two.v, self.w.n_q))
         self.apart_q, self.apart_v = wrong_q, wrong_v
@@ -69,20 +71,44 @@ class Attempts(Parts):
 
     def depth(self) -> float:
         """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""
-        deepest, t = 0.0, self.half.time
+        deepest, t, asked = 0.0, self.half.time, False
         if not self.rough:
             return deepest
         for c in range(self.w.n_c):
             if self.one.status[c] == CLOSED:
                 continue
             g, u, a = self.saved.gap[c], self.saved.rate[c], self.one.half[c]
-            error = abs(g + t * (u + t * a) - self.half.gap[c])
+            if g == 0.0 and not asked:  # what has struck is that far from its obstacle, see `astray`
+                gaps(self.m, self.now(), self.saved.q, self.saved.v, self.w.gap_try)
+                asked = True
+            begins = g if g != 0.0 else self.w.gap_try[c]
+            error = abs(begins + t * (u + t * a) - self.half.gap[c])
             lowest = min(min(g, self.one.gap[c]), self.half.gap[c])
             if a > 0.0 > u:
                 lowest = min(lowest, g - 0.25 * u * u / a)
             if lowest < NEAR * error:
                 deepest = max(deepest, error)
         return deepest
+
+    def astray(self) -> float:
+        """How far off an impact was found, along a coordinate: states before it lie on closed contacts' obstacles.
+
+        Both runs are put there, and out of the obstacle that is struck, and agree on it. What they have been put by
+        tells, and how far from its obstacle what has struck is then.
+        """
+        if self.two.code != STOPPED:
+            return 0.0
+        furthest = self.two.off
+        for k in range(self.event, self.record.event if self.saved.closed_now > 0 else self.event):
+            event = after(self.record.events, k * COLUMNS)
+            if event[5] != IMPACT:
+                continue
+            c = whole(event[1])
+            gaps(self.m, event[0], self.two.q, self.two.v, self.w.gap_try)
+            steep = largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
+            if steep > 0.0:
+                furthest = max(furthest, abs(self.w.gap_try[c]) / steep)
+        return furthest
 
     def wrong(self, length: float) -> float:
         """Error of the velocity by contacts that were closed, see `hidden_forces`."""

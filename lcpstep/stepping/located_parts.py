@@ -123,7 +123,7 @@ class Parts(Control):
         else:
             self.place(level, self.step_size(level))
         self.plan.h = end
-        self.w.unchanged, self.w.blind, self.w.goal = False, until, last
+        self.w.unchanged, self.w.blind, self.w.goal, self.w.off = False, until, last, 0.0
         self.carry_on(start, even and start == 0.0, COLLAPSE * end)
         code = self.way.take(self.from_time, self.w.steps, self.w.steps + 1)
         if code == FINISHED:  # a contact's flight is followed without counting times
@@ -158,7 +158,7 @@ class Parts(Control):
 
     def led(self, to: Led, code: int) -> None:
         """Where the part that has just been taken led."""
-        to.code, to.time = code, self.elapsed
+        to.code, to.time, to.off = code, self.elapsed, self.w.off
         copy(to.q, self.w.q, self.w.n_q)
         copy(to.v, self.w.v_struck if code == STOPPED and self.w.blind == 0.0 else self.w.v, self.w.n_q)
         for c in range(self.w.n_c):

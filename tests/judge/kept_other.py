@@ -43,4 +43,16 @@ OTHER: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("located",),
     ),
+    # Errors that steps of order four hide from each other, and of order two could not begin again from
+    "a slide on one moving wall until another one strikes": (
+        Description(
+            M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-1.09, 0.123, 0.822),
+            v0=(0.6238303930500597, -0.6890165553358989, 0.39421689184293823), t_span=(-91.0, -90.74211), h=0.00629,
+            G=((0.532, 0.0657, 0.844), (-0.0564, 0.457, 0.888), (-0.589, -0.0727, 0.805), (0.0497, -0.402, 0.914)),
+            offset=(-0.0822039161764621, -0.8387907727012393, -1.2859456727012393, -0.5371051136493803),
+            restitution=(0.32, 0.4, 0.79, 0.86), constant=(0.0, 0.0, -9.81),
+            amplitude=(0.0161, 0.0161, 0.0161, -0.00805), phase=(4.48, 0.0, 0.0, 0.0), omega=18.2, family="wedge",
+        ),
+        ("event-driven", "located", "located-4", "located-tolerance", "located-4-tolerance"),
+    ),
 }  # fmt: skip

@@ -7,7 +7,7 @@ from lcpstep.stepping.pieces.state cimport Work
 cdef class Led:
     cdef object kept
     cdef Py_ssize_t code
-    cdef double time
+    cdef double time, off
     cdef Doubles q, v, gap, half, force, impulse
     cdef Indices status
     cdef bint good(self) noexcept nogil

@@ -17,7 +17,7 @@ class Led:
     """Where a run led.
 
     code, time      why it ended, and when, since the start of the step
-    q, v            before an event there
+    q, v            before an event there;  off   how far it was put there from where its piece had led
     gap, half       gaps, and halves of their accelerations over the piece
     status          OPEN or CLOSED
     force, impulse  over the piece, and since the start of the step, of contacts where some were closed
@@ -29,7 +29,7 @@ class Led:
         self.v, self.gap = after(self.q, n_q), after(self.q, 2 * n_q)
         self.half, self.force = after(self.gap, n_c), after(self.gap, 2 * n_c)
         self.impulse = after(self.gap, 3 * n_c)
-        self.code, self.time = FINISHED, 0.0
+        self.code, self.time, self.off = FINISHED, 0.0, 0.0
 
     def good(self) -> bool:
         """Whether it could be taken."""

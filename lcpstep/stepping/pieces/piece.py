@@ -13,7 +13,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import copy, distance, product
     from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.pieces.codes import (
         CLOSED,
@@ -247,7 +247,9 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
             if not land(m, plan, w, record, now, tau):
                 return LCP_FAILED
             if taken or penetrates(plan, w):
+                copy(w.q_try, w.q, w.n_q)
                 put_on_surface(m, plan, w, now + tau)
+                w.off = distance(w.q, w.q_try, w.n_q)
             measure(m, plan, w, now + tau)
     if wanted and not plan.plain:
         keep_between(m, plan, w, record, now, tau, end)

@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import copy, distance, product
     from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import (
         AGAIN,
@@ -171,6 +171,7 @@ def follow(
                 return NOT_FINITE
             respond(m, w)
         put_on_surface(m, plan, w, now + tau)
+        w.off = distance(w.q, z.q, w.n_q)
         slide(m, w, within(plan, w, now + tau))
         measure(m, plan, w, now + tau)
     for c in range(w.n_c):

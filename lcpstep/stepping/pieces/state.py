@@ -152,6 +152,7 @@ class Work:
     What steps by a tolerance ask for:
     pausing         to stop after an event
     fresh           whether nothing has happened since the start
+    off             how far the last piece was put from where it led, onto obstacles and out of them
     blind           how far a single piece goes in which events are not looked for (0: they are)
     goal            the time at the end of the step
 
@@ -181,7 +182,7 @@ class Work:
         self.place_marks(indices(self.marks))
         self.place_matrices(doubles(self.matrices))
         self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
-        self.ahead = self.blind = self.goal = 0.0
+        self.ahead = self.blind = self.goal = self.off = 0.0
         self.under_way = self.unchanged = self.touching = self.pausing = self.fresh = False
         self.events = self.closed_now = self.made_with = 0
         self.steps = self.lcp_calls = self.force_evaluations = self.events_left = 0
