@@ -67,6 +67,8 @@ class Attempts(Parts):
             wrong_v = max(wrong_v, distance(self.one.v, self.two.v, self.w.n_q))
         self.apart_q, self.apart_v = wrong_q, wrong_v
         self.far_q, self.far_v = largest(self.two.q, 0.0, self.w.n_q), largest(self.two.v, 0.0, self.w.n_q)
+        if self.two.time > 0.0:
+            self.rate = distance(self.two.v, self.saved.v, self.w.n_q) / self.two.time
         self.happened = self.two.code == STOPPED or self.record.event > self.event
 
     def depth(self) -> float:

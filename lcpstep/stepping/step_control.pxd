@@ -3,7 +3,7 @@ from lcpstep.kernels.course cimport Course
 from lcpstep.kernels.record cimport Record
 
 cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
-cdef double NOISE, PLENTY, LEAST_SHARE, FLAT
+cdef double NOISE, LATE, PLENTY, LEAST_SHARE, FLAT
 
 
 cdef class Control(Course):
@@ -14,7 +14,7 @@ cdef class Control(Course):
     cdef public long long position, end, tried
     cdef public int level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into
-    cdef public double apart_q, apart_v, far_q, far_v, cut
+    cdef public double apart_q, apart_v, far_q, far_v, rate, cut
     cdef public bint happened, failed, full
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil

@@ -23,6 +23,7 @@ import cython
 import numpy as np
 
 from lcpstep.stepping.adaptive import LEVELS, NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
+from lcpstep.stepping.steps import RESOLUTION
 
 if not cython.compiled:
     from math import ldexp
@@ -35,6 +36,7 @@ if not cython.compiled:
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
+LATE = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 
 
@@ -58,6 +60,7 @@ class Control(Course):
 
     apart_q, apart_v     errors of positions and velocities
     far_q, far_v         sizes of those that it led to
+    rate                 by which velocities have changed over it [m/s^2], where that is known
     happened             whether there was an event, or what counts as one
     failed               whether a run could not be taken
     full                 there was no room for its events, though there may be when the buffers are empty
@@ -141,7 +144,7 @@ class Control(Course):
 
     def begin_attempt(self) -> None:
         """Nothing is known of it yet."""
-        self.apart_q = self.apart_v = self.far_q = self.far_v = 0.0
+        self.apart_q = self.apart_v = self.far_q = self.far_v = self.rate = 0.0
         self.happened = self.failed = self.full = False
         self.cut = inf
 
@@ -185,7 +188,9 @@ class Control(Course):
         level, h = self.level, self.step_size(self.level)
         size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
         noise = min(NOISE, LEAST_SHARE * self.tolerance)
-        error = max(self.apart_q / (1.0 + size_q), self.apart_v / (1.0 + size_v)) - noise
+        late = LATE * abs(self.now())
+        wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.rate
+        error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - noise
         allowed = (min(self.cut, h) - self.into) / self.span
         if self.happened or FLAT * error > self.last:
             allowed = max(allowed, LEAST_SHARE)

@@ -223,3 +223,20 @@ def test_bad_input_is_named():
             Located(0.1, tolerance=bad)
     with pytest.raises(ValueError, match="exact"):
         Located(0.1, order="exact", tolerance=1e-6)
+
+
+def driven(periods):
+    """An oscillator before a stop, so many periods of its force from time zero."""
+    start = periods * 2.0 * np.pi / 20.0
+    system = LinearSystem([[1.0]], K=[[40.0]], force=Harmonic(constant=-9.81, sine=30.0, omega=20.0))
+    contacts = LinearContacts([[1.0]], restitution=0.5)
+    return Scene(system=system, contacts=contacts, q0=0.3, v0=0.0, t_span=(start, start + 0.5))
+
+
+def test_steps_do_not_shrink_to_what_times_far_from_zero_are_rounded_by():
+    """Four days from zero forces are rounded by 1e-9 of themselves: no shorter step shows less."""
+    near, far = (simulate(driven(n), Located(0.05, 4, tolerance=1e-9)) for n in (0, 10**6))
+    true = simulate(driven(10**6), EventDriven())
+    at = np.linspace(*far.scene.t_span, 300)
+    assert far.counts.steps < 2 * near.counts.steps
+    assert np.max(np.abs(far.at(at)[0] - true.at(at)[0])) < 2e-9
