@@ -65,4 +65,16 @@ OTHER: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located-4-tolerance"),
     ),
+    # Two of its feet come at one time, which rounding of it tells apart
+    "seven feet on tables that move, two hours from time zero": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.231)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(7600.0, 7600.292479), h=0.00176,
+            G=((1.0, -0.5), (1.0, -0.333), (1.0, -0.167), (1.0, 0.0), (1.0, 0.167), (1.0, 0.333), (1.0, 0.5)),
+            offset=(-0.0016099563043671709, 0.0, -0.0016099563043671709, 0.017291898306206314, 0.0,
+            0.017291898306206314, -0.0016099563043671709), restitution=(1.0, 0.0, 0.0, 0.0, 1.0, 0.21, 0.52),
+            constant=(-9.81, 0.0), amplitude=(0.0306, 0.0, 0.0306, 0.0306, 0.0, 0.0306, 0.0306),
+            phase=(0.0, 0.0, 0.0, 5.63, 5.63, 5.63, 0.0), omega=13.0, family="feet",
+        ),
+        ("event-driven", "located-tolerance"),
+    ),
 }  # fmt: skip

@@ -6,6 +6,7 @@ cdef double SURE
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil
 cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef void close_with(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef bint arrive(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void lift_by(Mechanism s, Py_ssize_t c, double g) noexcept nogil
 @cython.locals(downwards=bint)

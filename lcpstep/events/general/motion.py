@@ -63,10 +63,24 @@ def arrive(s: Mechanism, c: int) -> bool:
             if s.contact.closed[d] == 0:
                 s.contact.gap[d] = s.contact.gap[d] - (s.contact.speed[d] - s.contact.rate[d]) * g / u
         s.contact.gap[c] = 0.0
-    else:
-        lift(s, c)
-        return s.model.flat or has_room(s, c, g)
-    return True
+        return True
+    lift(s, c)
+    if s.contact.rate[c] != 0.0:
+        close_with(s, c)
+    return s.model.flat or has_room(s, c, g)
+
+
+def close_with(s: Mechanism, c: int) -> None:
+    """Gaps that close with that of contact c, whose obstacle moves: within less than a time can tell."""
+    for d in range(s.n_c):
+        u = s.contact.speed[d]
+        if (
+            d != c
+            and s.contact.closed[d] == 0
+            and u < 0.0
+            and abs(s.contact.gap[d]) <= -s.untold(s.length) * u
+        ):
+            s.contact.gap[d] = 0.0
 
 
 def has_room(s: Mechanism, c: int, g: float) -> bool:

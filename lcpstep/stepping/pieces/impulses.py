@@ -45,6 +45,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+    from lcpstep.stepping.pieces.times import driven_by
 
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
@@ -57,7 +58,7 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
     """
     if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
         measure_rates(w)
-    n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first)
+    n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first, t)
     if n_s == 0:
         return 0
     if w.closed_now > 0:
@@ -91,13 +92,15 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
     return n_s
 
 
-def choose_struck(m: Model, plan: Plan, w: Work, first: int) -> int:
+def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     """Contacts that fire now; their number.
 
     Those that close with one speed land together, those that touched before are pushed together, and so are those
     of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
-    are struck one after another, as they would be a little apart.
+    are struck one after another, as they would be a little apart. By what the first has missed a moving obstacle, for
+    no time is nearer, others may have.
     """
+    missed = min(max(w.gap[first], 0.0), driven_by(w, first, t))
     for c in range(w.n_c):
         # A gap within the slack may still be open: its speed is not yet the one that it will close with
         closing = c == first or (
@@ -111,19 +114,19 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int) -> int:
     w.gap[first], w.grounded[first] = 0.0, GROUND
     for c in range(w.n_c):
         w.before[c] = w.rate[c]
-        near = w.gap[c] <= plan.slack
+        near = w.gap[c] <= plan.slack + missed
         if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and (near or not m.flat):
             pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
             alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
             # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
-            if (near and (pushed or alike)) or tied(m, plan, w, first, c):
+            if (near and (pushed or alike)) or tied(m, plan, w, first, c, missed):
                 w.chosen[n_s] = c
                 w.gap[c], w.grounded[c] = 0.0, GROUND
                 n_s += 1
     return n_s
 
 
-def tied(m: Model, plan: Plan, w: Work, first: int, c: int) -> bool:
+def tied(m: Model, plan: Plan, w: Work, first: int, c: int, missed: float) -> bool:
     """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
 
     Contacts that have struck at this instant already are in the midst of a sequence, which has an order. Along closed
@@ -131,7 +134,7 @@ def tied(m: Model, plan: Plan, w: Work, first: int, c: int) -> bool:
     """
     if at_this_instant(plan, w, first) or at_this_instant(plan, w, c):
         return False
-    rounding = gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c))
+    rounding = missed + gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c))
     if w.closed_now > 0:
         rounding += ON_THE_SURFACE * plan.slack
     if w.gap[c] > rounding:
