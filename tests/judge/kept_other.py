@@ -77,4 +77,18 @@ OTHER: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located-tolerance"),
     ),
+    # Let go by what rounding had left of their speeds, a step after they had come to rest on each other
+    "beads at rest on each other that another one strikes": (
+        Description(
+            M=((1.65, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 2.1, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.565, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.338, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 2.63, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.77)),
+            q0=(-2.0, -1.66, 1.55, 0.324, 0.608, 1.35), v0=(-1.4, 3.86, 1.92, -1.24, -1.12, -1.11),
+            t_span=(0.0, 6.0), h=0.00255, G=((-1.0, 1.0, 0.0, 0.0, 0.0, 0.0), (0.0, -1.0, 1.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, -1.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, -1.0, 1.0, 0.0), (0.0, 0.0, 0.0, 0.0, -1.0, 1.0),
+            (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
+            offset=(1.0699999999999998, -3.1765, 2.092, -0.2586, -0.6928000000000001, 2.117), restitution=0.26,
+            constant=(0.0, -20.6, 0.0, 0.0, 0.0, 0.0), general=True, family="beads",
+        ),
+        ("event-driven", "located", "located-tolerance"),
+    ),
 }  # fmt: skip
