@@ -112,4 +112,26 @@ LOOSE: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven",),
     ),
+    # What stops the hops of one was shared by the other, which leaves while these go on
+    "a corner of two walls, of which hops at one let the other go": (
+        Description(
+            M=((4310.0, 0.0), (0.0, 15600.0)),
+            q0=(0.293, 0.349),
+            v0=(0.0, 0.0),
+            t_span=(0.0, 0.07478),
+            h=0.00733,
+            G=((0.449, 0.853), (-2.01, 0.344)),
+            offset=(-0.42925399999999997, 0.4688739999999999),
+            restitution=(0.048, 0.64),
+            K=((2560000.0, -1790000.0), (-1790000.0, 1310000.0)),
+            C=((5470.0, -1840.0), (-1840.0, 11600.0)),
+            constant=(-10500.0, -27700.0),
+            force_omega=0.942,
+            amplitude=(0.00678, 0.0),
+            phase=(0.0, 0.0),
+            omega=4.56,
+            family="square",
+        ),
+        ("event-driven-loose",),
+    ),
 }
