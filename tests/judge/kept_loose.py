@@ -112,4 +112,52 @@ LOOSE: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven",),
     ),
+    # What stops the hops of one was shared by the other, which leaves while these go on
+    "a corner of two walls, of which hops at one let the other go": (
+        Description(
+            M=((4310.0, 0.0), (0.0, 15600.0)),
+            q0=(0.293, 0.349),
+            v0=(0.0, 0.0),
+            t_span=(0.0, 0.07478),
+            h=0.00733,
+            G=((0.449, 0.853), (-2.01, 0.344)),
+            offset=(-0.42925399999999997, 0.4688739999999999),
+            restitution=(0.048, 0.64),
+            K=((2560000.0, -1790000.0), (-1790000.0, 1310000.0)),
+            C=((5470.0, -1840.0), (-1840.0, 11600.0)),
+            constant=(-10500.0, -27700.0),
+            force_omega=0.942,
+            amplitude=(0.00678, 0.0),
+            phase=(0.0, 0.0),
+            omega=4.56,
+            family="square",
+        ),
+        ("event-driven-loose",),
+    ),
+    # It dies away in the corner, to where steps longer than its periods made it grow, and then to where numbers end
+    "a corner of four walls in which nothing is left of a motion": (
+        Description(
+            M=((0.91, 0.0, 0.0, 0.0), (0.0, 1.44, 0.0, 0.0), (0.0, 0.0, 2.49, 0.0), (0.0, 0.0, 0.0, 1.69)),
+            q0=(0.0, 0.0, 0.0, 0.0),
+            v0=(1.02, 0.352, 0.253, -0.0776),
+            t_span=(0.0, 9.14049),
+            h=0.000106,
+            G=(
+                (-0.889, -0.512, 1.63, -2.66),
+                (1.06, 1.58, 1.14, -1.38),
+                (0.377, -0.151, 0.985, 0.408),
+                (0.00642, 2.36, -1.37, -0.814),
+            ),
+            offset=(0.0, 0.0, 0.0, 0.0),
+            restitution=(0.0, 0.0, 0.15, 0.065),
+            K=(
+                (538000.0, -344000.0, -1180000.0, 652000.0),
+                (-344000.0, 1030000.0, -98400.0, -423000.0),
+                (-1180000.0, -98400.0, 4050000.0, -1110000.0),
+                (652000.0, -423000.0, -1110000.0, 1100000.0),
+            ),
+            family="square",
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
 }

@@ -16,7 +16,7 @@ from benchmarks.judge.checks import within_a_step
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import answers
 from benchmarks.judge.runs import WAYS, run, silent
-from lcpstep import EventDriven, Status, simulate
+from lcpstep import EventDriven, Located, Status, simulate
 from lcpstep.trajectory import Kind
 from tests.judge.kept import KEPT
 from tests.judge.kept_jointed import JOINTED
@@ -103,6 +103,16 @@ def test_walls_that_squeeze_a_body_out_end_a_run_at_one_time(tolerance):
     assert m.t[-1] == pytest.approx(0.00568476824870, rel=1e-11)  # of 1e-13, by ever shorter steps
     normals = physics.jacobians(d, m.q[-1])[[0, 2]]
     assert abs(np.linalg.det(normals)) < 1e-6 * np.prod(np.linalg.norm(normals, axis=1))
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
+def test_a_motion_of_which_nothing_is_left_is_at_rest(tolerance):
+    """Its impacts had no impulses where numbers end, at 1e-308; by steps it dies away as far."""
+    scene = LOOSE["a corner of four walls in which nothing is left of a motion"][0].scene()
+    m = simulate(scene, EventDriven(tolerance, tolerance))
+    assert m.status == Status.DONE
+    assert abs(m.q[-1]).max() == abs(m.v[-1]).max() == 0.0
+    assert abs(simulate(scene, Located(scene.t_span[1] / 50_000, order=4)).v[-1]).max() < 1e-90 * tolerance
 
 
 def test_hops_that_others_interrupt_end():

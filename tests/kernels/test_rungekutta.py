@@ -102,12 +102,15 @@ def test_steps_that_are_controlled_meet_the_tolerance(positions):
     assert y[-1] == pytest.approx(exact.y, abs=100 * TOLERANCE)
 
 
-def test_a_motion_below_the_tolerance_is_followed_by_steps_that_see_its_periods():
+@pytest.mark.parametrize("w", [1.0, 100.0])
+@pytest.mark.parametrize("size", [1e-13, 1e-20, 1e-30])
+def test_a_motion_below_the_tolerance_is_followed_by_steps_that_see_its_periods(w, size):
     """Any step would meet the tolerance; those of many periods had made it grow up to there."""
-    t, y, ended = Field(lambda t, y: np.array([y[1], -y[0]]), [1e-13, 0.0], 1).walk(0.0, 200.0, scan=40.0)
+    field = Field(lambda t, y: np.array([y[1], -w * w * y[0]]), [size, 0.0], 1)
+    t, y, ended = field.walk(0.0, 200.0 / w, scan=40.0 / w)
     assert ended == Status.DONE
     assert len(t) < 400
-    assert np.hypot(*y.T) == pytest.approx(np.full(len(t), 1e-13), rel=0.2)
+    assert np.hypot(y[:, 0], y[:, 1] / w) == pytest.approx(np.full(len(t), size), rel=0.4, abs=0.0)
 
 
 def test_forces_that_cancel_to_rounding_need_no_short_steps():

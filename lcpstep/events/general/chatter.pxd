@@ -4,11 +4,14 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION
+cdef double CHECKED
 
 @cython.locals(moved=bint, some=bint, touches=bint)
 cdef bint close_chatter(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef void find_stop(Mechanism s) noexcept nogil
 cdef void stop(Mechanism s) noexcept nogil
+@cython.locals(pulls=bint, opened=bint)
+cdef void let_go_pulling(Mechanism s) noexcept nogil
 @cython.locals(low=bint)
 cdef bint throws_off(Mechanism s) noexcept nogil
 cdef bint drives_others(Mechanism s) noexcept nogil

@@ -3,10 +3,10 @@
 Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
 higher than the tolerance, and when nothing else happens before T to what the contact is connected with: closed, it
 answers another impact in another way than in flight, and its own may throw a contact off that rests. Closing takes
-the speed u, by an impulse that the contact force up to T pays for. Hops as slow as the tolerance are left out too,
-elastic ones as well, and impacts of contacts that nothing presses (inelastic collapse) when they have both a speed
-and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with
-complete chattering, Nonlinear Dynamics 58 (2009).
+the speed u, by an impulse that the contact force up to T pays for, and that contacts bear which stay closed. Hops as
+slow as the tolerance are left out too, elastic ones as well, and impacts of contacts that nothing presses (inelastic
+collapse) when they have both a speed and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability
+analysis of impacting systems with complete chattering, Nonlinear Dynamics 58 (2009).
 """
 
 from __future__ import annotations
@@ -20,11 +20,12 @@ if not cython.compiled:
     from lcpstep.events.general.held import constrain, hold_contacts, is_held, right_hand_side, solve_held
     from lcpstep.events.general.impact import apply, gap_tolerance, speed_noise, speed_tolerance
     from lcpstep.events.general.parabolas import accumulation
+    from lcpstep.events.general.problem import CHECKED
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max, min, nan
 
 
@@ -45,6 +46,7 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
             s.contact.rest[c] = 0.0
         if s.contact.rest[c] >= 0.0:
             s.contact.closed[c] = 1
+    let_go_pulling(s)
     if throws_off(s) or drives_others(s):
         for c in range(n_c):
             if s.contact.rest[c] >= 0.0:
@@ -83,6 +85,25 @@ def stop(s: Mechanism) -> None:
             s.contact.speed[c] = 0.0
 
 
+def let_go_pulling(s: Mechanism) -> None:
+    """Hold the closed contacts; of those just opened by the forces only what those of the others now press.
+
+    One that would have to pull leaves while the others hop, and bears none of the impulses that stop them.
+    """
+    pulls = True
+    while pulls:
+        pulls = False
+        hold_contacts(s)
+        copy(s.trial, s.a_free, s.n_q)
+        constrain(s, s.trial)
+        rounding = CHECKED * largest(s.held, 0.0, s.n_held)
+        for m in range(s.n_held):
+            c = s.row[m] - s.n_j
+            opened = c >= 0 and s.contact.rest[c] >= 0.0 and s.contact.speed[c] == 0.0
+            if opened and s.held[m] < -rounding and not pulls:
+                s.contact.closed[c], s.contact.rest[c], pulls = 0, -1.0, True
+
+
 def throws_off(s: Mechanism) -> bool:
     """Whether the impacts left out would throw a closed contact off, by hops that the tolerance does not leave out.
 
@@ -91,9 +112,6 @@ def throws_off(s: Mechanism) -> bool:
     lambda / d: no higher than w^2 d / (2 lambda).
     """
     n_j = s.n_j
-    hold_contacts(s)
-    copy(s.trial, s.a_free, s.n_q)
-    constrain(s, s.trial)
     find_stop(s)
     for m in range(s.n_held):
         c = s.row[m] - n_j

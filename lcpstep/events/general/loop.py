@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.events.general.equations import measure
     from lcpstep.events.general.keep import keep
     from lcpstep.events.general.modes import jump, obey, settle
-    from lcpstep.events.general.motion import closed_from
+    from lcpstep.events.general.motion import closed_from, come_to_rest
     from lcpstep.events.general.parabolas import fly
     from lcpstep.events.general.state import (
         BEGIN,
@@ -73,7 +73,7 @@ def occur(s: Mechanism, record: Record, tally: Tally) -> int:
         code = DONE if begin(s) else NOT_FINITE
     elif s.next == JUMP:
         s.next = SETTLE
-        code = jump(s, record, tally)
+        code = jump(s, record, tally) if s.constant or come_to_rest(s) else NOT_FINITE
         s.guards = ENTERED if s.guards == ENTERED else JUMPED
     elif s.next == SETTLE:
         s.next = MOVE

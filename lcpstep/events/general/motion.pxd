@@ -1,10 +1,11 @@
 cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
-cdef double SURE
+cdef double SURE, GONE
 
 cdef void rebase(Mechanism s, double t) noexcept nogil
 cdef void state_at(Mechanism s, double tau) noexcept nogil
+cdef bint come_to_rest(Mechanism s) noexcept nogil
 cdef void lift(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void close_with(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef bint arrive(Mechanism s, Py_ssize_t c) noexcept nogil

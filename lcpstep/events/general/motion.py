@@ -6,13 +6,15 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.earliest import observe
+    from lcpstep.events.general.equations import measure_on
     from lcpstep.events.general.impact import gap_tolerance, speed_tolerance
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.dynamics import gap_rates, gap_rounding
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max
 
 SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
+GONE = 1e-90  # of the tolerance: what is left of a motion that has died away
 
 
 def rebase(s: Mechanism, t: float) -> None:
@@ -32,6 +34,18 @@ def state_at(s: Mechanism, tau: float) -> None:
         copy(s.q, s.q0, 2 * s.n_q)
     else:
         s.smooth.at(tau / s.length, s.q)
+
+
+def come_to_rest(s: Mechanism) -> bool:
+    """Put at rest, at zero, a motion of which nothing is left; False where the rest is not finite there.
+
+    Beyond, squares of errors tell nothing, and soon numbers have no digits more, by which impacts have an answer.
+    """
+    left = largest(s.q, 0.0, 2 * s.n_q)
+    if left == 0.0 or left > GONE * s.atol:
+        return True
+    clear(s.q, 2 * s.n_q)
+    return measure_on(s, s.t0)
 
 
 def lift(s: Mechanism, c: int) -> None:
