@@ -79,4 +79,24 @@ JOINTED = {
         ),
         ("located-4", "located-4-tolerance"),
     ),
+    # Forces begin at zero: cubics fell where gaps rise as the fourth power of time, in steps that came to nothing
+    "a body on a rod that forces which begin at zero take off a wall": (
+        Description(
+            M=((1.41, 0.0), (0.0, 0.755)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(0.0, 2.29605), h=0.0134,
+            G=((-0.188, -0.672),), offset=(0.0,), restitution=0.61, constant=(-2.4, 0.18299999999999983),
+            cosine=(2.4, -0.183), force_omega=3.84, J=((2.5, -0.9),), joint_offset=(-0.0,), family='jointed',
+        ),
+        ("located-4", "located-4-tolerance"),
+    ),
+    "a body on a rod and springs, of whose two walls one lets go by forces that begin at zero": (
+        Description(
+            M=((1.16, 0.0, 0.0, 0.0), (0.0, 0.872, 0.0, 0.0), (0.0, 0.0, 0.641, 0.0), (0.0, 0.0, 0.0, 0.797)),
+            q0=(0.0, 0.0, 0.0, 0.0), v0=(0.0, 0.0, 0.0, 0.0), t_span=(0.0, 1.91), h=0.0159,
+            G=((-0.992, 0.0601, 1.34, -0.492), (-0.62, 0.49, 0.357, 0.105)), offset=(0.0, 0.0), restitution=1.0,
+            K=((12.9, 7.35, -5.6, 2.16), (7.35, 5.29, -2.82, 2.86), (-5.6, -2.82, 5.93, -1.83),
+            (2.16, 2.86, -1.83, 3.55)), constant=(-5.7, -3.87, -5.53, -0.705), cosine=(5.7, 3.87, 5.53, 0.705),
+            force_omega=3.14, J=((-0.93, -0.0293, 0.695, -1.34),), joint_offset=(0.0,), family='jointed',
+        ),
+        ("located-4", "located-4-tolerance"),
+    ),
 }  # fmt: skip

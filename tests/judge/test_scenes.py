@@ -139,6 +139,31 @@ def test_elastic_hops_beside_what_yields_fade_as_between_events():
     assert np.allclose(*speeds, rtol=5e-3, atol=0.0)
 
 
+@pytest.mark.parametrize("tolerance", [None, 1e-7])
+def test_a_body_on_a_rod_leaves_by_a_force_that_begins_at_zero(tolerance):
+    """Against its closed form; what its wall does not touch takes as few steps as a motion without it."""
+    d = JOINTED["a body on a rod that forces which begin at zero take off a wall"][0]
+    J, inverse = np.array(d.J[0]), 1.0 / np.diag(np.array(d.M))
+    a = inverse * (d.constant - J * (J @ (inverse * d.constant)) / (J @ (inverse * J)))
+    motion = simulate(d.scene(), Located(d.h, 4, tolerance=tolerance))
+    t, w = motion.t[:, None], d.force_omega
+    assert motion.status == Status.DONE
+    assert np.max(np.abs(motion.q - a * (0.5 * t**2 - (1.0 - np.cos(w * t)) / w**2))) < 2e-9
+    assert len(motion.impacts) < 3
+    assert motion.counts.steps < 1.2 * d.length / d.h
+
+
+@pytest.mark.parametrize(("tolerance", "most"), [(None, 1000), (1e-7, 5000)])
+def test_one_of_two_walls_lets_go_by_forces_that_begin_at_zero(tolerance, most):
+    """The springs bring higher powers of time in, which a polynomial of degree five does not have."""
+    d = JOINTED["a body on a rod and springs, of whose two walls one lets go by forces that begin at zero"][0]
+    motion = simulate(d.scene(), Located(d.h, 4, tolerance=tolerance))
+    exact = simulate(d.scene(), EventDriven())
+    assert motion.status == exact.status == Status.DONE
+    assert np.max(np.abs(motion.q[-1] - exact.q[-1])) < 1e-6
+    assert motion.counts.force_evaluations < most
+
+
 def judge(numbers, seed, methods, share):
     """Findings of new classes, each with its scene."""
     scenes = ((k, draw(seed, k)) for k in numbers)

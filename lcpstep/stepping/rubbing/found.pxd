@@ -10,6 +10,8 @@ cdef void widen_bands(Strides s) noexcept nogil
 @cython.locals(size=double)
 cdef double pushed(Strides s, Py_ssize_t i) noexcept nogil
 cdef bint note(Strides s, double t, double* y, double* dy, double* value, double* slope) noexcept nogil
+@cython.locals(known=bint)
+cdef void note_bends(Strides s, double t, double* y, double* dy, double* bend) noexcept nogil
 cdef bint read_guards(Strides s, double t, double* y) noexcept nogil
 cdef bint note_arrival(Strides s, double t, double h) noexcept nogil
 cdef void note_middle(Strides s, double t, double h, double* value) noexcept nogil
@@ -19,7 +21,8 @@ cdef void arm(Strides s) noexcept nogil
 cdef bint is_motion(Strides s, Py_ssize_t g) noexcept nogil
 @cython.locals(moves=bint)
 cdef double curve(Strides s, Py_ssize_t g, double h) noexcept nogil
-cdef void elevate(Strides s) noexcept nogil
+cdef Py_ssize_t bend(Strides s, Py_ssize_t g, double h) noexcept nogil
+cdef void elevate(Strides s, Py_ssize_t least) noexcept nogil
 @cython.locals(rises=bint)
 cdef double low_hop(Strides s, Py_ssize_t g, double h) noexcept nogil
 @cython.locals(crossed=bint)

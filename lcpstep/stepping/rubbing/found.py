@@ -4,6 +4,10 @@ Over a step each guard (`events.friction.guards`) is a polynomial of degree thre
 from their values and slopes at the ends, forces from their values there and, with order four, between. Where its
 Bernstein coefficients keep one sign it has no zero. A zero that it has is put right by steps of that length, secants
 from one to the next, so that the guard is zero in the motion that is taken.
+
+The cubic of a gap that opens by a force which begins at zero, as t^4 and higher powers do, falls first. Of gaps that
+begin within their bands, where that cannot be told from a hop, accelerations count too: the polynomial is of degree
+five, with order four, and keeps the sign of every power.
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import measure_rates, size_of
+    from lcpstep.events.friction.equations import measure_biases, measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.state import GUARDS, NOISE
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
@@ -30,6 +34,7 @@ def note_base(s: Strides, t: float) -> bool:
     if not measure_base(s, t):
         return False
     widen_bands(s)
+    note_bends(s, t, s.y, s.K, s.begin_bend)
     return True
 
 
@@ -85,6 +90,18 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
     return True
 
 
+def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> None:
+    """Accelerations of the open gaps that have not left their bands, at a state whose rates are known."""
+    a, known = after(dy, s.n_q), s.n_held > 0 or (s.measured and not s.moving)
+    for c in range(s.n_c):
+        if s.mode[c] == OPEN and s.armed[GUARDS * c] == 0:
+            if not known:
+                measure_biases(s, t, y)
+                known = True
+            i = s.n_j + c
+            bend[c] = product(s.R, a, i, s.n_q) + s.bias[i]
+
+
 def read_guards(s: Strides, t: float, y: Doubles) -> bool:
     """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
     if s.n_held == 0:
@@ -96,6 +113,7 @@ def note_arrival(s: Strides, t: float, h: float) -> bool:
     """Guards at the end of the step just made, and of the forces between with order four."""
     if not note(s, t + h, s.y_new, s.arrival, s.end_value, s.end_slope):
         return False
+    note_bends(s, t + h, s.y_new, s.arrival, s.end_bend)
     note_middle(s, t, h, s.middle_value)
     return True
 
@@ -115,7 +133,7 @@ def first_event(s: Strides, h: float) -> int:
         least = curve(s, g, h)
         if least > (0.0 if s.armed[g] == 1 else -s.band[g]):
             continue
-        elevate(s)
+        elevate(s, bend(s, g, h))
         place = first_fall(s, g)
         if place != NONE and place < s.found:
             s.guard, s.found = g, place
@@ -157,10 +175,23 @@ def curve(s: Strides, g: int, h: float) -> float:
     return min(min(b[0], b[1]), min(b[2], b[3]))
 
 
-def elevate(s: Strides) -> None:
-    """The same polynomial in the form that roots are sought in."""
+def bend(s: Strides, g: int, h: float) -> int:
+    """Where accelerations count, Bernstein coefficients of degree five in place of those at hand; the degree now."""
+    c, b = g // GUARDS, s.scan.c
+    if s.order == 2 or g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1:
+        return 3
+    b[5] = b[3]
+    b[1] = b[0] + 0.2 * h * s.begin_slope[g]
+    b[4] = b[5] - 0.2 * h * s.end_slope[g]
+    b[2] = 2.0 * b[1] - b[0] + 0.05 * h * h * s.begin_bend[c]
+    b[3] = 2.0 * b[4] - b[5] + 0.05 * h * h * s.end_bend[c]
+    return 5
+
+
+def elevate(s: Strides, least: int) -> None:
+    """The polynomial at hand, of degree `least`, in the form that roots are sought in."""
     b = s.scan.c
-    for degree in range(3, DEGREE):
+    for degree in range(least, DEGREE):
         b[degree + 1] = b[degree]
         for j in range(degree, 0, -1):
             share = j / (degree + 1.0)
@@ -175,8 +206,7 @@ def low_hop(s: Strides, g: int, h: float) -> float:
     c, u = g // GUARDS, s.begin_slope[g]
     if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1 or u <= 0.0:
         return 0.0
-    curve(s, g, h)
-    half = 3.0 * (s.scan.c[0] - 2.0 * s.scan.c[1] + s.scan.c[2]) / (h * h)
+    half = 0.5 * s.begin_bend[c]
     rises = half >= 0.0 or u * u > -4.0 * half * s.band[g]
     return 0.0 if rises else min(-u / half, h)
 

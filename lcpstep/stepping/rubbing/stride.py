@@ -39,21 +39,23 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     if not s.going and not note_base(s, t0):
         return failed(s)
     s.going = False
-    code = attempt(s, t0, h)
+    code = search(s, t0, h)
     if code != DONE:
         return code
     if s.length < h:
         h = s.length
-        goal = border = s.clock.after(h)
-    g = first_event(s, h)
+        border = s.clock.after(h)
+        goal = border if s.tolerance > 0.0 else goal
+    g, tau = s.guard, s.tau
     if g < 0:
         arm(s)
         take_over(s, record, border, h)
         arrive_with(s, border)
         if border >= goal:
             end_step(s, record, tally)
+        elif border < s.clock.high:
+            keep_event(s, record, border)
         return DONE
-    tau = locate(s, g, h)
     if tau == NOWHERE:
         return pass_by(s, record, s.found * h)
     if of_force(s, g):
@@ -64,6 +66,23 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
             return failed(s)
     take_over(s, record, border if tau >= h else min(s.clock.after(tau), border), tau)
     return arrive(s, g)
+
+
+def search(s: Strides, t: float, h: float) -> int:
+    """A step from t of size h, or shorter, and the first event within it: `guard`, and `tau` from t; a status.
+
+    A polynomial that tells of an event which the motion does not have is wrong by a power of the step, beside what a
+    gap that opens by a force which begins at zero is there: half the step tells better.
+    """
+    while True:
+        code = attempt(s, t, h)
+        if code != DONE:
+            return code
+        h = s.length
+        s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
+        if s.guard < 0 or s.tau != NOWHERE or s.found >= 0.5 or h <= s.clock.untold(0.0):
+            return DONE
+        h *= 0.5
 
 
 def attempt(s: Strides, t: float, h: float) -> int:
@@ -177,6 +196,7 @@ def arrive_with(s: Strides, t: float) -> None:
         copy(s.leaving, s.arriving, s.n_r)
         copy(s.begin_value, s.end_value, GUARDS * s.n_c)
         copy(s.begin_slope, s.end_slope, GUARDS * s.n_c)
+        copy(s.begin_bend, s.end_bend, s.n_c)
 
 
 def end_step(s: Strides, record: Record, tally: Tally) -> None:

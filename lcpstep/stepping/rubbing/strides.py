@@ -34,10 +34,12 @@ class Strides(Smooth):
     h, t_start, n_steps  steps: their size, or the largest, when the first begins, how many there are of one size
     tolerance, span      0 for steps of one size; of time
     size_q, size_v       of the motion so far, where there is a tolerance
+    tau                  from the base to the event of `guard`
     going                whether rates, forces, guards and their slopes at the base state are known
     leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
     push : (n_r,)                         their impulses over it
     begin_value, begin_slope, end_value, end_slope, middle_value : (3 n_c,)    guards there, and their rates of change
+    begin_bend, end_bend : (n_c,)       accelerations there of open gaps that have not left their bands
     arrival : (n,)       rates at the end of the step last made
     refined : (n,);  half_value, quarter_value, late_value : (3 n_c,)    where two steps of half the size lead, guards
                          between them, and those of the forces within each (order 4)
@@ -52,11 +54,12 @@ class Strides(Smooth):
     def __init__(self, *given: Any) -> None:
         super().__init__(*given[:-5])
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
+        self.tau = 0.0
         self.going, self.span = False, self.t_end - self.t_start
         self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
-        self.ends = np.zeros(5 * self.n_r + 8 * g + 3 * self.n)
+        self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 3 * self.n)
         self.leaving = doubles(self.ends)
         self.arriving = after(self.leaving, self.n_r)
         self.middle = after(self.leaving, 2 * self.n_r)
@@ -69,7 +72,9 @@ class Strides(Smooth):
         self.half_value = after(self.begin_value, 5 * g)
         self.quarter_value = after(self.begin_value, 6 * g)
         self.late_value = after(self.begin_value, 7 * g)
-        self.refined = after(self.begin_value, 8 * g)
+        self.begin_bend = after(self.begin_value, 8 * g)
+        self.end_bend = after(self.begin_bend, self.n_c)
+        self.refined = after(self.begin_bend, 2 * self.n_c)
         self.stored = after(self.refined, self.n)
         self.stored_rates = after(self.refined, 2 * self.n)
         self.stored_forces = after(self.refined, 3 * self.n)
