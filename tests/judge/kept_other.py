@@ -91,4 +91,15 @@ OTHER: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "located", "located-tolerance"),
     ),
+    # Two of its feet come to the ground within less than a time tells, while it rides on the tables
+    "four feet on two tables and the ground, an hour before time zero": (
+        Description(
+            M=((1.0, 0.0), (0.0, 0.157)), q0=(0.0, 0.0), v0=(0.0, 0.0), t_span=(-4500.0, -4498.0), h=0.00396,
+            G=((1.0, 0.5), (1.0, -0.167), (1.0, -0.5), (1.0, 0.167)),
+            offset=(0.0, 0.0, -0.11425934118732989, -0.11425934118732989), K=((592.0, -158.0), (-158.0, 44.1)),
+            constant=(-9.81, 0.0), amplitude=(0.0, 0.0, 0.197, 0.197), phase=(0.0, 4.76, 4.76, 4.76), omega=9.58,
+            form=1, family="feet",
+        ),
+        ("event-driven", "located", "located-4", "located-4-tolerance"),
+    ),
 }  # fmt: skip

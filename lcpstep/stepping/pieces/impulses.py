@@ -45,7 +45,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, release, stick, turn
-    from lcpstep.stepping.pieces.times import driven_by
+    from lcpstep.stepping.pieces.times import rounding_of_time
 
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
@@ -97,10 +97,10 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
 
     Those that close with one speed land together, those that touched before are pushed together, and so are those
     of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
-    are struck one after another, as they would be a little apart. By what the first has missed a moving obstacle, for
-    no time is nearer, others may have.
+    are struck one after another, as they would be a little apart. Beside obstacles that move, gaps tell less than a
+    time does.
     """
-    missed = min(max(w.gap[first], 0.0), driven_by(w, first, t))
+    untold = rounding_of_time(w, t)
     for c in range(w.n_c):
         # A gap within the slack may still be open: its speed is not yet the one that it will close with
         closing = c == first or (
@@ -114,6 +114,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     w.gap[first], w.grounded[first] = 0.0, GROUND
     for c in range(w.n_c):
         w.before[c] = w.rate[c]
+        missed = untold * abs(w.rate[c])
         near = w.gap[c] <= plan.slack + missed
         if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and (near or not m.flat):
             pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
