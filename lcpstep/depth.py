@@ -62,7 +62,8 @@ def too_deep(run: Trajectory) -> str:
     a, most = float(G @ fastest), np.max(np.abs(q), axis=0)
     reach = float(G @ most) + span * (speed + span * a)
     most = most + span * (np.max(np.abs(v), axis=0) + span * fastest)
-    beside = float(np.sqrt((G @ (G / masses)) * (most @ (masses * most))))
+    with np.errstate(over="ignore"):  # motions of 1e160 m
+        beside = float(np.sqrt((G @ (G / masses)) * (most @ (masses * most))))
     if depth <= max(ROUNDING * reach, ROUNDING_BESIDE * beside, steps * h * h * a):
         return ""
     return (
