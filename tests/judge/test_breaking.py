@@ -67,5 +67,5 @@ def test_a_run_that_goes_on_by_roundings_of_time_alone_ends(monkeypatch):
     """Steps far too long for what swings on a round joint, 11,000 s from zero: it went on without step or event."""
     monkeypatch.setattr(Clock, "limit", 20.0)
     r = run(draw(2511250334, 4710), "located-4", 0.25)  # else it has hung
-    assert r.status == "TOO_MANY_EVENTS"
+    assert r.doubt
     assert r.motion.counts.steps + r.motion.counts.events < 10_000

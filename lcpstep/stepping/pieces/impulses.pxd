@@ -9,6 +9,7 @@ cdef double SAME_SPEED, SMALL
 cdef Py_ssize_t strike(Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t) noexcept nogil
 @cython.locals(touched=bint, closing=bint, near=bint, pushed=bint, alike=bint)
 cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first, double t) noexcept nogil
+cdef double rounding_of_time(Work w, double t) noexcept nogil
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t first, Py_ssize_t c, double missed) noexcept nogil
 cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
 cdef void zero_speeds(Work w) noexcept nogil

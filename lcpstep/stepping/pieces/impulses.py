@@ -21,6 +21,7 @@ if not cython.compiled:
         ACCUMULATION,
         CLOSED,
         CORNER,
+        EPS,
         GROUND,
         IMPACT,
         INERTIA,
@@ -45,7 +46,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, release, stick, turn
-    from lcpstep.stepping.pieces.times import rounding_of_time
 
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
@@ -125,6 +125,14 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
                 w.gap[c], w.grounded[c] = 0.0, GROUND
                 n_s += 1
     return n_s
+
+
+def rounding_of_time(w: Work, t: float) -> float:
+    """What time t is rounded by where an obstacle moves, by whose place bodies on it are known; else 0."""
+    for c in range(w.n_c):
+        if w.gap_t[c] != 0.0:
+            return 4.0 * EPS * abs(t)
+    return 0.0
 
 
 def tied(m: Model, plan: Plan, w: Work, first: int, c: int, missed: float) -> bool:

@@ -15,14 +15,6 @@ cdef inline double driven_by(Work w, Py_ssize_t c, double t) noexcept nogil:
     return 4.0 * EPS * abs(t * w.gap_t[c])
 
 
-cdef inline double rounding_of_time(Work w, double t) noexcept nogil:
-    cdef Py_ssize_t c
-    for c in range(w.n_c):
-        if w.gap_t[c] != 0.0:
-            return 4.0 * EPS * abs(t)
-    return 0.0
-
-
 cdef inline double rounded_by(Plan plan, Work w, Py_ssize_t c, double t) noexcept nogil:
     return (plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c])
 

@@ -22,14 +22,6 @@ def driven_by(w: Work, c: int, t: float) -> float:
     return float(4.0 * EPS * abs(t * w.gap_t[c]))
 
 
-def rounding_of_time(w: Work, t: float) -> float:
-    """What time t is rounded by where an obstacle moves, by whose place bodies on it are known; else 0."""
-    for c in range(w.n_c):
-        if w.gap_t[c] != 0.0:
-            return float(4.0 * EPS * abs(t))
-    return 0.0
-
-
 def rounded_by(plan: Plan, w: Work, c: int, t: float) -> float:
     """What the velocity of obstacle c changes by in what time is rounded by, and moved off a corner."""
     return float((plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c]))
