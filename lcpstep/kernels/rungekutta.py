@@ -42,6 +42,7 @@ LOOK, DEFECT = 0.7, 7.0  # where it is looked at, and what one sees there
 UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ by over a step
 UNSEEN = 1e-3  # of the motion within a step: an error by which it is not resolved, however small it is
 FALLS = 0.7  # an error that a shorter step has no less of, beside its length, is rounding
+LATE = 1e4 * RESOLUTION  # of a time: what a field makes of its rounding is no motion, however short the step
 SHORT = 1e-8  # of the scan: shorter steps resolve any motion
 ROUNDINGS = 16.0  # of places, in the error of a step
 POLYNOMIALS = 7  # of the dense output, each a number for every component
@@ -115,7 +116,7 @@ class RungeKutta:
                 error = max(error, self.dense_error(h))
             if error <= 1.0:
                 share = self.unresolved(h, error)
-                if share <= 1.0 or error > FALLS * before * h or h < SHORT * scan:
+                if share <= 1.0 or error > FALLS * before * h or h < max(SHORT * scan, LATE * abs(t)):
                     error = max(error, share) if share <= 1.0 else error
                     break
                 before, error = error / h, share

@@ -160,4 +160,24 @@ LOOSE: dict[str, tuple[Description, tuple[str, ...]]] = {
         ),
         ("event-driven", "event-driven-loose"),
     ),
+    # Its motion is what its force makes of rounding of the time, which no step resolves
+    "a mass at rest on its wall for a moment, seven hours before time zero": (
+        Description(
+            M=((190.0,),),
+            q0=(0.0,),
+            v0=(0.0,),
+            t_span=(-24700.0, -24699.9763),
+            h=0.0237,
+            G=((1.0,),),
+            offset=(0.0,),
+            K=((14.0,),),
+            constant=(-264.0,),
+            cosine=(22.9,),
+            sine=(-55.1,),
+            force_omega=1.29,
+            gaps=True,
+            family="wall",
+        ),
+        ("event-driven", "event-driven-loose"),
+    ),
 }
