@@ -27,9 +27,8 @@ def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     """
     raised, times = fault(), list(times)
     states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
-    if (
-        raised is not None and len(raised.v) == scene.n_q
-    ):  # coefficients of friction have sliding velocities there
+    # Coefficients of friction have sliding velocities in their place
+    if raised is not None and len(raised.v) == scene.n_q:
         states = [(raised.t, raised.q, raised.v)]
     try:
         for t, x, x_t in states:

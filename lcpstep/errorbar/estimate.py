@@ -13,7 +13,7 @@ from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.curves import merged
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
-from lcpstep.errorbar.looks import Looks, looks, seen
+from lcpstep.errorbar.looks import NOWHERE, Looks, looks, seen
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import looked_at
 from lcpstep.recording import Kept
@@ -161,7 +161,8 @@ def against(
     if look is not None and known_there:
         look = seen(look, last)
     else:
-        look = looks(run, other, every, last, wide, merged(logs[0].windows, around))
+        windows = NOWHERE if wide is None else merged(logs[0].windows, around)
+        look = looks(run, other, every, last, wide, windows)
     t = look.t
     if len(t) < 2 or not t[-1] > t[0]:
         return unknown(run, reason or "no states to compare")

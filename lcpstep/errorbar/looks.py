@@ -59,7 +59,7 @@ def looks(
     """Breaks between which runs are compared: steps where they are few, events and between; or kept states alone.
 
     wide : times between its steps at which the run has kept states too
-    windows : (k, 2) times in which one of the runs alone has struck
+    windows : (k, 2) times in which one of the runs alone has struck, looked at just after where there are `wide` ones
     """
     if not every:
         return Looks(_telling(run, end, MOST), (True, True), False, False)

@@ -100,14 +100,16 @@ class Attempts(Parts):
         """
         if self.two.code != STOPPED:
             return 0.0
-        furthest = self.two.off
-        for k in range(self.event, self.record.event if self.saved.closed_now > 0 else self.event):
-            event = after(self.record.events, k * COLUMNS)
-            if event[5] != IMPACT:
-                continue
-            c = whole(event[1])
-            gaps(self.m, event[0], self.two.q, self.two.v, self.w.gap_try)
-            steep = largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
+        furthest, first = self.two.off, after(self.record.events, self.event * COLUMNS)
+        if self.saved.closed_now == 0 or self.record.event == self.event:
+            return furthest
+        gaps(
+            self.m, first[0], self.two.q, self.two.v, self.w.gap_try
+        )  # all that has happened came at one instant
+        for k in range(self.record.event - self.event):
+            c, steep = whole(first[k * COLUMNS + 1]), 0.0
+            if first[k * COLUMNS + 5] == IMPACT:
+                steep = largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
             if steep > 0.0:
                 furthest = max(furthest, abs(self.w.gap_try[c]) / steep)
         return furthest

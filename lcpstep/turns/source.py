@@ -17,10 +17,8 @@ from lcpstep.intervals import Interval, Moving, NotEnclosed, enclose
 from lcpstep.intervals.callbacks import Enclosed, plain
 
 Array = NDArray[np.float64]
-LOOKS, FEWEST = (
-    64,
-    3,
-)  # per window, of a function that cannot be evaluated on intervals; where there are many windows
+LOOKS = 64  # per window, of a function that cannot be evaluated on intervals
+FEWEST = 3  # the same where there are many windows
 MOST_LOOKS = 32_768  # at all windows of a size, unless these are FEWEST
 GOLDEN = 0.6180339887498949
 OURS = "lagrangian."  # modules whose functions turn no faster than their period, and name their corners

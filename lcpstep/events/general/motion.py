@@ -87,13 +87,8 @@ def arrive(s: Mechanism, c: int) -> bool:
 def close_with(s: Mechanism, c: int) -> None:
     """Gaps that close with that of contact c, whose obstacle moves: within less than a time can tell."""
     for d in range(s.n_c):
-        u = s.contact.speed[d]
-        if (
-            d != c
-            and s.contact.closed[d] == 0
-            and u < 0.0
-            and abs(s.contact.gap[d]) <= -s.untold(s.length) * u
-        ):
+        way = -s.untold(s.length) * s.contact.speed[d]
+        if d != c and s.contact.closed[d] == 0 and way > 0.0 and abs(s.contact.gap[d]) <= way:
             s.contact.gap[d] = 0.0
 
 

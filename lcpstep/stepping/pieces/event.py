@@ -44,7 +44,7 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
             straighten(m, plan, w, d)
         if n_s > 1:
             straighten_all(m, w, n_s)
-        zero_speeds(w)
+        zero_speeds(w, w.v_try)
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
     if record.keeps_events():

@@ -12,7 +12,7 @@ cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first, doub
 cdef double rounding_of_time(Work w, double t) noexcept nogil
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t first, Py_ssize_t c, double missed) noexcept nogil
 cdef double jump(Plan plan, Work w, Py_ssize_t n_s) noexcept nogil
-cdef void zero_speeds(Work w) noexcept nogil
+cdef void zero_speeds(Work w, double* terms) noexcept nogil
 @cython.locals(touches=bint)
 cdef void push(Plan plan, Work w, Py_ssize_t d, double p) noexcept nogil
 cdef void after_impact(

@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.pointers import Doubles, abs, max, min
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
         CLOSED,
@@ -169,20 +169,21 @@ def jump(plan: Plan, w: Work, n_s: int) -> float:
                 w.v_try[i] += abs(w.MG[c * w.n_q + i] * p)
     for i in range(n):
         w.swing[i] = max(w.swing[i], w.v_try[i])
-    zero_speeds(w)
+    zero_speeds(w, w.v_try)
     for k in range(n_s):
         if w.z[k] > 0.0:
             push(plan, w, w.chosen[k], w.z[k])
     return largest
 
 
-def zero_speeds(w: Work) -> None:
-    """Velocities after an impact that are rounding of what they are made of, w.v_try, are zero.
+def zero_speeds(w: Work, terms: Doubles) -> None:
+    """Velocities that are rounding of what impacts have made them of are zero.
 
-    A damper would pull by them at a body that rests, and let it go from its obstacle.
+    A damper would pull by them at a body that rests, and let it go from its obstacle; and in the next step, which
+    knows no impacts, such a velocity is none of rounding beside itself, and bodies at rest on each other part.
     """
     for i in range(w.n_q):
-        if abs(w.v[i]) <= ROUNDING * w.v_try[i]:
+        if abs(w.v[i]) <= ROUNDING * terms[i]:
             w.v[i] = 0.0
 
 

@@ -37,7 +37,6 @@ cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t
 cdef Py_ssize_t struck_at_start(Work w) noexcept nogil
 @cython.locals(code=Py_ssize_t)
 cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept nogil
-cdef void rest(Work w) noexcept nogil
 cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil
 @cython.locals(known=bint)
 cdef bint is_finite(Work w) noexcept nogil

@@ -29,13 +29,13 @@ if not cython.compiled:
         NOBODY,
         NOT_FINITE,
         OPEN,
-        ROUNDING,
         STOPPED,
         TOO_MANY_EVENTS,
     )
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
     from lcpstep.stepping.pieces.event import remeasure
     from lcpstep.stepping.pieces.glide import glide
+    from lcpstep.stepping.pieces.impulses import zero_speeds
     from lcpstep.stepping.pieces.jointed import turn_onto_joints
     from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
@@ -277,7 +277,7 @@ def begin_step(m: Model, plan: Plan, w: Work) -> None:
     """Nothing has happened in this step yet, but for what happened at the very end of the last one."""
     end = w.sigma
     if w.events > 0 and w.closed_now > 0:
-        rest(w)
+        zero_speeds(w, w.swing)
     if plan.plain and (w.events > 0 or w.closed_now > 0):
         remeasure(m, plan, w)
     if w.events > 0:
@@ -290,16 +290,6 @@ def begin_step(m: Model, plan: Plan, w: Work) -> None:
         w.hits[c] = w.close_hits[c] = 0
         w.last[c] = 0.0 if end > 0.0 and w.last[c] == end else -1.0
         w.turned[c] -= end
-
-
-def rest(w: Work) -> None:
-    """Velocities that impacts of the last step have left by rounding are zero: the next one knows nothing of these.
-
-    Beside itself such a velocity is none of rounding, and lets bodies go that have come to rest on each other.
-    """
-    for i in range(w.n_q):
-        if abs(w.v[i]) <= ROUNDING * w.swing[i]:
-            w.v[i] = 0.0
 
 
 def is_finite(w: Work) -> bool:
