@@ -44,7 +44,7 @@ UNSEEN = 1e-3  # of the motion within a step: an error by which it is not resolv
 FALLS = 0.7  # an error that a shorter step has no less of, beside its length, is rounding
 LATE = 1e4 * RESOLUTION  # of a time: what a field makes of its rounding is no motion, however short the step
 SHORT = 1e-8  # of the scan: shorter steps resolve any motion
-ROUNDINGS = 16.0  # of places, in the error of a step
+ROUNDINGS = 16.0  # of the state, in the error of a step
 POLYNOMIALS = 7  # of the dense output, each a number for every component
 COEFFICIENTS = np.concatenate([*table([*WEIGHTS, *DENSE, ERROR_3, ERROR_5]), TIMES])
 
@@ -211,16 +211,15 @@ class RungeKutta:
     def unresolved(self, h: float, error: float) -> float:
         """An error of the step, over the tolerance, as a share of what a step may have that resolves the motion.
 
-        Below the tolerance one longer than the periods of a motion makes it grow; rounding of places is no motion.
+        Below the tolerance one longer than the periods of a motion makes it grow; rounding of the state is no motion.
         """
-        n, K, moved, places = self.n, self.K, 0.0, 0.0
+        n, K, moved, numbers = self.n, self.K, 0.0, 0.0
         for i in range(n):
             y = max(abs(self.y[i]), abs(self.y_new[i]))
             scale = self.atol + self.rtol * y
             moved = max(moved, max(abs(K[i]), abs(K[STAGES * n + i])) / scale)
-            if i < self.positions:
-                places = max(places, y / scale)
-        allowed = max(UNSEEN * h * moved, ROUNDINGS * RESOLUTION * places)
+            numbers = max(numbers, y / scale)
+        allowed = max(UNSEEN * h * moved, ROUNDINGS * RESOLUTION * numbers)
         return error / allowed if allowed > 0.0 else 0.0
 
     def refuse(self, t: float, scan: float) -> bool:

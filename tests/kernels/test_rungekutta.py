@@ -136,3 +136,16 @@ def test_a_field_that_never_answers_alike_is_refused():
     noise = np.random.default_rng(1)
     _, _, ended = Field(lambda t, y: noise.normal(size=1), [0.0]).walk(0.0, 1.0)
     assert ended == Status.STEP_TOO_SMALL
+
+
+def test_at_an_equilibrium_rounding_of_the_state_is_no_motion():
+    """Of slip and torque, no positions and velocities: steps had shrunk there to resolve roundings of 1600 N m."""
+
+    def slip_and_torque(t, y):
+        return [3.0 * (0.35 - y[0]) + math.sin(y[1] - 1600.0), 0.7 * (1600.0 - y[1]) - 0.2 * (y[0] - 0.35)]
+
+    field = Field(slip_and_torque, [0.5, 1500.0])
+    _, found, code = field.walk(0.0, 300.0, scan=300.0)
+    assert code == Status.DONE
+    assert found[-1] == pytest.approx([0.35, 1600.0], abs=1e-9)
+    assert field.evaluations < 10_000
