@@ -22,6 +22,9 @@ from lcpstep.files import replacing
 from lcpstep.sweep import Store
 
 resource = pytest.importorskip("resource")
+pytest.importorskip(
+    "matplotlib.backends.backend_pdf"
+)  # loaded without space, its machine code stays cut off on disk
 SPACE = 20_000  # bytes that a file may have, in place of a disk that is full
 NUMBERS = np.random.default_rng(1).random(10 * SPACE)
 
