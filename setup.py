@@ -51,6 +51,7 @@ DIRECTIVES = {
 OPTIONS = (
     ["/O2", "/fp:precise"] if os.name == "nt" else ["-O3", "-g0", "-ffp-contract=off", "-Wno-unused-function"]
 )
+ROWS = ["-fno-trapping-math"]  # numbers that a choice does not take may be formed: nobody asks for traps
 NO_COMPILER = (
     "lcpstep needs a C compiler to be built: install gcc or clang, or PyPI's ziglang (pip install ziglang)"
 )
@@ -171,7 +172,7 @@ def extension(header: Path) -> Module:
         [str(header.relative_to(HERE).with_suffix(".py"))],
         include_dirs=[np.get_include()],
         define_macros=[("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION")],
-        extra_compile_args=[*OPTIONS, "-include", str(clones)] if cloned else OPTIONS,
+        extra_compile_args=[*OPTIONS, *ROWS, "-include", str(clones)] if cloned else OPTIONS,
         depends=[str(clones)] if cloned else [],
     )
 

@@ -4,10 +4,11 @@
 #include <stddef.h>
 #define CLONED static __attribute__((target_clones("default", "avx2")))
 CLONED double lcpstep_dot(double *, double *, ptrdiff_t);
-CLONED void lcpstep_both_sums(double *, double *, double *, double *, ptrdiff_t);
+CLONED double lcpstep_dot_sizes(double *, double *, ptrdiff_t);
 CLONED void lcpstep_subtract(double *, double *, double, ptrdiff_t);
 CLONED void lcpstep_add_four(double *, double *, ptrdiff_t, double *, ptrdiff_t, ptrdiff_t);
 CLONED void lcpstep_ratios(double *, double *, double, double *, double, ptrdiff_t);
+CLONED void lcpstep_excesses(double *, double *, double, double *, double, ptrdiff_t);
 CLONED void lcpstep_raise_to(double *, double *, double, ptrdiff_t);
 CLONED long long lcpstep_largest_magnitude(double *, ptrdiff_t);
 CLONED double lcpstep_largest_entry(double *, ptrdiff_t);

@@ -2,15 +2,16 @@ cdef long long MAGNITUDE
 
 # Named in C, for rows.h
 cdef double dot "lcpstep_dot"(double* x, double* y, Py_ssize_t m) noexcept nogil
-cdef void both_sums "lcpstep_both_sums"(
-    double* total, double* size, double* x, double* y, Py_ssize_t m
-) noexcept nogil
+cdef double dot_sizes "lcpstep_dot_sizes"(double* x, double* y, Py_ssize_t m) noexcept nogil
 cdef void subtract "lcpstep_subtract"(double* target, double* source, double factor, Py_ssize_t m) noexcept nogil
 cdef void add_four "lcpstep_add_four"(
     double* target, double* x, Py_ssize_t stride, double* by, Py_ssize_t jump, Py_ssize_t m
 ) noexcept nogil
 cdef void ratios "lcpstep_ratios"(
     double* target, double* x, double slack, double* d, double smallest, Py_ssize_t m
+) noexcept nogil
+cdef void excesses "lcpstep_excesses"(
+    double* target, double* x, double bound, double* d, double smallest, Py_ssize_t m
 ) noexcept nogil
 cdef void raise_to "lcpstep_raise_to"(double* target, double* x, double factor, Py_ssize_t m) noexcept nogil
 cdef long long largest_magnitude "lcpstep_largest_magnitude"(double* x, Py_ssize_t m) noexcept nogil

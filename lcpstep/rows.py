@@ -28,19 +28,18 @@ def dot(x: Doubles, y: Doubles, m: int) -> float:
     return (a + b) + (c + d)
 
 
-def both_sums(total: Doubles, size: Doubles, x: Doubles, y: Doubles, m: int) -> None:
-    """Sums of x_i y_i and of |x_i y_i| for i < m into total[0] and size[0], in four parts as well."""
+def dot_sizes(x: Doubles, y: Doubles, m: int) -> float:
+    """Sum of |x_i y_i| for i < m, in four parts as well; beside `dot`, for both in one loop are slower than apart."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    e, f, g, h = 0.0, 0.0, 0.0, 0.0
     whole = m - m % 4
     for i in range(0, whole, 4):
-        t, u, v, w = x[i] * y[i], x[i + 1] * y[i + 1], x[i + 2] * y[i + 2], x[i + 3] * y[i + 3]
-        a, b, c, d = a + t, b + u, c + v, d + w
-        e, f, g, h = e + abs(t), f + abs(u), g + abs(v), h + abs(w)
+        a += abs(x[i] * y[i])
+        b += abs(x[i + 1] * y[i + 1])
+        c += abs(x[i + 2] * y[i + 2])
+        d += abs(x[i + 3] * y[i + 3])
     for i in range(whole, m):
-        t = x[i] * y[i]
-        a, e = a + t, e + abs(t)
-    total[0], size[0] = (a + b) + (c + d), (e + f) + (g + h)
+        a += abs(x[i] * y[i])
+    return (a + b) + (c + d)
 
 
 def subtract(target: Doubles, source: Doubles, factor: float, m: int) -> None:
@@ -61,6 +60,12 @@ def ratios(target: Doubles, x: Doubles, slack: float, d: Doubles, smallest: floa
     """Target = (max(x, 0) + slack) / -d where -d is above `smallest`, else infinite."""
     for i in range(m):
         target[i] = (max(x[i], 0.0) + slack) / -d[i] if -d[i] > smallest else inf
+
+
+def excesses(target: Doubles, x: Doubles, bound: float, d: Doubles, smallest: float, m: int) -> None:
+    """Target = x + bound d where -d is above `smallest`, else infinite: at most zero where x is used up by then."""
+    for i in range(m):
+        target[i] = x[i] + bound * d[i] if -d[i] > smallest else inf
 
 
 def raise_to(target: Doubles, x: Doubles, factor: float, m: int) -> None:

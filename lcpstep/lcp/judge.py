@@ -20,7 +20,7 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
-    from lcpstep.rows import both_sums
+    from lcpstep.rows import dot, dot_sizes
 
 EPSILON = 2.220446049250313e-16
 ROUNDING = 1e-14  # relative error that may be rounding
@@ -31,8 +31,8 @@ LOST = 1e-12  # part of the size of its row below which b is lost in rounding
 def judge(W: Doubles, b: Doubles, z: Doubles, n: int, w: Doubles, s: Doubles) -> float:
     """Residual of z for a dense W; fills w = W z + b and the sizes s."""
     for i in range(n):
-        both_sums(after(w, i), after(s, i), after(W, i * n), z, n)
-        w[i], s[i] = b[i] + w[i], abs(b[i]) + s[i]
+        row = after(W, i * n)
+        w[i], s[i] = b[i] + dot(row, z, n), abs(b[i]) + dot_sizes(row, z, n)
     worst = 0.0
     for i in range(n):
         if not s[i] < inf:

@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
-    from lcpstep.rows import add_four, copy, largest_entry, lowest_entry, multiply, ratios, subtract
+    from lcpstep.rows import add_four, copy, excesses, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
@@ -140,13 +140,14 @@ def change_all(n: int, work: Workspace) -> None:
 
 def list_ties(s: int, n: int, work: Workspace) -> int:
     """List in `tied` the rows that bound the entering variable of column s, the covering one alone if it does."""
-    q, d, rows, growth = work.scaled_b, after(work.columns, s * n), work.tied, work.trial
+    q, d, rows, trial = work.scaled_b, after(work.columns, s * n), work.tied, work.trial
     smallest = SMALLEST_PIVOT * max(1.0, largest_entry(d, n))
     slack = TIE * largest_entry(q, n)
-    ratios(growth, q, slack, d, smallest, n)
-    bound, tied = lowest_entry(growth, n), 0
+    ratios(trial, q, slack, d, smallest, n)
+    bound, tied = lowest_entry(trial, n), 0
+    excesses(trial, q, bound, d, smallest, n)
     for i in range(n):
-        if -d[i] > smallest and q[i] <= -bound * d[i]:
+        if trial[i] <= 0.0:
             if work.basic[i] == n:
                 rows[0] = i
                 return 1
