@@ -78,7 +78,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
             if not contact or kept >= now:
                 w.q[0], w.v[0] = q, v
                 keep(w, record, now, 0.0)
-            elif m.carried and now == t:  # the obstacle has told where the frame is
+            elif m.carried:  # the obstacle has told where the frame is, at `now` up to a rounding of the time
                 record.keep_one(now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
             else:
                 record.keep_one(now, 0.0, q, v, w.impulse)
