@@ -22,7 +22,7 @@ from lcpstep import (
 )
 from lcpstep.continuing import PutBack
 from tests.models import bowl_scene
-from tests.stepping.test_joints import point_on_a_rod
+from tests.stepping.jointed import point_on_a_rod
 
 EXACT = EventDriven(1e-11, 1e-11)
 H = 2.0**-7

@@ -12,8 +12,8 @@ from lcpstep import EventDriven, LcpStepError, Located, Moreau, simulate
 from lcpstep.analysis.hybrid_variation import monodromy as hybrid_monodromy
 from lcpstep.analysis.variation import monodromy
 from lcpstep.refusals import REFUSALS, with_table
-from tests.events.test_friction import block
-from tests.events.test_modes_with_contacts import two_gravities
+from tests.events.rough import block
+from tests.events.switching import two_gravities
 
 PAGE = Path(__file__).parent.parent / "docs" / "choosing.md"
 EXACT = Located(1e-2, "exact")

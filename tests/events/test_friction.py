@@ -1,42 +1,15 @@
-"""Planar friction event by event: closed forms, energy, paradoxes, agreement with Moreau's scheme."""
+"""Planar friction event by event, against motions in closed form and the laws of impact."""
 
 import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from lagrangian import (
-    Coulomb,
-    Harmonic,
-    Joints,
-    LinearContacts,
-    LinearSystem,
-    Scene,
-    System,
-    scenes,
-)
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.dry_friction import slip_time
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
-from lagrangian.scenes.rough_contacts import critical_friction
-from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
-from lcpstep import energy as energy_balance
-from tests.uncompiled import both_ways
-
-G0 = 9.81
-
-
-def times(run, kind, contact=0):
-    """When this happened at a contact."""
-    chosen = (run.impacts.kind == kind) & (run.impacts.contact == contact)
-    return run.impacts.time[chosen]
-
-
-def at_end(scene, *methods):
-    """Positions at the end of the span by these methods."""
-    return [simulate(scene, method, keep=[scene.t_span[1]]).q[-1] for method in methods]
-
+from lcpstep import EventDriven, Kind, Status, simulate
+from tests.events.rough import G0, shaken_slip, shaken_tangent, times
 
 # --- closed forms
 
@@ -106,14 +79,6 @@ def test_the_friction_impulse_is_what_the_momentum_has_lost():
     along = 3.0 + G0 * math.sin(0.3) * t + np.sum(run.friction_impulse)
     assert abs(along - run.v[-1, 0]) < 1e-11
     assert abs(np.sum(run.impulse) - G0 * math.cos(0.3) * t) < 1e-11
-
-
-def shaken_tangent(t, q, v, p, out):
-    out[0, 0], out[0, 1] = 1.0, 0.0
-
-
-def shaken_slip(t, q, v, p, out):
-    out[0] = -0.4 * math.cos(20.0 * t)
 
 
 def test_a_block_on_a_shaken_table_slides_to_where_its_phases_say():
@@ -202,73 +167,7 @@ def test_a_block_that_bounces_on_a_floor_keeps_sliding_and_its_impulses_are_thos
     assert abs(np.sum(run.impulse) - G0 * 3.0) < 1e-9
 
 
-# --- what no friction may do
-
-
-def block(seed):
-    """A disc or a block with two feet, a floor and a wall, with springs, belts and restitution drawn."""
-    rng = np.random.default_rng(seed)
-    disc = rng.random() < 0.5
-    if disc:
-        M, rows, tangents = np.diag([1.0, 1.0, 0.045]), [[0, 1, 0], [-1, 0, 0]], [[1, 0, 0.3], [0, 1, 0.3]]
-        offset = [0.2, 0.6]
-    else:
-        height = rng.uniform(0.05, 0.5)
-        M, rows, tangents = np.diag([1.0, 1.0, 0.1]), [[0, 1, 0.3], [0, 1, -0.3]], [[1, 0, height]] * 2
-        offset = [0.0, 0.0]
-    v0 = rng.normal(size=3) * [1.5, 1.0, 2.0]
-    v0[1] = abs(v0[1])
-    v0[2] *= 1.0 if disc else 0.05
-    return Scene(
-        system=LinearSystem(M, K=np.diag([rng.uniform(0, 30), 0.0, 0.0]), force=[0.0, -G0, 0.0]),
-        contacts=LinearContacts(
-            rows, offset=offset, restitution=rng.choice([0.0, 0.3, 0.6]),
-            friction=Coulomb(rng.uniform(0.0, 1.2, 2), tangents),
-        ),
-        q0=[0.0, 0.0, 0.0], v0=v0, t_span=(0.0, 1.0),
-    )  # fmt: skip
-
-
-def energy(scene, q, v):
-    s = scene.system
-    return 0.5 * np.sum(v @ s.M * v, axis=1) + 0.5 * np.sum(q @ s.K * q, axis=1) + G0 * q[:, 1]
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.integers(0, 10**6))
-def test_energy_never_grows_impulses_lie_in_the_cone_and_nothing_is_passed(seed):
-    scene = block(seed)
-    run = simulate(scene, EventDriven(1e-11, 1e-11))
-    assert run.status == Status.DONE, run.message
-    E = energy(scene, run.q, run.v)
-    assert np.max(np.diff(E)) < 1e-8 * (1.0 + E[0])
-    assert np.min(run.impulse) > -1e-9
-    assert np.all(np.abs(run.friction_impulse) <= scene.contacts.friction.mu * run.impulse + 1e-8)
-    assert np.max(run.penetration) < 1e-8
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12))
-def test_moreaus_scheme_comes_to_the_same_motion(seed):
-    scene = block(seed)
-    exact, coarse, fine = at_end(scene, EventDriven(1e-10, 1e-10), Moreau(2e-4), Moreau(2e-6))
-    assert np.max(np.abs(fine - exact)) < 0.2 * np.max(np.abs(coarse - exact)) + 2e-6
-
-
-@pytest.mark.parametrize("seed", [3, 8, 21])
-def test_the_motion_does_not_depend_on_what_is_kept(seed):
-    scene, method = block(seed), EventDriven(1e-10, 1e-10)
-    whole, some = simulate(scene, method), simulate(scene, method, keep=[0.3, 1.0])
-    assert np.allclose(whole.q[-1], some.q[-1], rtol=0.0, atol=1e-14)
-    assert np.array_equal(whole.impacts.kind, some.impacts.kind)
-    assert np.allclose(whole.impacts.time, some.impacts.time, rtol=0.0, atol=1e-14)
-    assert np.allclose(
-        np.sum(whole.friction_impulse, axis=0), np.sum(some.friction_impulse, axis=0), atol=1e-13
-    )
-    assert np.allclose(whole.at(0.3)[0], some.q[0], atol=1e-12)
-
-
-# --- several contacts, joints, obstacles that move
+# --- closed forms
 
 
 def test_two_feet_that_share_their_load_stick_and_slide_as_one():
@@ -286,105 +185,3 @@ def test_two_feet_that_share_their_load_stick_and_slide_as_one():
     tau = 1.5 - begin
     x = 6.0 * (math.cos(begin) * tau - (math.sin(1.5) - math.sin(begin))) - 0.2 * G0 * tau**2
     assert abs(run.q[-1, 0] - x) < 1e-9
-
-
-def rod(t, q, v, p, out):
-    out[0] = q[0] ** 2 + q[1] ** 2 - 1.0
-
-
-def rod_row(t, q, v, p, out):
-    out[0, 0], out[0, 1] = 2.0 * q[0], 2.0 * q[1]
-
-
-def weight(t, q, v, p, out):
-    out[0], out[1] = 0.0, -G0
-
-
-def test_a_pendulum_drags_along_a_wall():
-    scene = Scene(
-        system=System(2, np.eye(2), weight), joints=Joints(1, rod, rod_row),
-        contacts=LinearContacts([[1.0, 0.0]], restitution=0.4, friction=Coulomb(0.3, [[0.0, 1.0]])),
-        q0=[math.sin(1.0), -math.cos(1.0)], v0=[0.0, 0.0], t_span=(0.0, 2.0),
-    )  # fmt: skip
-    exact, coarse, fine = at_end(scene, EventDriven(1e-11, 1e-11), Moreau(1e-3), Moreau(1e-5))
-    assert np.max(np.abs(fine - exact)) < 0.05 * np.max(np.abs(coarse - exact)) + 1e-6
-
-
-def test_the_woodpecker_pecks_seven_times_a_second_whatever_the_tolerance():
-    scene = scenes.woodpecker()
-    run, again = (simulate(scene, EventDriven(tol, tol)) for tol in (1e-12, 1e-9))
-    pecks = times(run, Kind.IMPACT)
-    assert np.all(np.abs(np.diff(pecks) - 0.14596) < 2e-4)
-    assert np.max(np.abs(run.q[-1] - again.q[-1])) < 1e-8
-    errors = [np.max(np.abs(q - run.q[-1])) for q in at_end(scene, Moreau(1e-4), Moreau(1e-5), Moreau(1e-6))]
-    assert errors[1] < 0.2 * errors[0]
-    assert errors[2] < 0.2 * errors[1]
-
-
-# --- Painleve
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.floats(0.3, 1.4), st.floats(0.9, 1.1))
-def test_a_rod_that_jams_is_named_with_its_critical_coefficient(angle, share):
-    mu = share * critical_friction(angle)
-    run = simulate(scenes.falling_rod(mu=mu, angle=angle, t_end=1e-3), EventDriven())
-    if share > 1.0 + 1e-9:
-        assert run.status == Status.PAINLEVE_INCONSISTENT
-        said = float(run.message.split("state: ")[1].split(")")[0])
-        assert abs(said - critical_friction(angle)) < 1e-7
-    elif share < 0.99:
-        assert run.status == Status.DONE
-
-
-def test_no_rod_jams_below_four_thirds():
-    angles = np.linspace(0.05, 1.5, 500)
-    assert min(critical_friction(a) for a in angles) >= 4.0 / 3.0
-    assert abs(critical_friction(math.atan(2.0)) - 4.0 / 3.0) < 1e-14
-    for angle in (0.8, 1.1, 1.3):
-        assert simulate(scenes.falling_rod(mu=1.3, angle=angle), EventDriven()).status == Status.DONE
-
-
-def test_a_rod_that_lifts_off_or_stays_is_indeterminate():
-    """Turning fast, the tip would lift off; pressed by friction it could as well stay."""
-    scene = scenes.falling_rod(mu=2.0, angle=1.1)
-    turning = Scene(
-        system=scene.system, contacts=scene.contacts, q0=scene.q0, p=scene.p, t_span=(0.0, 0.1),
-        v0=[-4.0, 0.5 * math.cos(1.1) * 6.0, 6.0],
-    )  # fmt: skip
-    assert simulate(turning, EventDriven()).status == Status.PAINLEVE_INDETERMINATE
-
-
-# --- what is made of such runs
-
-
-def test_a_run_with_friction_goes_on_from_its_end():
-    scene = scenes.coulomb_oscillator(t_end=5.0)
-    first = simulate(scene, EventDriven())
-    second = simulate(continued(first, t_end=20.0), EventDriven())
-    whole = simulate(scenes.coulomb_oscillator(), EventDriven())
-    assert np.max(np.abs(second.q[-1] - whole.q[-1])) < 1e-11
-
-
-def test_the_energy_that_friction_takes_never_comes_back():
-    for scene in (scenes.sliding_block(), scenes.slope_landing(), scenes.slider_crank()):
-        E = energy_balance(simulate(scene, EventDriven(1e-11, 1e-11)))
-        assert np.min(np.diff(E.friction)) > -1e-8
-        assert len(E.created) == 0
-    E = energy_balance(simulate(scenes.sliding_block(), EventDriven()))
-    assert abs(E.friction[-1] - 0.5) < 1e-12
-
-
-PROGRAM = """
-from lagrangian import scenes
-from lcpstep import EventDriven, simulate
-
-for scene in (scenes.coulomb_oscillator(t_end=4.0), scenes.woodpecker(t_end=0.04)):
-    run = simulate(scene, EventDriven(rtol=1e-7, atol=1e-7), keep=1)
-    print(len(run.t), run.counts, *(float(x).hex() for x in (*run.q[-1], *run.v[-1], *run.impacts.impulse)))
-"""
-
-
-def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
-    assert built == plain

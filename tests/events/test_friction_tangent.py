@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from lagrangian import Coulomb, Joints, LinearContacts, Scene, System, scenes
 from lcpstep import EventDriven, Kind, LcpStepError, Status, simulate
 from lcpstep.analysis.variation import monodromy
-from tests.events.test_friction import block, rod, rod_row, weight
+from tests.events.rough import block, rod, rod_row, weight
 
 METHOD = EventDriven(1e-12, 1e-12)
 

@@ -6,21 +6,29 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.special import ellipj, ellipk
 
 from lagrangian import Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
 from lcpstep import Moreau, simulate
 from lcpstep.errors import LcpStepError
+from tests.stepping.jointed import (
+    G0,
+    locked,
+    locked_jacobian,
+    place,
+    platform,
+    platform_jacobian,
+    point_on_a_rod,
+    shaker,
+    swing,
+    three_parting,
+    two_rods,
+    two_rods_jacobian,
+    wire,
+    wire_jacobian,
+    wire_rate,
+)
 
-G0 = 9.81
 LEVELS = (1e-2, 5e-3, 2.5e-3)
-
-
-def swing(t, amplitude, w0):
-    """Angle and rate of a pendulum let go at rest, w0 being its small-angle frequency."""
-    k = math.sin(0.5 * amplitude)
-    sn, cn, dn, _ = ellipj(ellipk(k * k) - w0 * np.asarray(t), k * k)
-    return 2.0 * np.arcsin(k * sn), -2.0 * k * w0 * cn * dn / np.sqrt(1.0 - k * k * sn * sn)
 
 
 def order(errors, levels=LEVELS):
@@ -28,21 +36,6 @@ def order(errors, levels=LEVELS):
 
 
 # --- one rod
-
-
-def rod(t, q, v, p, out):
-    out[0] = 0.5 * (q[0] * q[0] + q[1] * q[1] - 1.0)
-
-
-def rod_jacobian(t, q, v, p, out):
-    out[0, 0], out[0, 1] = q[0], q[1]
-
-
-def point_on_a_rod(angle, t_end, contacts=None):
-    return Scene(
-        system=LinearSystem(M=np.eye(2), force=[0.0, -G0]), joints=Joints(1, rod, rod_jacobian), contacts=contacts,
-        q0=[math.sin(angle), -math.cos(angle)], v0=[0.0, 0.0], t_span=(0.0, t_end), name="rod",
-    )  # fmt: skip
 
 
 def test_a_point_on_a_rod_moves_as_a_pendulum():
@@ -74,21 +67,6 @@ def test_a_point_on_a_rod_strikes_a_stop_as_the_angle_does():
 # --- more coordinates than freedom
 
 
-def two_rods(t, q, v, p, out):
-    out[0] = 0.5 * (q[0] ** 2 + q[1] ** 2 - 1.0)
-    out[1] = 0.5 * ((q[2] - q[0]) ** 2 + (q[3] - q[1]) ** 2 - 1.0)
-
-
-def two_rods_jacobian(t, q, v, p, out):
-    for i in range(2):
-        out[0, i], out[0, 2 + i] = q[i], 0.0
-        out[1, i], out[1, 2 + i] = q[i] - q[2 + i], q[2 + i] - q[i]
-
-
-def place(a, b):
-    return np.array([math.sin(a), -math.cos(a), math.sin(a) + math.sin(b), -math.cos(a) - math.cos(b)])
-
-
 def double_pendulum(t, y):
     a, b, da, db = y
     M = [[2.0, math.cos(a - b)], [math.cos(a - b), 1.0]]
@@ -114,14 +92,6 @@ def test_two_points_on_rods_move_as_the_double_pendulum_in_angles(projected):
         assert np.max(np.abs(g - 1.0)) < 1e-12
 
 
-def locked(t, q, v, p, out):
-    out[0] = math.sin(q[0] - q[1])
-
-
-def locked_jacobian(t, q, v, p, out):
-    out[0, 0], out[0, 1] = math.cos(q[0] - q[1]), -math.cos(q[0] - q[1])
-
-
 @pytest.mark.parametrize("curved", [False, True])
 def test_a_joint_locks_a_mechanism_whose_mass_depends_on_its_position(curved):
     # a double pendulum with its hinge locked: one rigid pendulum with (1 + 4) w' = -(1 + 2) g sin
@@ -139,18 +109,6 @@ def test_a_joint_locks_a_mechanism_whose_mass_depends_on_its_position(curved):
 
 
 # --- joints that move
-
-
-def wire(t, q, v, p, out):
-    out[0] = math.cos(p[0] * t) * q[1] - math.sin(p[0] * t) * q[0]
-
-
-def wire_jacobian(t, q, v, p, out):
-    out[0, 0], out[0, 1] = -math.sin(p[0] * t), math.cos(p[0] * t)
-
-
-def wire_rate(t, q, v, p, out):
-    out[0] = -p[0] * (math.sin(p[0] * t) * q[1] + math.cos(p[0] * t) * q[0])
 
 
 def test_a_bead_flies_out_along_a_turning_wire():
@@ -171,10 +129,6 @@ def test_a_bead_flies_out_along_a_turning_wire():
     assert order(forces) > 0.9
 
 
-def shaker(t, q, v, p, out):
-    out[0, 0], out[0, 1], out[0, 2] = math.sin(2.0 * t), 2.0 * math.cos(2.0 * t), -4.0 * math.sin(2.0 * t)
-
-
 def test_a_driven_support_shakes_a_mass_on_a_spring():
     # x'' = -(x - sin 2t) from rest: x = (2 sin t - sin 2t) / 3
     scene = Scene(
@@ -190,19 +144,6 @@ def test_a_driven_support_shakes_a_mass_on_a_spring():
 
 
 # --- joints that say the same, or the contrary
-
-
-def platform(t, q, v, p, out):
-    for i in range(3):
-        x, y = q[0] + p[i] * math.cos(q[2]) - p[i], q[1] + p[i] * math.sin(q[2])
-        out[i] = 0.5 * (x * x + y * y - 1.0)
-
-
-def platform_jacobian(t, q, v, p, out):
-    for i in range(3):
-        c, s = p[i] * math.cos(q[2]), p[i] * math.sin(q[2])
-        x, y = q[0] + c - p[i], q[1] + s
-        out[i, 0], out[i, 1], out[i, 2] = x, y, -x * s + y * c
 
 
 @pytest.mark.parametrize("projected", [False, True])
@@ -241,13 +182,6 @@ def test_redundant_joints_share_the_force_and_change_no_motion():
     )
 
 
-def parting(t, q, v, p, out):
-    for i in range(2):
-        out[i, 0] = out[i, 1] = out[i, 2] = 0.0
-    if t > 0.5:
-        out[1, 0], out[1, 1], out[1, 2] = (t - 0.5) ** 2, 2.0 * (t - 0.5), 2.0
-
-
 def test_contradicting_joints_end_the_run_with_their_names():
     scene = Scene(
         system=LinearSystem(M=np.eye(3)),
@@ -259,11 +193,6 @@ def test_contradicting_joints_end_the_run_with_their_names():
     assert m.message.startswith("joints [1, 2] contradict each other in step 50 at t = 0.5 s")
     assert m.t[-1] == pytest.approx(0.5)
     assert np.all(np.isfinite(m.q))
-
-
-def three_parting(t, q, v, p, out):
-    out[0, 0] = out[0, 1] = out[0, 2] = 0.0
-    parting(t, q, v, p, out[1:])
 
 
 def test_a_joint_and_a_floor_hold_a_mass_in_balance():
