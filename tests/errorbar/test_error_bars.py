@@ -1,21 +1,14 @@
 """Error bars of runs against motions in closed form: within a factor of two, and honest about where they end."""
 
-import json
 import math
-import pickle
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.sparse import identity
 
-from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate, study
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.accuracy.reference import find_reference
-from lcpstep.cli import main
-from lcpstep.errorbar import companions, estimate
-from lcpstep.errors import LcpStepError
-from lcpstep.recording import Kept
 from tests.known import KNOWN
 
 
@@ -156,122 +149,6 @@ def test_scenes_at_rest_and_without_contacts_have_bars_at_rounding():
             assert bar.position.sup < 1e-13
             assert math.isnan(bar.latest)
     assert simulate(free, Located(1e-2), error=True).error.position.sup > 0.0  # never below rounding
-
-
-def wavy(t, q, v, p, out):
-    out[0] = q[0] + 0.1 * math.sin(q[0])
-
-
-def wavy_q(t, q, v, p, out):
-    out[0, 0] = 1.0 + 0.1 * math.cos(q[0])
-
-
-def test_bars_and_runs_can_be_printed_pickled_and_written():
-    contacts = Contacts(1, wavy, wavy_q, restitution=0.5)
-    scene = Scene(
-        system=LinearSystem(1.0, force=Harmonic(-9.81)), contacts=contacts, q0=1.0, v0=0.0, t_span=(0, 1)
-    )
-    run = simulate(scene, Located(1e-2), error=True)
-    again = pickle.loads(pickle.dumps(run.error))
-    assert str(again) == str(run.error)
-    assert "m/s" in str(again)
-    numbers = json.loads(json.dumps(again.as_dict()))
-    assert numbers["position"]["sup"] == again.position.sup
-    assert numbers["horizon"] is None
-    assert simulate(scene, Located(1e-2)).error is None
-
-
-def test_the_run_itself_is_the_same_with_and_without_a_bar():
-    scene = scenes.cam_follower(rpm=358.0, t_end=0.5)
-    for method in (Moreau(1e-4), Located(1e-3, 4), EventDriven()):
-        one, other = simulate(scene, method), simulate(scene, method, error=True)
-        assert np.array_equal(one.q, other.q)
-        assert np.array_equal(one.impacts, other.impacts)
-        assert one.counts == other.counts
-
-
-def test_a_companion_that_takes_too_long_is_told(monkeypatch):
-    monkeypatch.setattr(companions, "PATIENCE", 0.0)
-    monkeypatch.setattr(companions, "BEST", Located(1e-6, 4))
-    monkeypatch.setattr(companions, "FIRST", {})
-    run = simulate(scenes.impact_oscillator(t_end=50.0), Located(1e-2))
-    bar = estimate.error_bar(run, True, 0.0)
-    assert "takes longer than the run" in bar.reason
-    assert 0.0 < bar.until < 50.0
-
-
-def test_an_interrupt_leaves_the_run(monkeypatch):
-    def interrupted(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(estimate, "error_bar", interrupted)
-    with pytest.raises(SimulationInterrupted) as stopped:
-        simulate(scenes.bouncing_ball(t_end=1.0), Located(1e-2), error=True)
-    assert stopped.value.trajectory.t[-1] == 1.0
-
-
-def test_what_has_no_bar_is_refused_by_name():
-    ball = scenes.bouncing_ball(t_end=1.0)
-    with pytest.raises(TypeError, match="error: expected True or False"):
-        simulate(ball, Located(1e-2), error="yes")
-    with pytest.raises(LcpStepError, match="does not treat systems with modes"):
-        simulate(scenes.hybrid_abs(), EventDriven(), error=True)
-
-    n = 3000
-    large = Scene(
-        system=LinearSystem(identity(n, format="csr")), q0=np.zeros(n), v0=np.zeros(n), t_span=(0.0, 1.0)
-    )
-    with pytest.raises(LcpStepError, match=r"error: a method by dense matrices .* does not treat sparse"):
-        simulate(large, Moreau(0.5), error=True)
-
-    class Other:
-        def run(self, scene, kept, progress):
-            raise AssertionError
-
-    with pytest.raises(LcpStepError, match="Moreau, Located, EventDriven"):
-        simulate(ball, Other(), error=True)
-
-
-def test_a_companion_takes_no_step_longer_than_the_span():
-    scene = scenes.bouncing_ball(t_end=0.1)
-    found = companions.followed(companions.Companion(Moreau(1.0)), scene, Kept.parse(1, scene.t_span), 0.0)
-    assert list(found.t) == [0.0, 0.1]
-
-
-def test_a_run_that_ends_early_has_a_bar_up_to_its_end():
-    scene = scenes.bouncing_ball(t_end=3.0)
-    run = simulate(scene, EventDriven(max_events=3), error=True)
-    assert run.status.name == "TOO_MANY_EVENTS"
-    assert run.error.until <= run.t[-1]
-    assert run.error.position.sup < 1e-10
-
-
-def test_the_command_prints_it(capsys, tmp_path):
-    assert main(["simulate", "bouncing-ball", "--method", "located", "--h", "1e-2", "--error"]) == 0
-    assert "error bar: position" in capsys.readouterr().out
-    picture = tmp_path / "motion.png"
-    arguments = ["simulate", "impact-oscillator", "--h", "1e-2", "--t-end", "5", "--error", "--json"]
-    assert main([*arguments, "--picture", str(picture)]) == 0
-    assert json.loads(capsys.readouterr().out)["error"]["position"]["unit"] == "m"
-    assert picture.stat().st_size > 0
-
-
-def test_a_comparison_prints_the_bars_of_all_runs(capsys):
-    assert (
-        main(["compare", "impact-oscillator", "--t-end", "5", "--h", "1e-2", "--no-pictures", "--error"]) == 0
-    )
-    out = capsys.readouterr().out
-    assert out.count("error bar: position") == 4
-
-
-def test_a_study_compares_errors_with_bars():
-    found = study(
-        scenes.impact_oscillator(t_end=10.0), [Moreau(), Located()], h=[1e-2, 1e-3], repeats=1, spread=[1.0]
-    )
-    for level in found.levels:
-        assert 0.5 < level.bars["sup_position"] < 2.0
-        assert 0.5 < level.bars["l1_velocity"] < 2.0
-    assert "error over error bar of Moreau: sup_position" in str(found)
 
 
 def shaken(t, q, v, p, out):

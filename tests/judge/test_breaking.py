@@ -11,7 +11,7 @@ from benchmarks.judge.checks import check
 from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
 from benchmarks.judge.runs import Clock, run
-from tests.judge.kept_recently import RECENTLY
+from tests.judge.kept_jointed import JOINTED
 
 # A light body beside a heavy one: thrown off its wall, its mass turns by many radians in a step
 THROWN = Description(
@@ -51,7 +51,7 @@ def test_a_run_that_says_nothing_is_judged_to_its_end(thrown):
 @pytest.mark.slow
 def test_a_run_that_leaves_its_joints_is_judged_up_to_where_they_swing_too_fast(monkeypatch):
     """A heavy body turns about within a millisecond, steps are seven long; before that it gains nothing."""
-    d, _ = RECENTLY["a joint that hands the energy of a heavy body to light ones within a millisecond"]
+    d, _ = JOINTED["a joint that hands the energy of a heavy body to light ones within a millisecond"]
     r = run(d, "located")
     assert r.status == "PROJECTION_FAILED"
     assert checks.gain(d, r) > 20.0

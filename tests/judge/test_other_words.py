@@ -10,6 +10,7 @@ from benchmarks.judge.agree import disturbed
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import run
 from lcpstep import Status
+from tests.judge.kept_jointed import JOINTED
 from tests.judge.kept_recently import RECENTLY
 
 # Thrown off together by an elastic wall, two plastic ones are met again one after the other, at 0.85 of the speeds
@@ -95,7 +96,7 @@ def test_a_motion_that_left_all_bounds_has_companions_near_its_start():
 
 def test_a_collapse_on_joints_ends_for_steps_of_order_four_as_event_by_event():
     """The plastic contact, let go between the impacts of one instant, had taken part in those of the elastic one."""
-    d = RECENTLY["an elastic and a plastic contact that collapse on two joints"][0]
+    d = JOINTED["an elastic and a plastic contact that collapse on two joints"][0]
     exact = run(d, "event-driven").motion
     errors = []
     for factor in (1.0, 0.5, 0.25):

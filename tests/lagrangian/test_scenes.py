@@ -1,8 +1,7 @@
-"""Scenes: trial of every callback, the start outside of obstacles, times and corners, and the scenes ready to use."""
+"""Scenes: numbers, contacts, times and corners that are refused, and the start outside of obstacles."""
 
 import copy
 import dataclasses
-import inspect
 import math
 import pickle
 
@@ -11,25 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lagrangian import (
-    Contacts,
-    Coulomb,
-    Harmonic,
-    LinearContacts,
-    LinearJoints,
-    LinearSystem,
-    Scene,
-    System,
-    scenes,
-)
+from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, scenes
+from tests.lagrangian.ball import height, scene, upward
 
 NOT_FINITE = st.sampled_from([math.nan, math.inf, -math.inf])
-
-
-def scene(**changes):
-    """A ball above a floor, changed here and there."""
-    usual = {"system": LinearSystem(M=1.0), "q0": 1.0, "v0": 0.0, "t_span": (0.0, 1.0)}
-    return Scene(**{**usual, "contacts": LinearContacts(G=1.0), **changes})
 
 
 # --- numbers
@@ -167,219 +151,8 @@ def test_a_start_that_falls_towards_the_obstacle_on_it_is_taken():
     assert (g[0], u[0]) == (0.0, -1.0)
 
 
-# --- callbacks
-
-
-def height(t, q, v, p, out):
-    out[0] = q[0]
-
-
-def upward(t, q, v, p, out):
-    out[0, 0] = 1.0
-
-
 def risen(t, q, v, p, out):
     out[0, 0], out[0, 1], out[0, 2] = 1.5, 0.0, 0.0
-
-
-def returns(t, q, v, p, out):
-    out.fill(1.0)
-    return out
-
-
-def not_a_number(t, q, v, p, out):
-    out.fill(math.nan)
-
-
-def forgets(t, q, v, p, out):
-    pass
-
-
-def too_many(t, q, v, p, out):
-    out.fill(1.0)
-    out.flat[out.size] = 1.0
-
-
-def wrong_shape(t, q, v, p, out):
-    out[:] = np.ones(out.size + 1)
-
-
-def wrong_dimension(t, q, v, p, out):
-    out[0, 0, 0] = 1.0
-
-
-def reads_too_far(t, q, v, p, out):
-    out.fill(q[len(q)])
-
-
-def reads_missing_parameter(t, q, v, p, out):
-    out.fill(p[0])
-
-
-def wrong_signature(t, q):
-    pass
-
-
-def divides_by_zero(t, q, v, p, out):
-    out.fill(1.0 / (t * 0.0))
-
-
-BAD = [
-    returns, not_a_number, forgets, too_many, wrong_shape, wrong_dimension, reads_too_far, reads_missing_parameter,
-    wrong_signature, divides_by_zero,
-]  # fmt: skip
-
-
-def one(t, q, v, p, out):
-    out.fill(1.0)
-
-
-PLACES = {
-    "system.force": lambda f: {"system": LinearSystem(M=1.0, force=f)},
-    "system.frame": lambda f: {"system": LinearSystem(M=1.0, frame=f)},
-    "contacts.motion": lambda f: {"contacts": LinearContacts(G=1.0, motion=f)},
-    "contacts.gap": lambda f: {"contacts": Contacts(n_c=1, gap=f, jacobian=upward)},
-    "contacts.jacobian": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=f)},
-    "contacts.gap_t": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=upward, gap_t=f)},
-    "contacts.bias": lambda f: {"contacts": Contacts(n_c=1, gap=height, jacobian=upward, bias=f)},
-    "system.mass": lambda f: {"system": System(n_q=1, mass=f, force=one)},
-    "system.force_q": lambda f: {"system": System(n_q=1, mass=1.0, force=one, force_q=f)},
-    "system.force_v": lambda f: {"system": System(n_q=1, mass=1.0, force=one, force_v=f)},
-}
-
-
-@pytest.mark.parametrize("bad", BAD, ids=lambda f: f.__name__)
-@pytest.mark.parametrize("place", PLACES)
-def test_a_callback_that_does_not_fit_is_named(place, bad):
-    with pytest.raises(ValueError, match=rf"^{place}: "):
-        scene(**PLACES[place](bad))
-
-
-def test_a_callback_of_a_general_system_is_named():
-    with pytest.raises(ValueError, match=r"^system\.force: "):
-        scene(system=System(n_q=1, mass=1.0, force=returns))
-
-
-def test_errors_of_callbacks_say_time_and_state():
-    with pytest.raises(ValueError, match=r"^system\.force: .*t = 0, q = \[1\.0\], v = \[0\.0\]"):
-        scene(system=LinearSystem(M=1.0, force=not_a_number))
-
-
-def test_a_mass_function_must_be_definite_at_the_start():
-    def negative(t, q, v, p, out):
-        out[0, 0] = -1.0
-
-    with pytest.raises(ValueError, match=r"^system\.mass: .*positive definite"):
-        scene(system=System(n_q=1, mass=negative, force=one))
-
-
-@pytest.mark.parametrize("k", range(3))
-def test_a_callback_that_writes_into_what_it_is_shown_is_refused(k):
-    def careless(t, q, v, p, out):
-        (q, v, p)[k][0] = -5.0
-        out[0] = 0.0
-
-    with pytest.raises(ValueError, match=r"^system\.force: .*read-only; q, v and p are not the callback's"):
-        scene(system=LinearSystem(M=1.0, force=careless), p=[1.0])
-
-
-# --- scenes ready to use
-
-
-@pytest.mark.parametrize("name", scenes.CATALOGUE | scenes.LARGE)
-def test_every_scene_of_the_catalogue_starts_from_its_defaults(name):
-    made = scenes.SCENES[name].make()
-    assert made.name == name
-    assert np.all(made.gap(made.t_span[0], made.q0, made.v0)[0] >= 0.0)
-
-
-@pytest.mark.parametrize("name", scenes.WITH_MODES)
-def test_every_scene_with_modes_starts_from_its_defaults(name):
-    made = scenes.WITH_MODES[name].make()
-    assert made.name == name
-    assert len(made.labels) == made.n_x == len(made.x0)
-
-
-@pytest.mark.parametrize("name", scenes.SCENES)
-def test_every_numeric_argument_of_every_scene_is_checked_by_name(name):
-    make = scenes.SCENES[name].make
-    for argument, parameter in inspect.signature(make).parameters.items():
-        if isinstance(parameter.default, float):
-            for bad in (math.nan, math.inf, "much"):
-                with pytest.raises(ValueError, match=rf"^{argument}: "):
-                    make(**{argument: bad})
-
-
-@pytest.mark.parametrize(
-    ("make", "arguments"),
-    [
-        (scenes.bouncing_ball, {"h0": 1.0, "v0": 0.0, "g": 9.81, "restitution": 0.8, "t_end": 5.0}),
-        (
-            scenes.cam_follower,
-            {"rpm": 358.0, "q0": 0.4, "v0": 0.4, "t_end": 2.0, "coordinates": "relative"},
-        ),
-        (
-            scenes.impact_oscillator,
-            {
-                "zeta": 0.05, "omega": 2.0, "amplitude": 1.0, "stop": 0.0, "restitution": 0.8,
-                "q0": -0.5, "v0": 0.0, "t_end": 100.0,
-            },
-        ),
-    ],
-)  # fmt: skip
-def test_scenes_have_the_documented_arguments_in_order(make, arguments):
-    parameters = list(inspect.signature(make).parameters.values())[: len(arguments)]
-    assert {x.name: x.default for x in parameters} == arguments
-    assert [x.name for x in parameters] == list(arguments)
-
-
-MAKERS = [entry.make for entry in scenes.SCENES.values()]
-
-
-def taking(argument):
-    return [make for make in MAKERS if argument in inspect.signature(make).parameters]
-
-
-@pytest.mark.parametrize("make", taking("restitution"))
-@pytest.mark.parametrize("r", [-0.1, 1.1])
-def test_scenes_refuse_a_restitution_outside_zero_and_one(make, r):
-    with pytest.raises(ValueError, match=r"^restitution: "):
-        make(restitution=r)
-
-
-@pytest.mark.parametrize("make", MAKERS)
-@pytest.mark.parametrize("t_end", [0.0, -1.0])
-def test_scenes_refuse_an_end_before_their_start(make, t_end):
-    with pytest.raises(ValueError, match=r"^t_end: "):
-        make(t_end=t_end)
-
-
-def test_the_oscillator_refuses_a_start_beyond_its_stop():
-    with pytest.raises(ValueError, match=r"^q0: .*inside"):
-        scenes.impact_oscillator(q0=0.1)
-
-
-def test_the_follower_refuses_coordinates_that_it_does_not_have():
-    with pytest.raises(ValueError, match=r'^coordinates: .*"relative" or "absolute", got \'polar\''):
-        scenes.cam_follower(coordinates="polar")
-
-
-@pytest.mark.parametrize("bad", [0.0, -1.0])
-@pytest.mark.parametrize("argument", ["rpm", "m"])
-def test_the_follower_refuses_a_cam_or_a_mass_that_is_not_positive(argument, bad):
-    with pytest.raises(ValueError, match=rf"^{argument}: "):
-        scenes.cam_follower(**{argument: bad})
-
-
-def test_the_follower_starts_at_the_first_corner_relative_to_the_cam():
-    relative, absolute = (scenes.cam_follower(coordinates=c) for c in ("relative", "absolute"))
-    assert relative.corners[0] == 0.0
-    for made in (relative, absolute):
-        g, u = made.gap(0.0, made.q0, made.v0)
-        # the lift there is 0.1 m up to rounding, at rest
-        np.testing.assert_allclose([g[0], u[0]], [0.4, 0.4], rtol=1e-15)
-    assert absolute.q0[0] == pytest.approx(0.5, rel=1e-15)
-    assert relative.period == pytest.approx(60.0 / 358.0, rel=1e-15)
 
 
 def test_a_motion_in_closed_form_is_kept_as_long_as_it_starts_from_the_initial_state():
@@ -393,12 +166,6 @@ def test_a_motion_in_closed_form_is_kept_as_long_as_it_starts_from_the_initial_s
     assert dataclasses.replace(made, v0=1.1).exact is None
     with pytest.raises(ValueError, match=r"^exact: q: expected shape \(1, 1\)"):
         scene(q0=1.0, v0=1.0, exact=lambda t: (np.zeros((len(t), 2)), np.ones((len(t), 1))))
-
-
-def test_a_harmonic_force_is_what_its_name_says():
-    made = scenes.impact_oscillator(omega=3.0, amplitude=2.0)
-    assert isinstance(made.system.force, Harmonic)
-    assert made.period == pytest.approx(2 * math.pi / 3.0, rel=1e-15)
 
 
 # --- what is no number, no system, no period

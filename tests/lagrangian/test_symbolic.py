@@ -1,11 +1,7 @@
 """Mechanisms from a Lagrangian: their equations, callbacks and motions against those written by hand."""
 
 import functools
-import importlib
-import linecache
 import math
-import subprocess
-import sys
 import warnings
 
 import numba
@@ -15,21 +11,28 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from lagrangian import Contacts, Scene, System
 from lcpstep import EventDriven, Moreau, simulate
 from tests.differences import derivative, jacobian
 from tests.known import driven
-from tests.processes import python
+from tests.lagrangian.mechanisms import (
+    ARMS,
+    MECHANISMS,
+    T,
+    arms_by_hand,
+    arms_force,
+    arms_mass,
+    bead_on_turning_wire,
+    derive,
+    double_pendulum,
+    dynamicsymbols,
+    pendulum,
+    shaken_pendulum,
+    sympy,
+    tip_and_lagrangian,
+)
 
-sympy = pytest.importorskip("sympy")
-dynamicsymbols = pytest.importorskip("sympy.physics.mechanics").dynamicsymbols
-symbolic = pytest.importorskip("lagrangian.symbolic")
-derive = symbolic.derive
-
-T = sympy.Symbol("t")
 STEP = 1e-2  # of eighth-order differences: truncation 1e-16, rounding 1e-14
 EXACT = EventDriven(rtol=1e-12, atol=1e-12)
-ARMS = {"m1": 1.0, "m2": 0.5, "l1": 1.0, "l2": 0.7, "g": 9.81}
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -54,91 +57,6 @@ def value(f, at, p, shape):
 
 def values(mechanism):
     return list(mechanism.parameters.values())
-
-
-# --- the mechanisms, from their Lagrangian
-
-
-@functools.cache
-def pendulum():
-    theta, (m, length, g) = dynamicsymbols("theta"), sympy.symbols("m length g", positive=True)
-    x, y = length * sympy.sin(theta), -length * sympy.cos(theta)
-    L = m * (x.diff(T) ** 2 + y.diff(T) ** 2) / 2 - m * g * y
-    return derive(L, theta, parameters={m: 0.3, length: 0.5, g: 9.81}, gaps=x + 0.1, restitution=0.9)
-
-
-def tip_and_lagrangian():
-    angles, (m1, m2, l1, l2, g) = dynamicsymbols("theta1 theta2"), sympy.symbols("m1 m2 l1 l2 g")
-    x1, y1 = l1 * sympy.sin(angles[0]), -l1 * sympy.cos(angles[0])
-    x2, y2 = x1 + l2 * sympy.sin(angles[1]), y1 - l2 * sympy.cos(angles[1])
-    squares = [x.diff(T) ** 2 + y.diff(T) ** 2 for x, y in ((x1, y1), (x2, y2))]
-    return x2, (m1 * squares[0] + m2 * squares[1]) / 2 - g * (m1 * y1 + m2 * y2), angles
-
-
-@functools.cache
-def double_pendulum(restitution=1.0):
-    """Its lower bob to the right of a wall at x = -0.3 m."""
-    x2, L, angles = tip_and_lagrangian()
-    return derive(L, angles, parameters=ARMS, gaps=[x2 + 0.3], restitution=restitution)
-
-
-@functools.cache
-def shaken_pendulum():
-    """Pivot at A cos(w t), a wall below at A sin(w t)."""
-    theta, (A, w) = dynamicsymbols("theta"), sympy.symbols("A w")
-    x, y = sympy.sin(theta), A * sympy.cos(w * T) - sympy.cos(theta)
-    L = (x.diff(T) ** 2 + y.diff(T) ** 2) / 2 - 9.81 * y
-    return derive(L, theta, parameters={"A": 0.1, "w": 30.0}, gaps=[x - A * sympy.sin(w * T) + 0.5])
-
-
-@functools.cache
-def bead_on_turning_wire():
-    """Straight wire that turns at W, with a stop at r = R."""
-    r, (m, W, R) = dynamicsymbols("r"), sympy.symbols("m W R")
-    x, y = r * sympy.cos(W * T), r * sympy.sin(W * T)
-    L = m * (x.diff(T) ** 2 + y.diff(T) ** 2) / 2
-    return derive(L, r, parameters={"m": 0.2, "W": 2.0, "R": 1.0}, gaps=[R - r], restitution=0.5)
-
-
-@functools.cache
-def sphere_in_moving_bowl():
-    x, y, (m, R, A, w) = *dynamicsymbols("x y"), sympy.symbols("m R A w")
-    gap = R - sympy.sqrt(x**2 + (y - A * sympy.sin(w * T)) ** 2)
-    L = m * (x.diff() ** 2 + y.diff() ** 2) / 2 - m * 9.81 * y
-    return derive(L, (x, y), parameters={"m": 0.2, "R": 5.0, "A": 0.3, "w": 2.0}, gaps=[gap, x * y + 20])
-
-
-MECHANISMS = [pendulum, double_pendulum, shaken_pendulum, bead_on_turning_wire, sphere_in_moving_bowl]
-
-
-# --- the same, by hand
-
-
-def arms_mass(t, q, v, p, out):
-    out[0, 0], out[1, 1] = (p[0] + p[1]) * p[2] ** 2, p[1] * p[3] ** 2
-    out[0, 1] = out[1, 0] = p[1] * p[2] * p[3] * math.cos(q[0] - q[1])
-
-
-def arms_force(t, q, v, p, out):
-    s = p[1] * p[2] * p[3] * math.sin(q[0] - q[1])
-    out[0] = -s * v[1] ** 2 - (p[0] + p[1]) * p[4] * p[2] * math.sin(q[0])
-    out[1] = s * v[0] ** 2 - p[1] * p[4] * p[3] * math.sin(q[1])
-
-
-def arms_gap(t, q, v, p, out):
-    out[0] = p[2] * math.sin(q[0]) + p[3] * math.sin(q[1]) + 0.3
-
-
-def arms_jacobian(t, q, v, p, out):
-    out[0, 0], out[0, 1] = p[2] * math.cos(q[0]), p[3] * math.cos(q[1])
-
-
-def arms_by_hand(q0, v0, t_span, restitution):
-    return Scene(
-        system=System(n_q=2, mass=arms_mass, force=arms_force),
-        contacts=Contacts(n_c=1, gap=arms_gap, jacobian=arms_jacobian, restitution=restitution),
-        q0=q0, v0=v0, t_span=t_span, parameters=ARMS,
-    )  # fmt: skip
 
 
 # --- equations
@@ -364,108 +282,3 @@ def test_jumping_expressions_take_the_derivatives_beside_the_jump():
             assert value(f, at, p, 1) == pytest.approx(force)
         assert value(stop.system.force_q, at, p, (1, 1)) == pytest.approx(-8.0 if q < 0 else 0.25)
         assert value(stop.system.force_v, at, p, (1, 1)) == 0.0
-
-
-# --- what is refused
-
-
-def refused():
-    x, y, (k, m) = *dynamicsymbols("x y"), sympy.symbols("k m")
-    a, b = sympy.symbols("a b")
-    both, two = {"coordinates": (x, y)}, {"parameters": {"k": 2.0}}
-    T_x, T_y = x.diff() ** 2 / 2, y.diff() ** 2 / 2
-    given = {"lagrangian": T_x, "coordinates": x, "parameters": {"m": 1.0}}
-    return [
-        (given | {"lagrangian": T_x - k * x * a}, r"^lagrangian: unknown a, k;"),
-        (given | {"lagrangian": T_x - y}, r"^lagrangian: unknown y\(t\)"),
-        (given | {"lagrangian": T_x * x.diff(T, 2)}, r"^lagrangian: unknown Derivative\(x\(t\), \(t, 2\)\)"),
-        (given | {"lagrangian": "x**2"}, r"^lagrangian: expected a sympy expression, got 'x\*\*2'"),
-        (given | {"lagrangian": sympy.Matrix([x])}, r"^lagrangian: expected a sympy expression"),
-        (given | {"lagrangian": sympy.Eq(x, 1)}, r"^lagrangian: expected a sympy expression"),
-        (given | {"lagrangian": T_x + sympy.I * x}, r"^lagrangian: expected a real, finite"),
-        (given | {"lagrangian": T_x + sympy.sqrt(-1 - x**2)}, r"^lagrangian: expected a real, finite"),
-        (given | {"lagrangian": T_x + sympy.oo}, r"^lagrangian: expected a real, finite"),
-        (given | {"lagrangian": T_x + sympy.besselj(0, x)}, r"^lagrangian: cannot be written .* besselj"),
-        (given | {"lagrangian": T_x + sympy.Piecewise((x, x > 0))}, r"^lagrangian: cannot be written"),
-        (given | {"lagrangian": -m * sympy.sqrt(1 - x.diff() ** 2)}, r"^lagrangian: .*quadratic.*Derivative\(x"),
-        (given | {"lagrangian": sympy.Abs(x.diff())}, r"^lagrangian: .*quadratic"),
-        (given | {"coordinates": (x, y)}, r"^lagrangian: singular mass matrix: no kinetic energy in y\(t\)"),
-        (given | both | {"lagrangian": (x.diff() + y.diff()) ** 2}, r"^lagrangian: singular or indefinite mass"),
-        (given | {"lagrangian": -T_x}, r"^lagrangian: singular or indefinite mass"),
-        (given | both | two | {"lagrangian": T_x + (k - 2) * T_y}, r"^lagrangian: singular or indefinite mass"),
-        (given | {"coordinates": ()}, r"^coordinates: "),
-        (given | {"coordinates": "x"}, r"^coordinates: expected symbols or functions of time"),
-        (given | {"coordinates": 2 * x}, r"^coordinates: expected symbols"),
-        (given | {"coordinates": (x, sympy.Function("y")(a))}, r"^coordinates: .*same time"),
-        (given | {"coordinates": (x, x)}, r"x\(t\) given twice"),
-        (given | {"coordinates": a}, r"^velocities: expected one symbol"),
-        (given | {"coordinates": a, "velocities": (b, k)}, r"^velocities: expected 1, one for each .* got 2"),
-        (given | {"coordinates": a, "velocities": 2 * b}, r"^velocities: expected symbols"),
-        (given | {"coordinates": (x, y), "velocities": (y.diff(), x.diff())}, r"^velocities: .*in the order"),
-        (given | {"parameters": {"m": "heavy"}}, r"^parameters\['m'\]: expected a number, got 'heavy'"),
-        (given | {"parameters": {"m": math.nan}}, r"^parameters\['m'\]: expected a finite"),
-        (given | {"parameters": [1.0]}, r"^parameters: expected a mapping"),
-        (given | {"parameters": {"t": 1.0}}, r"t given twice"),
-        (given | {"dissipation": k * x.diff() ** 2}, r"^dissipation: unknown k"),
-        (given | {"forces": [1, 2]}, r"^forces: expected 1, one a coordinate, got 2"),
-        (given | {"forces": {y: 1}}, r"^forces: y\(t\) is no coordinate"),
-        (given | {"forces": [a]}, r"^forces\[0\]: unknown a"),
-        (given | {"gaps": [x, x - k]}, r"^gaps\[1\]: unknown k"),
-        (given | {"gaps": x.diff()}, r"^gaps\[0\]: expected no velocities, got Derivative\(x\(t\), t\)"),
-        (given | {"gaps": sympy.floor(x)}, r"^gaps: \w+ ?: cannot be written"),
-        (given | {"gaps": sympy.Mod(x, 2)}, r"^gaps: \w+ ?: cannot be written"),
-        (given | {"gaps": x, "restitution": 1.5}, r"^restitution: "),
-        (given | {"gaps": x, "restitution": [0.5, 0.5]}, r"^restitution: "),
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize("case", range(len(refused())), ids=lambda i: refused()[i][1][:40])
-def test_what_does_not_make_a_mechanism_is_refused_by_name(case):
-    arguments, message = refused()[case]
-    with pytest.raises(ValueError, match=message):
-        derive(**arguments)
-
-
-def test_states_of_another_size_have_no_energy():
-    with pytest.raises(ValueError, match=r"^q: expected shape \(2, 2\)"):
-        double_pendulum().energy([0.0, 1.0], np.zeros((2, 1)), np.zeros((2, 2)))
-
-
-# --- the module
-
-
-def test_the_source_of_callbacks_is_shown_by_tracebacks():
-    f = pendulum().system.force
-    assert vars(sys.modules[f.__module__]) is f.__globals__
-    assert linecache.getlines(f.__code__.co_filename) == pendulum().source.splitlines(keepends=True)
-
-
-def test_the_next_process_finds_the_machine_code_of_callbacks(tmp_path):
-    program = """
-import sympy
-from sympy.physics.mechanics import dynamicsymbols
-from lagrangian.symbolic import derive
-from lcpstep import Moreau, callbacks, simulate
-x = dynamicsymbols("x")
-fall = derive(x.diff() ** 2 / 2 - 1.625 * x, x)
-print(simulate(fall.scene([0.0], [0.0], (0.0, 1.0)), Moreau(0.5)).q[-1, 0])
-print(len(callbacks.MADE))
-"""
-    folder = {"NUMBA_CACHE_DIR": str(tmp_path)}
-    first = python(program, **folder)
-    kept = {file.name: file.stat().st_mtime_ns for file in tmp_path.iterdir()}
-    assert any("force" in name for name in kept)
-    assert python(program, **folder) == first
-    assert {file.name: file.stat().st_mtime_ns for file in tmp_path.iterdir()} == kept
-
-
-def test_models_need_no_sympy():
-    code = "import lagrangian, lcpstep, sys; assert 'sympy' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_without_sympy_the_error_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "sympy", None)
-    monkeypatch.delitem(sys.modules, "lagrangian.symbolic")
-    with pytest.raises(ImportError, match=r'pip install "lcpstep\[symbolic\]"'):
-        importlib.import_module("lagrangian.symbolic")
