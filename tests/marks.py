@@ -1,4 +1,4 @@
-"""Cases of which CI runs a share."""
+"""Cases of which CI runs a share, and those of compiled callbacks."""
 
 from __future__ import annotations
 
@@ -6,6 +6,10 @@ from collections.abc import Iterable
 from typing import Any
 
 import pytest
+
+from lcpstep.callbacks import disabled
+
+compiled_only = pytest.mark.skipif(disabled(), reason="nothing is compiled")
 
 
 def shared(cases: Iterable[Any], every: int) -> list[Any]:

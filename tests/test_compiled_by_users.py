@@ -9,7 +9,8 @@ from lcpstep import EventDriven, Located, Moreau, SimulationError, Status, simul
 from lcpstep.model import UncompiledCallback
 from tests import compiled_helpers
 from tests.compiled_helpers import down
-from tests.test_callbacks import compiled_only, falling
+from tests.falling import falling
+from tests.marks import compiled_only
 
 METHODS = [Moreau(1e-2), Located(1e-2), EventDriven()]
 CALLS = []

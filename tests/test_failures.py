@@ -2,27 +2,14 @@
 
 import math
 import re
-from dataclasses import replace
-from importlib.metadata import metadata
 
 import numpy as np
 import pytest
-import qpsolvers
 
-from lagrangian import Contacts, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
-from lcpstep import (
-    EventDriven,
-    LcpStepError,
-    Located,
-    MissingSolver,
-    Moreau,
-    SimulationError,
-    SimulationInterrupted,
-    UnknownName,
-    simulate,
-)
-from lcpstep.lcp.qp import known_solvers
+from lagrangian import Contacts, LinearContacts, LinearJoints, LinearSystem, Scene, System
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 from lcpstep.trajectory import Status
+from tests.falling import FALLING, FLOOR, run
 
 T_BAD = 0.3  # from here on callbacks go wrong
 
@@ -91,8 +78,6 @@ def zero(t, q, v, p, out):
     out[0, 0] = 0.0
 
 
-FLOOR = LinearContacts(G=1.0, restitution=0.5)
-FALLING = LinearSystem(M=1.0, force=-8.0)
 SPEED = LinearContacts(G=1.0, restitution=0.5, motion=bad_motion_speed)
 CULPRITS = [
     ("system.force", LinearSystem(M=1.0, force=bad_force), FLOOR),
@@ -120,10 +105,6 @@ METHODS = [
     pytest.param(Located(1e-2), id="located"),
     pytest.param(Located(1e-2, order=4), id="order four"),
 ]
-
-
-def run(system, contacts, method, q0=1.0):
-    return simulate(Scene(system, q0, 0.0, (0.0, 1.0), contacts), method)
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -244,195 +225,6 @@ def test_joints_that_come_to_contradict_each_other_end_the_run(method):
     assert m.status is Status.JOINTS_FAILED
     assert "contradict" in m.message
     assert m.t[-1] < 0.1
-
-
-# --- interrupts
-
-
-class StopAt:
-    """Progress callback that interrupts after a number of calls."""
-
-    def __init__(self, calls):
-        self.left, self.times = calls, []
-
-    def __call__(self, t):
-        self.times.append(t)
-        self.left -= 1
-        if self.left <= 0:
-            raise KeyboardInterrupt
-
-
-@pytest.mark.parametrize(
-    ("scene", "method"),
-    [
-        (scenes.impact_oscillator(t_end=100.0), Moreau(1e-4)),
-        (scenes.bouncing_ball(restitution=1.0, t_end=1e5), EventDriven()),
-        (scenes.impact_oscillator(t_end=1e5), EventDriven()),
-    ],
-)
-@pytest.mark.parametrize("keep", [1, 100, "impacts"])
-def test_an_interrupt_hands_over_the_motion_so_far(scene, method, keep):
-    stop = StopAt(3)
-    with pytest.raises(SimulationInterrupted) as caught:
-        simulate(scene, method, keep=keep, progress=stop)
-    assert isinstance(caught.value, KeyboardInterrupt)
-    m = caught.value.trajectory
-    assert m.status is Status.INTERRUPTED
-    assert "interrupted" in m.message
-    assert len(stop.times) == 3
-    assert m.t[-1] == pytest.approx(stop.times[-1], rel=1e-12)
-    assert 0.0 < m.t[-1] < scene.t_span[1]
-    whole = simulate(scene, method, keep=[m.t[-1] / 2, float(m.t[-1])])
-    np.testing.assert_allclose(m.q[-1], whole.q[-1], rtol=0, atol=1e-9)
-    known = m.impacts.time <= m.t[-1]
-    np.testing.assert_array_equal(m.impacts[known], whole.impacts[: np.count_nonzero(known)])
-
-
-def test_progress_rises_to_the_end():
-    for method in (Moreau(1e-5), EventDriven()):
-        times = []
-        simulate(scenes.impact_oscillator(t_end=5.0), method, progress=times.append)
-        assert times == sorted(times)
-        assert times[-1] == pytest.approx(5.0, rel=1e-12)
-
-
-def test_an_error_of_the_progress_callback_is_not_swallowed():
-    def broken(t):
-        raise ZeroDivisionError
-
-    with pytest.raises(ZeroDivisionError):
-        simulate(scenes.bouncing_ball(), Moreau(1e-2), progress=broken)
-
-
-# --- clumsy input
-
-
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("q0", {"q0": [True]}),
-        ("q0", {"q0": [[True]]}),
-        ("q0", {"q0": (np.True_,)}),
-        ("v0", {"v0": [False]}),
-        ("q0", {"q0": [1.0 + 2.0j]}),
-        ("q0", {"q0": np.ma.masked_array([1.0], mask=[True])}),
-        ("q0", {"q0": np.array(["1"], dtype=object)}),
-        ("q0", {"q0": [10**400]}),
-        ("t_span", {"t_span": (False, 1.0)}),
-        ("t_span", {"t_span": (0.0, True)}),
-        ("p", {"p": [1.0, True]}),
-        ("corners", {"corners": [True]}),
-    ],
-)
-def test_what_is_no_number_is_refused_by_name(name, values):
-    given = {"q0": 1.0, "v0": 0.0, "t_span": (0.0, 1.0)} | values
-    with pytest.raises(ValueError, match=rf"^{name}: expected real numbers, got "):
-        Scene(FALLING, **given)
-
-
-def test_what_stands_for_something_else_is_refused_by_name():
-    scene = Scene(FALLING, 1.0, 0.0, (0.0, 1.0))
-    for progress in (5, "a bar"):
-        with pytest.raises(TypeError, match=r"^progress: expected a function of the time reached"):
-            simulate(scene, Moreau(0.1), progress=progress)
-    for keep in ([0.0, True], ["0.1", "0.2"], [0.1j], None, [[0.1, 0.2]]):
-        with pytest.raises(ValueError, match=r"^keep: expected increasing times"):
-            simulate(scene, Moreau(0.1), keep=keep)
-    for parameters in (3, [1.0], "mass"):
-        with pytest.raises(TypeError, match=r"^parameters: expected names and values"):
-            replace(scene, parameters=parameters)
-    for part in ("system", "contacts", "joints"):
-        with pytest.raises(TypeError, match=rf"^{part}: expected a Linear"):
-            replace(scene, **{part: {}})
-    with pytest.raises(TypeError, match=r"^friction: expected a Coulomb"):
-        LinearContacts(G=1.0, friction=0.3)
-    with pytest.raises(TypeError, match=r"^projected: expected a bool"):
-        Moreau(0.1, projected="no")
-
-
-@pytest.mark.parametrize("q0", [np.array(1), np.array([1]), [1], np.float32(1.0), np.ma.masked_array([1.0])])
-def test_numbers_of_any_kind_are_taken(q0):
-    assert Scene(FALLING, q0, 0.0, (0.0, 1.0)).q0.tolist() == [1.0]
-
-
-def test_a_truth_value_among_numbers_of_a_matrix_is_refused():
-    with pytest.raises(ValueError, match=r"^M: expected real numbers"):
-        LinearSystem(M=[[1.0, 0.0], [0.0, True]])
-    with pytest.raises(ValueError, match=r"^G: expected real numbers"):
-        LinearContacts(G=[[True, 0.0]])
-
-
-# --- methods and solvers
-
-
-@pytest.mark.parametrize("h", [0.0, -1e-3, math.nan, math.inf, "small", None])
-def test_the_step_is_positive(h):
-    with pytest.raises(ValueError, match=r"^h: "):
-        Moreau(h)
-
-
-@pytest.mark.parametrize("method", [Moreau(1e-18), Located(1e-18)])
-def test_a_step_below_the_resolution_of_time_is_refused(method):
-    with pytest.raises(LcpStepError, match=r"h: steps of 1e-18 s are lost"):
-        run(FALLING, FLOOR, method)
-
-
-@pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2), Located(1e-2, order=4)])
-def test_a_step_longer_than_the_span_is_refused(method):
-    scene = Scene(FALLING, 1.0, -1.0, (0.0, 9.9e-3), FLOOR)
-    with pytest.raises(LcpStepError, match=r"^h: steps of 0\.01 s are longer than the span of 0\.0099 s"):
-        simulate(scene, method)
-    m = simulate(scene, replace(method, h=9.9e-3))
-    assert m.counts.steps == 1
-    assert m.t[-1] == 9.9e-3
-
-
-def test_the_longest_step_of_a_tolerance_may_be_longer_than_the_span():
-    m = simulate(Scene(FALLING, 1.0, -1.0, (0.0, 1e-13), FLOOR), Moreau(1e-2, tolerance=1e-6))
-    assert m.t[-1] == 1e-13
-    np.testing.assert_allclose(m.q[-1] - 1.0, -1e-13, rtol=1e-2)
-
-
-@pytest.mark.parametrize("theta", [-0.1, 1.1, math.nan, "half", None])
-def test_theta_lies_between_zero_and_one(theta):
-    with pytest.raises(ValueError, match=r"^theta: "):
-        Moreau(1e-3, theta)
-
-
-@pytest.mark.parametrize(
-    ("name", "near"),
-    [("lemk", "lemke"), ("Lemke", "lemke"), ("qp:osqb", "qp:osqp"), ("qp:dqp", "qp:daqp"), ("osqp", "osqp")],
-)
-def test_an_unknown_solver_suggests_near_ones(name, near):
-    with pytest.raises(UnknownName, match=f"unknown LCP solver '{name}'; did you mean .*{near}") as caught:
-        Moreau(1e-3, lcp=name)
-    assert isinstance(caught.value, ValueError)
-    assert isinstance(caught.value, LcpStepError)
-
-
-def test_a_solver_like_no_other_is_answered_with_all_of_them():
-    with pytest.raises(UnknownName, match=r"known: .*lemke.*qp"):
-        Moreau(1e-3, lcp="zzzzzz")
-
-
-def test_a_solver_that_is_not_installed_is_answered_with_the_command_that_installs_it():
-    missing = [n for n in known_solvers() if n not in qpsolvers.available_solvers]
-    extras = set(metadata("qpsolvers").get_all("Provides-Extra"))
-    assert missing
-    for name in missing:
-        with pytest.raises(MissingSolver, match=f"'{name}' is not installed: .*pip install") as caught:
-            Moreau(1e-3, lcp=f"qp:{name}")
-        assert isinstance(caught.value, ImportError)
-        # a command that installs it: an extra of qpsolvers where there is one
-        assert f"qpsolvers[{name}]" not in str(caught.value) or name in extras
-
-
-def test_neither_scene_nor_method_may_be_something_else():
-    with pytest.raises(TypeError, match=r"^scene: "):
-        simulate("cam-follower", Moreau(1e-3))
-    for method in (Moreau, EventDriven, "moreau", None):
-        with pytest.raises(TypeError, match=r"^method: "):
-            simulate(scenes.bouncing_ball(), method)
 
 
 # --- statuses

@@ -11,14 +11,10 @@ import time
 import numpy as np
 import pytest
 
-from lagrangian import scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, cli, simulate, simulation
+from lcpstep import cli
 from lcpstep.cli import interrupt
-from lcpstep.pace import Pace
-from lcpstep.recording import Recorder
 from tests.marks import shared
 from tests.processes import environment
-from tests.stepping.test_sparse import column
 
 READY = "import sys; from lcpstep.cli import command; print('ready', flush=True); command()"
 AFTER = 1.2  # of a command's start [s]: long enough for it to be at work, where the machine is not busy
@@ -49,79 +45,6 @@ SLOW_LOOPS = {
     "event-driven": "simulate elastic-gas --method event-driven --t-end 1e5",
     "time-stepping": "basin cam-follower --rpm 358.5 --grid 300 300 --method moreau --h 1e-6",
 }
-
-
-@pytest.mark.parametrize("method", [Moreau(1e-3), EventDriven()], ids=["moreau", "event-driven"])
-def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, monkeypatch):
-    states, scene = Recorder.states, scenes.bouncing_ball()
-    whole, calls = simulate(scene, method), []
-
-    def hit(self):
-        calls.append(self)
-        if len(calls) == 1:
-            raise KeyboardInterrupt
-        return states(self)
-
-    monkeypatch.setattr(Recorder, "states", hit)
-    with pytest.raises(SimulationInterrupted) as caught:
-        simulate(scene, method)
-    np.testing.assert_array_equal(caught.value.trajectory.t, whole.t)
-
-
-@pytest.mark.parametrize(
-    "look", ["_compare_derivatives", "_warn_of_fast_gaps", "_no_room", "too_deep", "unresolved"]
-)
-def test_an_interrupt_while_a_finished_run_is_looked_over_loses_nothing(look, monkeypatch):
-    scene = scenes.double_pendulum(t_end=0.1)
-    whole = simulate(scene, EventDriven())
-
-    def hit(run):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(simulation, look, hit)
-    with pytest.raises(SimulationInterrupted) as caught:
-        simulate(scene, EventDriven())
-    kept = caught.value.trajectory
-    np.testing.assert_array_equal(kept.q, whole.q)
-    assert kept.status == Status.DONE
-    assert "interrupted before" in kept.message
-
-
-WAYS = {
-    "moreau": (Moreau(1e-3), scenes.bouncing_ball),
-    "moreau by a tolerance": (Moreau(1e-3, tolerance=1e-3), scenes.bouncing_ball),
-    "located": (Located(1e-3), scenes.bouncing_ball),
-    "located, order 4": (Located(1e-3, order=4), scenes.bouncing_ball),
-    "located by a tolerance": (Located(1e-3, tolerance=1e-6), scenes.bouncing_ball),
-    "located, friction": (Located(1e-2), scenes.mass_on_belt),
-    "sparse": (Moreau(1e-3), lambda: column(10, drop=0.1)),
-    "closed form": (EventDriven(), scenes.bouncing_ball),
-    "general": (EventDriven(), scenes.double_pendulum),
-    "friction": (EventDriven(), scenes.mass_on_belt),
-}
-
-
-@pytest.mark.parametrize("keep", [1, "impacts", [0.05, 0.08]], ids=str)
-@pytest.mark.parametrize("way", WAYS)
-def test_an_interrupt_before_the_first_step_leaves_the_start(way, keep, monkeypatch):
-    (method, make), hits = WAYS[way], []
-
-    def hit(self, done):
-        hits.append(done)
-        raise KeyboardInterrupt
-
-    scene = make()
-    monkeypatch.setattr(Pace, "goal", hit)
-    with pytest.raises(SimulationInterrupted) as caught:
-        simulate(scene, method, keep=keep)
-    run = caught.value.trajectory
-    assert run.status == Status.INTERRUPTED
-    assert hits == [0]
-    if not isinstance(keep, list):
-        np.testing.assert_array_equal(run.t, [0.0])
-        np.testing.assert_array_equal(run.q, [scene.q0])
-        np.testing.assert_array_equal(run.v, [scene.v0])
-    assert len(run.impulse) == len(run.t)
 
 
 def interrupted(words, folder, after, again=None):

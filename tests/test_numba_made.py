@@ -10,8 +10,9 @@ import pytest
 from lagrangian.plain import REPLACED, InPython, python
 from lcpstep import Moreau, SimulationError, simulate
 from tests import numba_made
+from tests.falling import falling
+from tests.marks import compiled_only
 from tests.numba_made import CHECKED, REFUSED
-from tests.test_callbacks import compiled_only, falling
 
 pytestmark = [
     compiled_only,

@@ -1,14 +1,12 @@
 """The same kernels in plain Python: for callbacks that cannot be compiled, and with NUMBA_DISABLE_JIT=1."""
 
 import math
-import warnings
 
 import numpy as np
 import pytest
 
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationError, SimulationInterrupted, simulate
-from lcpstep.maps import periods
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 from lcpstep.model import UncompiledCallback
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
@@ -148,8 +146,6 @@ for scene in (scenes.cam_follower(t_end=0.1), scenes.bouncing_ball(t_end=1.0), o
         print(*(x.hex() for x in m.at(0.09)[0]), len(m.t), len(m.impacts))
 print("numba" in sys.modules)
 """
-
-
 NO_NUMBA = """
 import sys, warnings
 
@@ -251,68 +247,3 @@ def test_no_way_leads_to_the_numbers_of_the_run(way, method):
         simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 0.4)), method)
     run = caught.value.trajectory
     np.testing.assert_allclose(run.q[:, 0], 1.0 - 4.0 * run.t**2, atol=0.02)
-
-
-@pytest.mark.parametrize("which", ["force", "gap", "jacobian"])
-@pytest.mark.parametrize(
-    "method",
-    [
-        Located(1e-2, tolerance=1e-6),
-        Located(1e-2, order=4, tolerance=1e-6),
-        Moreau(1e-2),
-        EventDriven(1e-9, 1e-9),
-    ],
-    ids=["located", "order four", "moreau", "event-driven"],
-)
-def test_an_interrupt_that_a_callback_hears_is_the_last_of_its_run(which, method):
-    """Attempts that the control takes back had taken the interrupt back with them."""
-    calls = {"force": 0, "gap": 0, "jacobian": 0}
-    first, after = [0], []
-
-    def called(name):
-        calls[name] += 1
-        if after:
-            after.append(name)
-        elif name == which and calls[name] == first[0]:
-            after.append("interrupt")
-            raise KeyboardInterrupt
-
-    def force(t, q, v, p, out):
-        called("force")
-        out[0] = -9.81
-
-    def gap(t, q, v, p, out):
-        called("gap")
-        out[0] = q[0]
-
-    def jacobian(t, q, v, p, out):
-        called("jacobian")
-        out[0, 0] = 1.0
-
-    contacts = Contacts(1, gap, jacobian, restitution=0.8)
-    scene = Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 3.0), contacts=contacts)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UncompiledCallback)
-        for number in (30, 151, 302):
-            first[0] = calls[which] + number
-            after.clear()
-            with pytest.raises(SimulationInterrupted):
-                simulate(scene, method)
-            assert after == ["interrupt"]
-
-
-def test_an_interrupt_is_heard_once():
-    """Not again by maps that follow, in which no run is begun."""
-    heard = []
-
-    def force(t, q, v, p, out):
-        out[0] = -9.81
-        if t > 0.1 and not heard:
-            heard.append(t)
-            raise KeyboardInterrupt
-
-    with pytest.warns(UncompiledCallback), pytest.raises(SimulationInterrupted):
-        simulate(Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 1.0)), Moreau(1e-2))
-    cam = scenes.cam_follower(rpm=700.0)
-    found = periods(cam, Moreau(1e-4), np.array([[1.33, -66.2]]), 1)
-    assert np.all(np.isfinite(found.states))

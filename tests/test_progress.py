@@ -134,3 +134,19 @@ def on_terminal(*words, seconds):
 def test_a_bar_on_a_terminal_shows_the_time_left(words, tmp_path):
     written = on_terminal(*(w.format(out=tmp_path) for w in words), seconds=12.0)
     assert len(left(written)) >= BARS, written[-3:]
+
+
+def test_progress_rises_to_the_end():
+    for method in (Moreau(1e-5), EventDriven()):
+        times = []
+        simulate(scenes.impact_oscillator(t_end=5.0), method, progress=times.append)
+        assert times == sorted(times)
+        assert times[-1] == pytest.approx(5.0, rel=1e-12)
+
+
+def test_an_error_of_the_progress_callback_is_not_swallowed():
+    def broken(t):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        simulate(scenes.bouncing_ball(), Moreau(1e-2), progress=broken)
