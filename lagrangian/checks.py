@@ -273,18 +273,6 @@ def labels(name: str, values: Any, n: int) -> tuple[str, ...]:
     return given
 
 
-def rate_label(label: str) -> str:
-    """What the rate of a named coordinate is called: "angle [rad]" becomes "rate of angle [rad/s]"."""
-    name, bracket, unit = label.partition(" [")
-    return f"rate of {name}{bracket}{unit[:-1]}/s]" if bracket else f"rate of {name}"
-
-
-def common_unit(labels: tuple[str, ...]) -> str:
-    """The unit of named coordinates, "m" of "position [m]", where they have one in common; "" where not."""
-    units = {label.partition("[")[2].rstrip("]") for label in labels}
-    return units.pop() if len(units) == 1 else ""
-
-
 def in_words(scene: Any, parts: list[str]) -> str:
     """A scene on one line: its kind, name, what it has, its span, and its parameters."""
     start, end = scene.t_span

@@ -15,6 +15,7 @@ from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.drawing import Drawing
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
+from lagrangian.labels import rate_label
 from lagrangian.pickling import Pickled
 from lagrangian.relations import check_derivatives
 from lagrangian.system import Harmonic, LinearSystem, System
@@ -123,7 +124,7 @@ class Scene(Pickled):
     def labels(self) -> tuple[str, ...]:
         """Name of each state with its unit, for axes."""
         if self.coordinates:
-            return (*self.coordinates, *map(checks.rate_label, self.coordinates))
+            return (*self.coordinates, *map(rate_label, self.coordinates))
         if self.n_q == 1:
             return ("position [m]", "velocity [m/s]")
         numbers = range(1, self.n_q + 1)

@@ -32,6 +32,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import HybridScene, Scene, checks
+from lagrangian.labels import common_unit
 from lcpstep import dataset
 from lcpstep.errors import LcpStepError, SimulationError, UnknownName
 from lcpstep.events import EventDriven
@@ -188,7 +189,7 @@ class ParameterStudy:
         n, units = scene.n_q, {}
         labels = dict.fromkeys(("q_end", "position_error"), scene.labels[:n])
         labels |= dict.fromkeys(("v_end", "velocity_error"), scene.labels[n:])
-        own = {name: checks.common_unit(of) or "1" for name, of in labels.items()}
+        own = {name: common_unit(of) or "1" for name, of in labels.items()}
         for name in self.outputs["measures"]:
             values = np.array([row[name] for row in rows])
             inner = ("coordinate",) if values.ndim > 1 else ()

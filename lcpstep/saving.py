@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian import checks
+from lagrangian.labels import common_unit
 from lagrangian.scenes import SCENES
 from lcpstep import dataset, functions
 from lcpstep.described import COLUMNS, Builder, Describer
@@ -261,7 +261,7 @@ def _units(scene: Any) -> dict[str, str]:
     if n is None:
         return UNITS
     own = {"q": scene.labels[:n], "v": scene.labels[n:]}
-    return UNITS | {name: checks.common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
+    return UNITS | {name: common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
 
 
 def _dimensions(name: str, x: np.ndarray, lengths: dict[str, int]) -> tuple[str, ...]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
+from lagrangian.labels import common_unit
 from lcpstep.accuracy import dials
 from lcpstep.accuracy.dials import changeable, dial, with_value
 from lcpstep.errors import LcpStepError, SimulationError
@@ -110,7 +111,7 @@ class Contest:
     @property
     def unit(self) -> str:
         """Unit of the coordinates, where they have one in common."""
-        return checks.common_unit(self.scene.labels[: self.scene.n_q]) or "own units"
+        return common_unit(self.scene.labels[: self.scene.n_q]) or "own units"
 
     @property
     def runs(self) -> list[Entrant]:

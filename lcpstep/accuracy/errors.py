@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
+from lagrangian.labels import common_unit
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import Matching, match_impacts
 from lcpstep.gauss import gauss
@@ -273,7 +274,7 @@ MEASURES = (
 def units(scene: Scene) -> dict[str, str]:
     """Unit of each measure on a scene, where its coordinates have one in common; "1" for numbers."""
     n = scene.n_q
-    q, v = (checks.common_unit(labels) or "own units" for labels in (scene.labels[:n], scene.labels[n:]))
+    q, v = (common_unit(labels) or "own units" for labels in (scene.labels[:n], scene.labels[n:]))
     return {
         "sup_position": q, "l1_velocity": q, "graph_distance": v, "impact_time": "s", "impact_impulse": "N s",
         "unmatched": "1", "energy": "J", "penetration": "m",

@@ -12,7 +12,8 @@ from bokeh.models import Button, ColumnDataSource, Div, InlineStyleSheet, Legend
 from bokeh.palettes import Category10_10
 from bokeh.plotting import figure
 
-from lagrangian import Scene, checks
+from lagrangian import Scene
+from lagrangian.labels import common_unit
 from lcpstep.explore.basin_panel import BasinPanel
 from lcpstep.explore.session import METHODS, Session, slider_range, sliding
 from lcpstep.explore.views import curves, impact_labels, impact_map
@@ -79,7 +80,7 @@ class Page:
     def _figures(self, scene: Scene) -> list[list[Any]]:
         """Rows of figures."""
         labels, several = scene.labels, scene.n_q > 1
-        unit, rate = (checks.common_unit(x) for x in (labels[: scene.n_q], labels[scene.n_q :]))
+        unit, rate = (common_unit(x) for x in (labels[: scene.n_q], labels[scene.n_q :]))
         position = f"positions [{unit}]" if several and unit else "coordinates" if several else labels[0]
         velocity = f"velocities [{rate}]" if several and rate else "velocities" if several else labels[-1]
         over_time = [

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
+from lagrangian.labels import common_unit
 from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot import looks
@@ -100,8 +101,8 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
     ):
         for k, values in enumerate(x.T):
             ax.plot(t, values, **looks.line(k))
-        unit = checks.common_unit(own)
-        what = QUANTITIES.get(checks.common_unit(labels[:n]), ("position", "velocity"))[which]
+        unit = common_unit(own)
+        what = QUANTITIES.get(common_unit(labels[:n]), ("position", "velocity"))[which]
         ax.set_ylabel(own[0] if n == 1 else f"{what} [{unit}]" if unit else what)
         if n > 1 and not (which and unit):  # velocities look as their positions, and have units of their own
             _legend(ax, ax.get_lines(), [x.partition(" [")[0] for x in own] if unit else own)

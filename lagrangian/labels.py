@@ -1,0 +1,15 @@
+"""What names of coordinates with units, as "angle [rad]", tell: the names of their rates, and the unit they share."""
+
+from __future__ import annotations
+
+
+def rate_label(label: str) -> str:
+    """What the rate of a named coordinate is called: "angle [rad]" becomes "rate of angle [rad/s]"."""
+    name, bracket, unit = label.partition(" [")
+    return f"rate of {name}{bracket}{unit[:-1]}/s]" if bracket else f"rate of {name}"
+
+
+def common_unit(labels: tuple[str, ...]) -> str:
+    """The unit of named coordinates, "m" of "position [m]", where they have one in common; "" where not."""
+    units = {label.partition("[")[2].rstrip("]") for label in labels}
+    return units.pop() if len(units) == 1 else ""
