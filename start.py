@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 LAST = 60  # lines of pip's that are shown where it fails
-BUILD = "pyproject.toml", "setup.py", "ready.py"
+BUILD = "pyproject.toml", "setup.py", "ready.py", "ready_words.py"
 BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"], ["lint-imports"])
 
 

@@ -130,7 +130,7 @@ def test_a_log_of_the_building_that_nobody_watches_is_not_written_over(capsys):
 
 def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
     """pip and build ask for it several times, each time in a process of its own."""
-    for name in ("setup.py", "ready.py", "pyproject.toml", "README.md", "LICENSE"):
+    for name in ("setup.py", "ready.py", "ready_words.py", "pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, tmp_path)
     shutil.copytree(ROOT / "lagrangian", tmp_path / "lagrangian")
     (tmp_path / "lcpstep").mkdir()
@@ -173,7 +173,7 @@ def test_the_archive_has_every_source_and_the_wheel_every_module(built):
     files = {str(f.relative_to(ROOT)) for f in packages if f.suffix in (".py", ".pxd", ".h", ".typed")}
     assert files <= sources
     assert files <= modules
-    assert {"setup.py", "ready.py", "start.py", "LICENSE", "CHANGELOG.md"} <= sources
+    assert {"setup.py", "ready.py", "ready_words.py", "start.py", "LICENSE", "CHANGELOG.md"} <= sources
     compiled = {str(f.relative_to(ROOT)) for f in packages if f.suffix in (".so", ".pyd")}
     assert compiled
     assert compiled <= modules
