@@ -6,6 +6,18 @@ One method of each was wrong; the comment says how.
 from benchmarks.judge.describe import Description
 
 JOINTED = {
+    # Impulses that hold from all sides were asked for speeds whose sum rounding had made negative: LCP_FAILED
+    "a body that three walls hold on a curved joint": (
+        Description(
+            M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(0.19, -2.11, -0.809),
+            v0=(-0.20927701290435866, 0.07163419593787754, -0.23598366610723082), t_span=(0.0, 33.202), h=0.026,
+            G=((0.324, -0.171, -1.03), (-0.222, -0.906, 0.301), (0.781, -1.1, -1.03)),
+            offset=(-1.25564, -1.6259709999999998, -3.3026600000000004), restitution=(0.0, 0.88, 0.6),
+            constant=(0.0, 0.0, -9.81), J=((0.0, 0.0, 0.0),), joint_offset=(-2.5713404999999994,),
+            joint_bend=(1.0,), family='jointed',
+        ),
+        ("located",),
+    ),
     # Where a force ended that another contact could bear, the forces were looked for a whole step later, and pulled
     "a body that three walls and a joint hold by more than it needs": (
         Description(

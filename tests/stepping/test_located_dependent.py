@@ -82,3 +82,35 @@ def test_thousands_of_elastic_impacts_at_one_instant_keep_the_energy():
         assert m.status == Status.TOO_MANY_EVENTS
         assert m.impacts.time[-1] == 0.0
         assert m.v[-1] @ m.v[-1] == pytest.approx(m.v[0] @ m.v[0], rel=1e-12)
+
+
+BETWEEN_WALLS = np.array([[-1.0, 1, 0, 0], [0, -1, 1, 0], [0, 0, -1, 1], [1, 0, 0, 0], [0, 0, 0, -1]])
+
+
+def shaken(t, q, v, p, out):
+    s, c = np.sin(3.4 * t), np.cos(3.4 * t)
+    for i in range(4):
+        out[i, 0], out[i, 1], out[i, 2] = p[i] * s, 3.4 * p[i] * c, -3.4 * 3.4 * p[i] * s
+
+
+def wedged_beads(seed):
+    """Beads that touch each other and both walls, coupled by springs, each shaken by itself and the first pushed."""
+    rng = np.random.default_rng(seed)
+    root, places = rng.normal(size=(4, 4)), 1e-3 * rng.uniform(size=4)
+    beads = LinearSystem(M=np.eye(4), K=root @ root.T, force=(-9.81, 0.0, 0.0, 0.0), frame=shaken)
+    walls = LinearContacts(BETWEEN_WALLS)
+    named = {f"a{i}": x for i, x in enumerate(places)}
+    return Scene(beads, np.zeros(4), np.zeros(4), (0.0, 3.0), contacts=walls, parameters=named)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize(
+    "method",
+    [Located(0.016), Located(0.016, 4), Located(0.1, tolerance=1e-4), Located(0.1, 4, tolerance=1e-6)],
+    ids=str,
+)
+def test_what_is_held_from_all_sides_rests_though_rounding_asks_for_what_cannot_be(method, seed):
+    """All normals add up to zero: no forces hold accelerations, or speeds, whose sum is below it by a rounding."""
+    m = simulate(wedged_beads(seed), method)
+    assert m.status == Status.DONE
+    np.testing.assert_allclose(m.q, 0.0, rtol=0, atol=1e-13)

@@ -17,10 +17,11 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
     from lcpstep.stepping.pieces.jointed import answer_force
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed, solve_chosen
+    from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
 

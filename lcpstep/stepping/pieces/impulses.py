@@ -17,6 +17,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import Doubles, abs, max, min
+    from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
         CLOSED,
@@ -32,7 +33,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.corners import choose_jumping
     from lcpstep.stepping.pieces.jointed import answer_impulse
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.refine import NONE, solve_chosen
+    from lcpstep.stepping.pieces.refine import NONE
     from lcpstep.stepping.pieces.sequences import (
         IN_A_ROW,
         MANY_AT_ONCE,

@@ -5,9 +5,6 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 cdef double SETTLED, EXACT, PULLS
 cdef Py_ssize_t SOLVED, REFINEMENTS, NONE, FORCES, IMPULSES
 
-cdef bint solve_chosen(
-    Model m, Plan plan, Work w, double* W, Py_ssize_t place, Py_ssize_t n, Py_ssize_t guess
-) noexcept nogil
 cdef bint solve_unrefined(Work w, double* W, Py_ssize_t n) noexcept nogil
 cdef bint solve_several(
     Model m, Plan plan, Work w, double* W, double* inverse, bint factored, Py_ssize_t n, Py_ssize_t guess

@@ -25,8 +25,8 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.lcp.kernel import solve_small
-    from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import EPS, INERTIA, ROUNDING
+    from lcpstep.pointers import Doubles, abs, max, min
+    from lcpstep.stepping.pieces.codes import EPS, ROUNDING
     from lcpstep.stepping.pieces.independent import bear_on_independent
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -36,26 +36,6 @@ REFINEMENTS = 6
 SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
 EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
 PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
-
-
-def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
-    """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
-
-    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then
-    noted as the culprits.
-    """
-    w.lcp_calls += 1
-    w.members = n
-    if n == 1:
-        c = w.chosen[0]
-        if W[c * w.n_c + c] > 0.0:
-            w.z[0] = max(0.0, -w.b[0] / W[c * w.n_c + c])
-            return True
-    if plan.joined:
-        return solve_unrefined(w, W, n)
-    if place != INERTIA:
-        return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
-    return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)
 
 
 def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:

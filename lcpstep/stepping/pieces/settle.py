@@ -23,6 +23,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import abs, max, min
+    from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
         CLOSED,
@@ -37,7 +38,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.jointed import answer_impulse, hold_joints, turn_with_joints
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.refine import NONE, solve_chosen
+    from lcpstep.stepping.pieces.refine import NONE
     from lcpstep.stepping.pieces.smooth import (
         gap_bias,
         measure,

@@ -1,0 +1,58 @@
+"""Impulses and forces of some contacts together, and what is done where they have no answer.
+
+What is held from all sides, bodies between walls without clearance or a point that three planes hold, has an answer
+only as far as what is asked for agrees:
+
+    y^T b >= 0   where   y > 0,   W y = 0.
+
+Of bodies at rest every b is rounding, and so is the sign of such a sum. Where there is no answer, contacts are let
+close by what rounding may make of b, before it counts as none.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import Doubles, after, max
+    from lcpstep.stepping.pieces.codes import INERTIA, ROUNDING
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+    from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several, solve_unrefined
+    from lcpstep.stepping.pieces.state import Plan, Work
+
+
+def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
+    """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
+
+    w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then
+    noted as the culprits.
+    """
+    w.lcp_calls += 1
+    w.members = n
+    if n == 1:
+        c = w.chosen[0]
+        if W[c * w.n_c + c] > 0.0:
+            w.z[0] = max(0.0, -w.b[0] / W[c * w.n_c + c])
+            return True
+    if solve_together(m, plan, w, W, place, n, guess):
+        return True
+    loosen(m, plan, w, n, guess == FORCES)
+    return solve_together(m, plan, w, W, place, n, NONE)
+
+
+def loosen(m: Model, plan: Plan, w: Work, n: int, forces: bool) -> None:
+    """Let the chosen contacts close by what rounding may make of b: accelerations, or speeds."""
+    for k in range(n):
+        c = w.chosen[k]
+        w.b[k] += ROUNDING * (acceleration_terms(m, w, c) if forces else speed_terms(plan, w, c))
+        w.z[k] = 0.0
+
+
+def solve_together(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
+    """`solve_chosen` of several contacts, by what W is made of."""
+    if plan.joined:
+        return solve_unrefined(w, W, n)
+    if place != INERTIA:
+        return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
+    return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)
