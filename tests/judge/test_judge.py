@@ -208,13 +208,13 @@ def test_anomalies_are_made_small():
 
 
 def test_rest_between_walls_without_room_begins_anew():
-    """A speed of rounding towards a wall, and no room: Newton's law has no answer, and the motion is rest."""
+    """A speed of rounding towards a wall, and no room: the law has no answer, and the motion is rest either way."""
     jammed = Description(
         M=((0.00313, 0.0), (0.0, 0.407)), q0=(-0.759, 1.32), v0=(0.0, 0.0), t_span=(0.0, 0.3), h=0.0164,
         G=((-1.0, 1.0), (1.0, 0.0), (-0.0, -1.0)), offset=(-2.079, 0.759, 1.32), restitution=(0.0, 0.015, 0.69),
         constant=(-0.0307, 0.0), function=True, family="beads",
     )  # fmt: skip
-    assert run(replace(jammed, v0=(0.0, 1.1e-15)), "located").status == "LCP_FAILED"
+    assert run(replace(jammed, v0=(0.0, 1.1e-15)), "located").done
     for speed, taken in ((1.1e-15, 0.0), (1.1e-3, 1.1e-3)):
         q, v = np.array(jammed.q0), np.array([0.0, speed])
         motion = SimpleNamespace(q=q[None], v=v[None], at=lambda t, q=q, v=v: (q, v))

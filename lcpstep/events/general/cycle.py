@@ -13,6 +13,9 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, left, proportion
     from lcpstep.kernels.tally import Tally
+    from lcpstep.pointers import abs, min
+
+FAINT = 2.0**13  # roundings of a speed: next to nothing beside the speeds of the instant
 
 
 def look_back(s: Mechanism) -> None:
@@ -57,3 +60,19 @@ def sum_up(s: Mechanism, record: Record, tally: Tally, ratio: float) -> None:
             s.contact.closed[c] = 1
             s.contact.since[c], s.contact.struck[c] = before - s.contact.struck[c], before
     stop(s)
+
+
+def fades(s: Mechanism) -> bool:
+    """Close the contacts that touch, if those that go on striking do so by next to nothing; whether it is so.
+
+    Rounding adds up from impact to impact, and what is held from all sides may return its own rounding for ever.
+    """
+    for c in range(s.n_c):
+        u = s.contact.speed[c] if s.contact.turn_impulse[c] > 0.0 else min(s.contact.speed[c], 0.0)
+        if s.contact.gap[c] == 0.0 and abs(u) > FAINT * s.contact.noise[c]:
+            return False
+    for c in range(s.n_c):
+        if s.contact.gap[c] == 0.0 and s.contact.speed[c] <= FAINT * s.contact.noise[c]:
+            s.contact.closed[c], s.contact.speed[c] = 1, 0.0
+    stop(s)
+    return True

@@ -1,8 +1,11 @@
 cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
-@cython.locals(solved=bint, touches=bint)
 cdef bint strike(Mechanism s) noexcept nogil
+@cython.locals(touches=bint)
+cdef void gather(Mechanism s) noexcept nogil
+@cython.locals(solved=bint)
+cdef bint solve_law(Mechanism s, bint rebounds) noexcept nogil
 cdef double impulses(Mechanism s) noexcept nogil
 cdef double missing_speeds(Mechanism s) noexcept nogil
 cdef void list_impulses(Mechanism s) noexcept nogil

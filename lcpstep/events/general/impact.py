@@ -24,8 +24,23 @@ if not cython.compiled:
 def strike(s: Mechanism) -> bool:
     """The impact of the contacts whose gap is zero and that do not separate; p into `z`, by member.
 
-    Velocities and contact speeds are those after it. False where none exists.
+    Velocities and contact speeds are those after it. False where none exists. What is held from all sides cannot
+    leave every obstacle as its restitution asks, and speeds carried along may not agree with the velocities: where no
+    impulses answer, they but end the approach, and at last that which the velocities have.
     """
+    gather(s)
+    if solve_law(s, True) or solve_law(s, False):
+        return True
+    for c in range(s.n_c):
+        s.contact.speed[c] = product(s.R, s.v, s.n_j + c, s.n_q) + s.contact.rate[c]
+        if s.contact.closed[c] == 1:
+            s.contact.closed[c], s.contact.gap[c] = 0, 0.0
+    gather(s)
+    return solve_law(s, False)
+
+
+def gather(s: Mechanism) -> None:
+    """The contacts that take part: those whose gap is zero and that do not separate."""
     s.n_members = 0
     for c in range(s.n_c):
         s.contact.loaded[c] = 0
@@ -33,9 +48,17 @@ def strike(s: Mechanism) -> bool:
         touches = s.contact.gap[c] == 0.0 and s.contact.parting[c] == 0
         if s.contact.closed[c] == 1 or (touches and u <= speed_noise(s, c)):
             s.contact.member[s.n_members] = c
-            s.contact.b[s.n_members] = (1.0 + s.model.restitution[c]) * min(u, 0.0)
             s.contact.noise[s.n_members] = speed_noise(s, c)
             s.n_members += 1
+
+
+def solve_law(s: Mechanism, rebounds: bool) -> bool:
+    """Impulses by the law, with restitution or without it, applied; False where there are none."""
+    for a in range(s.n_members):
+        c = s.contact.member[a]
+        u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
+        s.contact.loaded[c] = 0
+        s.contact.b[a] = (1.0 + s.model.restitution[c]) * min(u, 0.0) if rebounds else min(u, 0.0)
     hold_joints(s)
     solved = solve_contacts(s)
     most = impulses(s)

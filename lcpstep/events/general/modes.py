@@ -14,7 +14,7 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENT
 if not cython.compiled:
     from lcpstep.events.general.balance import balanced_forces
     from lcpstep.events.general.chatter import close_chatter, hand_on
-    from lcpstep.events.general.cycle import look_back, recurrence, sum_up
+    from lcpstep.events.general.cycle import fades, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
     from lcpstep.events.general.forces import contact_forces
     from lcpstep.events.general.held import constrain, hold_contacts, note
@@ -52,8 +52,9 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
             return TOO_MANY_EVENTS
         ratio = recurrence(s) if turn > 0 else 0.0
         if ratio >= FOR_EVER:
-            return TOO_MANY_EVENTS
-        if ratio > 0.0:
+            if not fades(s):
+                return TOO_MANY_EVENTS
+        elif ratio > 0.0:
             sum_up(s, record, tally, ratio)
         else:
             if looks_back(turn):

@@ -5,8 +5,12 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double SAME_SPEED, SMALL
 
-@cython.locals(collapsed=bint, together=Py_ssize_t)
 cdef Py_ssize_t strike(Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t) noexcept nogil
+cdef void touch(Work w, Py_ssize_t c) noexcept nogil
+@cython.locals(collapsed=bint, together=Py_ssize_t)
+cdef Py_ssize_t answer(
+    Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t, bint drifted
+) noexcept nogil
 @cython.locals(touched=bint, closing=bint, near=bint, pushed=bint, alike=bint)
 cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first, double t) noexcept nogil
 cdef double rounding_of_time(Work w, double t) noexcept nogil

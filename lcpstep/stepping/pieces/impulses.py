@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rounding, order_matters
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import clear
+    from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import Doubles, abs, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
@@ -55,8 +55,29 @@ SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) -> int:
     """The impact of contact `first`, and of those that fire with it, or (CORNER) of those whose velocity jumps.
 
-    Returns how many took part, -1 where the impact was not solved.
+    Returns how many took part, -1 where the impact was not solved. What is held from all sides cannot leave every
+    obstacle as its restitution asks, and speeds carried along beside the velocities may not agree with these: where
+    no impulses answer, they but end the approach that the velocities have.
     """
+    n_s = answer(m, plan, w, record, first, t, first == CORNER)
+    if n_s >= 0 or first == CORNER:
+        return n_s
+    for c in range(w.n_c):
+        w.rate[c], w.fall[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c], 0.0
+    if w.rate[first] < 0.0:
+        return answer(m, plan, w, record, first, t, True)
+    touch(w, first)
+    return 0
+
+
+def touch(w: Work, c: int) -> None:
+    """Contact c is at rest on its obstacle, and the forces decide what becomes of it."""
+    w.gap[c] = w.rate[c] = 0.0
+    w.grounded[c], w.touching = GROUND, True
+
+
+def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, drifted: bool) -> int:
+    """`strike` once. Drifted: closed contacts may have speeds too, and none rebounds but at a corner."""
     if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
         measure_rates(w)
     n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first, t)
@@ -72,11 +93,13 @@ def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) 
         if w.status[c] == OPEN:
             if first != CORNER:
                 note_hit(plan, w, c)
-                w.plastic[c] = 1 if closes(m, plan, w, c, n_s == 1, t) else 0
+                if drifted:
+                    w.close_hits[c] = IN_A_ROW
+                w.plastic[c] = 1 if drifted or closes(m, plan, w, c, n_s == 1, t) else 0
                 collapsed = collapsed or (w.plastic[c] == 1 and w.close_hits[c] >= IN_A_ROW)
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
-        elif first == CORNER:
+        elif drifted:
             w.b[k] = w.rate[c]
     together = choose_collapsing(plan, w, first, n_s) if collapsed else n_s
     if together > n_s and solve_chosen(m, plan, w, w.W, INERTIA, together, NONE):
@@ -198,8 +221,7 @@ def push(plan: Plan, w: Work, d: int, p: float) -> None:
             u = abs(w.rate[c])
             touches = u <= SMALL * abs(change) and w.gap[c] <= plan.slack
             if touches and u <= ROUNDING * speed_terms(plan, w, c):
-                w.gap[c] = w.rate[c] = 0.0
-                w.grounded[c], w.touching = GROUND, True
+                touch(w, c)
             elif w.grounded[c] == LEFT:
                 w.grounded[c], w.touching = GROUND, True
 
@@ -219,6 +241,8 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
             w.rate[c] = 0.0
         return
     if p == 0.0:
+        if w.rate[c] < 0.0:  # by rounding, which no impulse ends
+            touch(w, c)
         return
     turn(m, plan, w, c, before, True)
     if w.plastic[c] == 1:
