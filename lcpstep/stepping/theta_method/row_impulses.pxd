@@ -10,6 +10,8 @@ cdef double CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
 cdef Py_ssize_t impulses(
     Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
 ) noexcept nogil
+@cython.locals(impact=bint)
+cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint rebounds) noexcept nogil
 @cython.locals(found=bint)
 cdef bint solve(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
 cdef void note_sticking(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil

@@ -43,17 +43,7 @@ def impulses(
         gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
     if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
         respond(m.linear, plan, s, c, n_k)
-    for k in range(n_k):
-        rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
-    impact = False
-    if n_f > 0 or c.in_turn:
-        round_off(c, s.v_free, n_a + n_f, s.n_q)
-        impact = strikes(s, c, n_a)
-    for k in range(0 if c.in_turn else n_a):
-        rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
-    for f in range(n_f if impact and not c.in_turn else 0):
-        i = ids[c.problem.carrier[f]]
-        rate[n_a + f] += c.tangent_restitution[i] * c.sliding[i]
+    impact = rates(m, s, c, n_a, n_f, True)
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
     eliminate(c.elimination, plan.W, c.n, ids, n_a + n_f, n_k, c.problem.mobility, rate)
@@ -62,9 +52,33 @@ def impulses(
             return NEED_LCP
         s.problems += 1
         if not solved and not solve(m, s, c, n_a, n_f, impact):
-            return LCP_FAILED
+            impact = rates(m, s, c, n_a, n_f, False)
+            eliminate(c.elimination, plan.W, c.n, ids, n_a + n_f, n_k, c.problem.mobility, rate)
+            if not solve(m, s, c, n_a, n_f, impact):
+                return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
     return FINISHED
+
+
+def rates(m: Model, s: State, c: Rows, n_a: int, n_f: int, rebounds: bool) -> bool:
+    """What the impulses are asked for, of every row that takes part; whether it is an impact.
+
+    What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they
+    are asked for an end of the approach alone.
+    """
+    ids, rate, impact = c.problem.ids, c.problem.rate, False
+    for k in range(n_a + n_f + c.n_j):
+        rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
+    if n_f > 0 or c.in_turn:
+        round_off(c, s.v_free, n_a + n_f, s.n_q)
+        impact = strikes(s, c, n_a)
+    if rebounds and not c.in_turn:
+        for k in range(n_a):
+            rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
+        for f in range(n_f if impact else 0):
+            i = ids[c.problem.carrier[f]]
+            rate[n_a + f] += c.tangent_restitution[i] * c.sliding[i]
+    return impact
 
 
 def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool:
