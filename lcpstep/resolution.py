@@ -4,8 +4,9 @@
 
 The quotient of Rayleigh along the motion is never above the highest frequency there, so what exceeds the bound of
 velocity Verlet (of Runge-Kutta's steps 2.8^2) exceeds it for certain: explicit steps gain energy then, and implicit
-ones skip what the motion does. Steps by a tolerance are not asked, nor those that take linear forces implicitly.
-What passes is asked for the balance of its energy too (`balance.py`).
+ones skip what the motion does. Steps by a tolerance are not asked; those that take linear forces implicitly are
+asked for the oscillations that these carry (`periods.py`). What passes is asked for the balance of its energy too
+(`balance.py`).
 Source: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section I.5.
 """
 
@@ -16,9 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lagrangian import LinearSystem
 from lcpstep.balance import unbalanced
 from lcpstep.faults import cause, forget
+from lcpstep.periods import overleapt
 from lcpstep.trajectory import Status, Trajectory
 
 if TYPE_CHECKING:
@@ -31,6 +32,9 @@ VERLET, RUNGE_KUTTA = 2.0, 2.8  # highest frequency times h
 
 def unresolved(run: Trajectory) -> str:
     """Where a step is too long for the forces, in words; "" where none is that was looked at."""
+    implicit = overleapt(run)
+    if implicit is not None:
+        return implicit
     h, bound = _explicit(run)
     if h == 0.0 or run.status != Status.DONE or len(run.t) == 0:
         return ""
@@ -72,12 +76,8 @@ def _too_fast(run: Trajectory, m: Model, h: float, bound: float) -> str:
 
 def _explicit(run: Trajectory) -> tuple[float, float]:
     """The step h, or 0 where forces cannot change too fast for the method, and the bound of h omega."""
-    method, scene = run.method, run.scene
+    method = run.method
     order = getattr(method, "order", None)
     if getattr(method, "tolerance", None) is not None or order == "exact":
         return 0.0, VERLET
-    if isinstance(scene.system, LinearSystem):
-        rubs = scene.contacts is not None and scene.contacts.friction is not None
-        if order is None or (order == 2 and not rubs and scene.n_j == 0):
-            return 0.0, VERLET
     return getattr(method, "h", 0.0), RUNGE_KUTTA if order == 4 else VERLET

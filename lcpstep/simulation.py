@@ -13,6 +13,7 @@ from lagrangian.relations import check_derivatives
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
+from lcpstep.hops import too_short
 from lcpstep.outrun import outrun
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
@@ -83,7 +84,8 @@ def simulate(
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
         obstacle leaves no room to it, where steps are too long for the forces that it meets, lose energy, turn by
-        more than a radian what holds the motion, or make it faster than forces and obstacles could
+        more than a radian what holds the motion, see no period of its oscillations or of its hops, or make it faster
+        than forces and obstacles could
 
     Raises
     ------
@@ -151,7 +153,9 @@ def _looked_over(run: Trajectory) -> Trajectory:
     try:
         _compare_derivatives(run)
         _warn_of_fast_gaps(run)
-        doubt = _no_room(run) or too_deep(run) or unresolved(run) or turned(run) or outrun(run)
+        doubt = (
+            _no_room(run) or too_deep(run) or unresolved(run) or turned(run) or outrun(run) or too_short(run)
+        )
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
         raise SimulationInterrupted(lambda: unseen) from None

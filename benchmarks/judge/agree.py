@@ -18,11 +18,11 @@ import numpy as np
 from benchmarks.judge import physics
 from benchmarks.judge.describe import Description, numbers
 from benchmarks.judge.graze import grazes
+from benchmarks.judge.hops import highest_hop, left_within
 from benchmarks.judge.runs import WAYS, Finding, Run, run
 from benchmarks.judge.scales import EPS
 from benchmarks.judge.start import along, joined
 from benchmarks.judge.told import look_up, looks, told_until
-from lcpstep.trajectory import Kind
 
 SMALL = 1e-9  # disturbance that tells how far the motion can be foretold
 FACTOR, NOISE = 30.0, 100.0
@@ -194,26 +194,12 @@ def _scatter(ref: Reference, r: Run) -> float:
     return highest_hop(ref.d, r.motion) if r.method == "located" else 0.0
 
 
-def highest_hop(d: Description, m: Any) -> float:
-    """How far a body gets from where it hops, in hops that are shorter than a step [units of q]."""
-    if not d.contacts:
-        return 0.0
-    log = m.impacts[m.impacts.kind == Kind.IMPACT]
-    rows = np.maximum(np.linalg.norm(physics.jacobians(d, m.q[0]), axis=-1), 1e-300)
-    highest = 0.0
-    for c in range(d.contacts):
-        own = log[log.contact == c]
-        length = np.diff(own.time)
-        hops = (length < d.h) & (own.after[:-1] > 0.0)
-        highest = max(highest, float(np.max(0.25 * (own.after[:-1] * length)[hops], initial=0.0)) / rows[c])
-    return highest
-
-
 def nearer(ref: Reference, r: Run, k: int, distance: float) -> bool:
     """Whether finer steps come nearer to the reference, or cannot be taken: a 16th, and less where the order says so.
 
     A contact that lets go within a step may do so at its beginning; where that is so of all these steps, they differ
-    by nothing, and lie within (h / time)^order of the motion's size.
+    by nothing, and lie within (h / time)^order of the motion's size. So do those of `Moreau` that leave a contact
+    deeper than it hops (`left_within`).
     """
     d, sizes, order = ref.d, r.scales(ref.d), WAYS[r.method].order
     for power in count(2):
@@ -222,6 +208,8 @@ def nearer(ref: Reference, r: Run, k: int, distance: float) -> bool:
         if not finest.usable or ref.apart(finest)[k] < 0.3 * distance:
             return True
         explained = sizes.length * (factor * d.h / sizes.time) ** order
+        if r.method == "moreau":
+            explained += left_within(d, ref.run.motion, factor * d.h, float(ref.looks[k]))
         if r.tolerance > 0.0 or distance > explained or d.length * finer_by(r) > MANY * factor * d.h:
             break
     return False

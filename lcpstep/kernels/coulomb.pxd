@@ -8,7 +8,7 @@ cdef Py_ssize_t SOLVED
 
 cdef class ContactProblem:
     cdef readonly object arrays
-    cdef object lists
+    cdef readonly object lists
     cdef Doubles mobility, rate, impulse, mu, W, b, z, slow, sum
     cdef Indices ids, carrier
     cdef bint warm

@@ -11,6 +11,8 @@ cdef Py_ssize_t place(Py_ssize_t i, Py_ssize_t looks, Py_ssize_t count) noexcept
 cdef double find_highest(
     Model m, Py_ssize_t count, double* t, double* q, double* v, Py_ssize_t looks, double near, double* work
 ) noexcept
+cpdef (double, double) at_most(Model m) noexcept
+cdef double largest_row(double* A, Py_ssize_t n) noexcept nogil
 cdef bint four_at_once(double* x, Py_ssize_t n) noexcept
 @cython.locals(
     found=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, c=Py_ssize_t, i_q=Py_ssize_t, i_p=Py_ssize_t,

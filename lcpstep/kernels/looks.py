@@ -121,6 +121,23 @@ def find_highest(
     return most
 
 
+def at_most(m: Model) -> tuple[float, float]:
+    """Bounds of the largest eigenvalues of M^-1 K and M^-1 C of a linear system [1/s^2, 1/s]."""
+    inverse = largest_row(m.M_inverse, m.n_q)
+    return inverse * largest_row(m.K, m.n_q), inverse * largest_row(m.C, m.n_q)
+
+
+def largest_row(A: Doubles, n: int) -> float:
+    """The largest sum of magnitudes of a row of a matrix (n, n)."""
+    most = 0.0
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            total += abs(A[i * n + j])
+        most = max(most, total)
+    return most
+
+
 def all_finite(x: Any) -> bool:
     """Whether no number of a contiguous array is infinite or not-a-number."""
     return bool(four_at_once(doubles(x), x.size))

@@ -108,8 +108,7 @@ class MoreauRun(StepRun):
     @property
     def active(self) -> list[int]:
         """Contacts that are active in the step at hand."""
-        x = self.place.arrays
-        return np.flatnonzero(x["g"] + 0.5 * self.plan.h * x["u"] <= self.plan.slack).tolist()
+        return [int(c) for c in self.rows.problem.lists[0][: self.place.active]]
 
     @property
     def now(self) -> float:

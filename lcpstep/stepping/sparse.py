@@ -28,7 +28,7 @@ from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESTING, largest
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, largest
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class SparseRun(StepRun):
         F_next = e.force(t_next, self.q, self.v)
         self.forces += 1
         r = step.free(e, self.q, self.v, self.F, F_next)
-        active = self.g + 0.5 * step.h * self.u <= self.slack
+        active = self.predict_active(step)
         _, s_t = e.obstacle(t_next, self.q, self.v)
         if not (np.all(np.isfinite(r)) and np.all(np.isfinite(s_t))):
             return Status.NOT_FINITE
@@ -137,6 +137,16 @@ class SparseRun(StepRun):
         if (self.kept.every and self.taken % self.kept.every == 0) or (self.kept.on_events and happened):
             self.keep(t_next, q, v)
         return Status.DONE
+
+    def predict_active(self, step: Any) -> Any:
+        """Contacts with g + (h/2) u <= 0, up to rounding; of closed ones up to what it may have opened them by."""
+        gap = self.g + 0.5 * step.h * self.u
+        active = gap <= self.slack
+        in_doubt = np.flatnonzero((self.closed > 0) & ~active)
+        if len(in_doubt):
+            size = step.saddle.abs_G[in_doubt] @ np.abs(self.q)
+            active[in_doubt] = gap[in_doubt] <= (RESTING + RESOLUTION * self.taken) * size
+        return active
 
     def velocity(
         self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float

@@ -23,7 +23,7 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
         monkeypatch.setattr(room, "gaps_at", plain.states.gaps_at)
         monkeypatch.setattr(states, "power", plain.states.power)
-        for name in ("highest", "lies_inside", "turning"):
+        for name in ("at_most", "highest", "lies_inside", "turning"):
             monkeypatch.setattr(looks, name, getattr(plain.looks, name))
         monkeypatch.setattr(room, "lies_inside", plain.looks.lies_inside)
         monkeypatch.setattr(surplus, "surplus", plain.surplus.surplus)

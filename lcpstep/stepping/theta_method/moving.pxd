@@ -11,7 +11,7 @@ cdef class State:
     cdef readonly object arrays
     cdef object numbers, marks, work
     cdef readonly Py_ssize_t n_q, n_c, n_moving
-    cdef public Py_ssize_t steps, problems, forces, iteration
+    cdef public Py_ssize_t active, steps, problems, forces, iteration
     cdef double moved
     cdef Doubles q, v, force, g, u, impulse
     cdef Indices closed, sticks

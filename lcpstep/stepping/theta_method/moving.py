@@ -30,6 +30,7 @@ class State:
     next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
     q_between, v_between                  a state within it
     R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
+    active           contacts that take part in the step at hand
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
     moved    by how much more than rounding of q the last iteration has moved it
 
@@ -50,7 +51,7 @@ class State:
         self.g, self.u, self.impulse = doubles(x["g"]), doubles(x["u"]), doubles(x["impulse"])
         self.closed = indices(self.marks)
         self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
-        self.steps = self.problems = self.forces = self.iteration = 0
+        self.active = self.steps = self.problems = self.forces = self.iteration = 0
         self.moved = 0.0
         self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q)
         self.next_force = doubles(self.work)

@@ -6,11 +6,13 @@ from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t FINISHED, IMPACT, JOINTS_FAILED, NEWTON_FAILED, NOT_FINITE, RELEASE, STICK
 cdef Py_ssize_t MAX_ITERATIONS
+cdef double RESOLUTION, RESTING
 
 cdef Py_ssize_t take_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, bint external, bint solved
 ) noexcept nogil
-cdef Py_ssize_t predict_active(Plan plan, State s, Rows c) noexcept nogil
+cdef Py_ssize_t predict_active(Model m, Plan plan, State s, Rows c) noexcept nogil
+cdef double drifted(Model m, State s, Rows c, Py_ssize_t i) noexcept nogil
 @cython.locals(entered=bint)
 cdef Py_ssize_t closes_again(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next) noexcept nogil
 @cython.locals(hold=bint)

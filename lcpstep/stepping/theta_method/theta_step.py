@@ -1,7 +1,8 @@
 """One step of the Moreau theta-method, from t to t + h, with contacts, tangents and joints as rows of one problem.
 
     v_free  velocity without contact (a theta-method: linear systems by constant matrices, others by Newton)
-    active  contacts whose predicted gap g + (h/2) u is not positive
+    active  contacts whose predicted gap g + (h/2) u is not positive, but for what rounding may have opened
+            closed ones by
     p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t
             law of friction and impact on their tangents, see `kernels.coulomb`
             G_J v+ + g_t = 0  on joints, see `constraints.joint_rows`
@@ -22,6 +23,7 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.stepping.steps import RESOLUTION, RESTING
 from lcpstep.stepping.theta_method.codes import (
     FINISHED,
     IMPACT,
@@ -38,7 +40,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import COLUMNS, Record
     from lcpstep.kernels.vectors import clear, copy, finite, product
-    from lcpstep.pointers import after, whole
+    from lcpstep.pointers import abs, after, whole
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -68,7 +70,7 @@ def take_step(
 
     `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
     """
-    n_a = predict_active(plan, s, c)
+    n_a = predict_active(m, plan, s, c)
     code = step(m, plan, s, c, n_a, t, t_next, external, solved)
     while c.projected and code == FINISHED:
         more = closes_again(m, plan, s, c, n_a, t_next)
@@ -84,14 +86,24 @@ def take_step(
     return project(m, plan, s, c, t_next) if c.projected else FINISHED
 
 
-def predict_active(plan: Plan, s: State, c: Rows) -> int:
+def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> int:
     """Contacts with g + (h/2) u <= 0, up to rounding, first of the rows that take part; their number."""
     n_a = 0
     for i in range(c.n_c):
-        if s.g[i] + 0.5 * plan.h * s.u[i] <= plan.slack:
+        gap = s.g[i] + 0.5 * plan.h * s.u[i]
+        if gap <= plan.slack or (s.closed[i] > 0 and gap <= drifted(m, s, c, i)):
             c.problem.ids[n_a] = i
             n_a += 1
+    s.active = n_a
     return n_a
+
+
+def drifted(m: Model, s: State, c: Rows, i: int) -> float:
+    """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have gone far."""
+    size, G = 0.0, m.G if m.flat else c.H
+    for j in range(s.n_q):
+        size += abs(G[i * s.n_q + j] * s.q[j])
+    return (RESTING + RESOLUTION * s.steps) * size
 
 
 def closes_again(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float) -> int:
@@ -109,6 +121,7 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: floa
         if entered:
             c.problem.ids[more] = i
             more += 1
+    s.active = more
     return more
 
 
