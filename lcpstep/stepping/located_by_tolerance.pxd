@@ -8,6 +8,7 @@ cdef double EARLY, NEAR
 cdef class Attempts(Parts):
     @cython.locals(entire=bint, early=bint, agreed=bint)
     cdef Py_ssize_t attempt(self) noexcept nogil
+    cdef bint is_stuck(self) noexcept nogil
     @cython.locals(event_first=bint)
     cdef void weigh(self, double length) noexcept nogil
     @cython.locals(asked=bint)

@@ -19,7 +19,15 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import distance, largest
     from lcpstep.pointers import abs, after, inf, max, min, whole
     from lcpstep.stepping.hidden_forces import hidden, late
-    from lcpstep.stepping.pieces.codes import BUFFER_FULL, CLOSED, FINISHED, IMPACT, STOPPED
+    from lcpstep.stepping.pieces.codes import (
+        BUFFER_FULL,
+        CLOSED,
+        FINISHED,
+        IMPACT,
+        SAME_TIME,
+        STOPPED,
+        TOO_MANY_EVENTS,
+    )
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -59,6 +67,7 @@ class Attempts(Parts):
         event_first = self.two.time == 0.0  # before anything moved
         wrong_q, wrong_v = 0.0, 0.0
         self.failed = not self.two.good()
+        self.hopeless = self.two.code == TOO_MANY_EVENTS and self.is_stuck()
         if not event_first:
             self.failed = self.failed or not self.one.good()
             if not self.failed:
@@ -70,6 +79,11 @@ class Attempts(Parts):
         if self.two.time > 0.0:
             self.rate = distance(self.two.v, self.saved.v, self.w.n_q) / self.two.time
         self.happened = self.two.code == STOPPED or self.record.event > self.event
+
+    def is_stuck(self) -> bool:
+        """Whether events without end come at the instant at which they did before, whatever the step."""
+        before, self.stuck = self.stuck, self.base() + self.w.sigma
+        return abs(self.stuck - before) <= SAME_TIME * abs(self.stuck)
 
     def depth(self) -> float:
         """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""

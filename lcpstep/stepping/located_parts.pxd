@@ -19,7 +19,7 @@ cdef class Parts(Control):
     cdef Doubles last_row, A_inverse, AG, WA
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
-    cdef double from_time, to_time, h, elapsed
+    cdef double from_time, to_time, h, elapsed, stuck
     @cython.locals(even=bint)
     cdef void compare(self, double start, double end, bint entire, double until) noexcept nogil
     cdef double ends(self) noexcept nogil

@@ -45,6 +45,7 @@ class Parts(Control):
     sized                   matrices are those of whole steps
     from_time, to_time, h   base of the step at hand, the multiple that it ends at, and its length
     elapsed                 time that the last part has taken
+    stuck                   instant of events without end in the last attempt that had them
     one, half, two          a single piece; the first of two halves; both
 
     Parameters
@@ -75,6 +76,7 @@ class Parts(Control):
         self.sized = self.means and plan.stiff and not plan.small
         self.one, self.half, self.two = Led(w.n_q, w.n_c), Led(w.n_q, w.n_c), Led(w.n_q, w.n_c)
         self.from_time = self.to_time = self.h = self.elapsed = 0.0
+        self.stuck = -inf
         self.size_q, self.size_v = largest(self.w.q, 0.0, w.n_q), largest(self.w.v, 0.0, w.n_q)
         w.pausing = True
         for c in range(w.n_c):

@@ -31,7 +31,7 @@ cdef class Attempts(Control):
     cdef Py_ssize_t part(self, int part, double start, double h, double slow) noexcept nogil
     cdef void place(self, int level, double h) noexcept nogil
     cdef void before(self, double slow) noexcept nogil
-    @cython.locals(struck=bint)
+    @cython.locals(struck=bint, thrown=bint, closes=bint)
     cdef void after_part(self, double h, double slow) noexcept nogil
     cdef void keep_times(self, double t, double t_next) noexcept nogil
 

@@ -162,10 +162,15 @@ class Attempts(Control):
     def after_part(self, h: float, slow: float) -> None:
         """Errors of a part at its contacts."""
         deeper, struck = 0.0, False
+        v, v_before = self.s.v, self.part_v
+        forced = distance(self.s.v_free, v_before, self.s.n_q)
+        thrown = distance(v, v_before, self.s.n_q) > slow + forced
         for i in range(self.s.n_c):
             gained = max(0.0, -self.s.g[i]) - max(0.0, -self.part_g[i])
             if self.rows.p[i] > 0.0:
-                struck = struck or abs(self.s.u[i] - self.part_u[i]) > slow
+                # normals that are nearly parallel, or other units, make of a slow approach a jump of velocities
+                closes = abs(self.s.u[i] - self.part_u[i]) > slow or (thrown and self.s.closed[i] == 1)
+                struck = struck or closes
             else:
                 gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
                 if gained > 0.0:
@@ -175,8 +180,8 @@ class Attempts(Control):
         self.apart_q = max(self.apart_q, deeper)
         if struck:
             self.happened = self.struck = True
-            self.apart_q = max(self.apart_q, h * distance(self.s.v, self.part_v, self.s.n_q))
-            self.apart_v = max(self.apart_v, distance(self.s.v_free, self.part_v, self.s.n_q))
+            self.apart_q = max(self.apart_q, h * distance(v, v_before, self.s.n_q))
+            self.apart_v = max(self.apart_v, forced)
 
     def keep_times(self, t: float, t_next: float) -> None:
         """Keep the states asked for within a part: velocities linear, positions as `between` would have them."""

@@ -15,7 +15,7 @@ cdef class Control(Course):
     cdef public int level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into
     cdef public double apart_q, apart_v, far_q, far_v, rate, cut
-    cdef public bint happened, failed, full
+    cdef public bint happened, failed, hopeless, full
     cdef void store(self) noexcept nogil
     cdef void restore(self) noexcept nogil
     cdef void mark(self) noexcept nogil

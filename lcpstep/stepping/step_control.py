@@ -63,6 +63,7 @@ class Control(Course):
     rate                 by which velocities have changed over it [m/s^2], where that is known
     happened             whether there was an event, or what counts as one
     failed               whether a run could not be taken
+    hopeless             nor could a shorter one go further
     full                 there was no room for its events, though there may be when the buffers are empty
     cut                  the time since its base at which it stopped, infinite where it went to the next multiple
 
@@ -145,7 +146,7 @@ class Control(Course):
     def begin_attempt(self) -> None:
         """Nothing is known of it yet."""
         self.apart_q = self.apart_v = self.far_q = self.far_v = self.rate = 0.0
-        self.happened = self.failed = self.full = False
+        self.happened = self.failed = self.hopeless = self.full = False
         self.cut = inf
 
     def step_size(self, level: int) -> float:
@@ -195,7 +196,7 @@ class Control(Course):
         if self.happened or FLAT * error > self.last:
             allowed = max(allowed, LEAST_SHARE)
         allowed *= self.tolerance
-        if self.tolerance < NOISE:  # no step is that good
+        if self.tolerance < NOISE or self.hopeless:  # no step is that good
             return GIVEN_UP
         if self.failed or not error <= allowed:
             self.last = inf if self.failed else error

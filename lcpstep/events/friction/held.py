@@ -21,6 +21,7 @@ if not cython.compiled:
         measure_rates,
         measure_rows,
     )
+    from lcpstep.events.friction.on_joints import leave_joints
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.dynamics import total_force
@@ -50,10 +51,15 @@ def other(s: Rubbing, i: int) -> int:
 
 
 def entry(s: Rubbing, i: int, k: int) -> float:
-    """Row i of R M^-1 times column k of C^T."""
-    share = pull(s, k)
-    d = s.W[i * s.n_r + k]
-    return d + share * s.W[i * s.n_r + other(s, k)] if share != 0.0 else d
+    """Row i of R M^-1 times column k of C^T; of contacts on the joints held."""
+    share, W = pull(s, k), s.S if i >= s.n_j and k >= s.n_j else s.W
+    d = W[i * s.n_r + k]
+    return d + share * W[i * s.n_r + other(s, k)] if share != 0.0 else d
+
+
+def first_between(s: Rubbing, i: int, k: int) -> int:
+    """The first of the rows held that is still between rows i and k: `S` knows what joints are between contacts."""
+    return s.n_kept if i >= s.n_j and k >= s.n_j else 0
 
 
 def hold(s: Rubbing, i: int) -> bool:
@@ -62,14 +68,14 @@ def hold(s: Rubbing, i: int) -> bool:
     s.held[k] = i
     for m in range(k):
         up, low = entry(s, s.held[m], i), entry(s, i, s.held[m])
-        for j in range(m):
+        for j in range(first_between(s, i, s.held[m]), m):
             up -= s.L[m * r + j] * s.L[j * r + k]
             low -= s.L[k * r + j] * s.L[j * r + m]
         s.L[m * r + k] = up
         s.L[k * r + m] = low / s.L[m * r + m]
     pivot = entry(s, i, i)
-    size = s.W[i * r + i] + abs(pivot)
-    for j in range(k):
+    size = (s.W[i * r + i] if i < s.n_j else s.S[i * r + i]) + abs(pivot)
+    for j in range(first_between(s, i, i), k):
         pivot -= s.L[k * r + j] * s.L[j * r + k]
         size += abs(s.L[k * r + j] * s.L[j * r + k])
     s.L[k * r + k] = pivot
@@ -77,7 +83,7 @@ def hold(s: Rubbing, i: int) -> bool:
     if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and i >= s.n_j + s.n_c and pull(s, i) != 0.0):
         s.n_held = k + 1
         return True
-    return pivot > -DEPENDENT * size
+    return pivot >= -DEPENDENT * size
 
 
 def hold_joints(s: Rubbing) -> None:
@@ -85,6 +91,7 @@ def hold_joints(s: Rubbing) -> None:
     s.n_held, s.mapped = 0, False
     for i in range(s.n_j):
         hold(s, i)
+    leave_joints(s)
 
 
 def accelerate_on_joints(s: Rubbing) -> None:
@@ -141,6 +148,8 @@ def hold_again(s: Rubbing) -> bool:
     s.n_held = 0
     for m in range(count):
         i = s.held[m]
+        if m == s.n_kept:
+            leave_joints(s)
         hold(s, i)
         if s.n_held != m + 1:
             s.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c else -1

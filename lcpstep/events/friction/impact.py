@@ -32,7 +32,7 @@ if not cython.compiled:
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import put_on_account
     from lcpstep.events.friction.parting import let_go, rejoin
-    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
+    from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coulomb import solve_contacts
@@ -100,7 +100,7 @@ def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) ->
         s.free[c] = 1
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
-    eliminate_joints(s)
+    hold_joints(s)
     fill(s, n_a, n_f)
     if not find_impulses(s, n_a, n_f, plastic):
         return False
@@ -165,7 +165,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
-    eliminate_joints(s)
+    hold_joints(s)
     fill(s, n_a, n_f)
     for a in range(n_a):
         s.problem.rate[a] = 0.0

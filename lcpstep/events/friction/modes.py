@@ -30,7 +30,8 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
-    from lcpstep.events.friction.problem import eliminate_joints, fill, list_unknowns, row_of
+    from lcpstep.events.friction.on_joints import acceleration_on_joints
+    from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.coulomb import motion_of, solve_contacts
@@ -51,7 +52,6 @@ def decide(s: Rubbing) -> int:
     for c in range(s.n_c):
         s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
     accelerate_on_joints(s)
-    eliminate_joints(s)
     for c in range(s.n_c):
         s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
     begins = True
@@ -61,8 +61,7 @@ def decide(s: Rubbing) -> int:
             return DONE
         fill(s, n_a, n_f)
         for a in range(n_a + n_f):
-            i = row_of(s, a, n_a)
-            s.problem.rate[a] = product(s.R, s.a, i, s.n_q) + s.bias[i]
+            s.problem.rate[a] = acceleration_on_joints(s, row_of(s, a, n_a))
         code = find_forces(s, n_a, n_f)
         if code != DONE:
             return code
@@ -104,7 +103,9 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
-        if s.free[c] == 0 and s.problem.mobility[a * m + a] <= 0.0:
+        i = s.n_j + c
+        moves_alone = s.S[i * s.n_r + i] > 0.0
+        if s.free[c] == 0 and moves_alone and s.problem.mobility[a * m + a] <= 0.0:
             jams = a
     if jams >= 0:
         s.culprit = s.problem.ids[jams]

@@ -1,9 +1,7 @@
 from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t OPEN
-cdef double DEPENDENT
 
-cdef void eliminate_joints(Rubbing s) noexcept nogil
 cdef Py_ssize_t row_of(Rubbing s, Py_ssize_t a, Py_ssize_t n_a) noexcept nogil
 cdef (Py_ssize_t, Py_ssize_t) list_unknowns(Rubbing s) noexcept nogil
 cdef void fill(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil

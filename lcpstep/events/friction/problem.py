@@ -1,4 +1,4 @@
-"""The complementarity problem of closed contacts with friction, as kernels; joints are eliminated from it.
+"""The complementarity problem of closed contacts with friction, on the joints (`on_joints`), as kernels.
 
 The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
 contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.
@@ -12,23 +12,6 @@ from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.kernels.vectors import copy
-
-DEPENDENT = 1e-12  # relative: joints whose pivot is smaller say what others have said
-
-
-def eliminate_joints(s: Rubbing) -> None:
-    """S: the Delassus matrix of contacts and tangents on the joints, by Gauss' elimination."""
-    r = s.n_r
-    copy(s.S, s.W, r * r)
-    for j in range(s.n_j):
-        pivot = s.S[j * r + j]
-        if pivot > DEPENDENT * s.W[j * r + j]:
-            for i in range(j + 1, r):
-                share = s.S[i * r + j] / pivot
-                if share != 0.0:
-                    for k in range(j, r):
-                        s.S[i * r + k] -= share * s.S[j * r + k]
 
 
 def row_of(s: Rubbing, a: int, n_a: int) -> int:

@@ -43,7 +43,8 @@ class Rubbing(RungeKutta):
     next                         what comes next: BEGIN, MOVE, JUMP, SETTLE or OBEY
     q, v : (n_q,)                state at the base time
     a_free, a, force : (n_q,)    acceleration without constraints, with them; force
-    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  W, S : (n_r, n_r)  Delassus matrix, the same on the joints
+    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  W : (n_r, n_r)  Delassus matrix
+    P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   the same, and `bias`, on the joints held, see `on_joints`
     rate, bias, gap, velocity : (n_r,)   of rows at the state last measured
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
@@ -57,7 +58,8 @@ class Rubbing(RungeKutta):
     terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
-    held : (n_held,)             rows held;  L : (n_r, n_r)  factors of their matrix;  x : (n_r,)  their multipliers
+    held : (n_held,)             rows held, the first n_kept of them joints;  x : (n_r,)  their multipliers
+    L : (n_r, n_r)               factors of their matrix
     effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
         never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
     impulse : (n_r,)             contacts, tangents, joints, since the last kept state
@@ -116,12 +118,13 @@ class Rubbing(RungeKutta):
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
         self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
+        self.n_kept = 0
         self.risen = False
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
         self.table = np.zeros(
-            11 * n + n * n + 3 * r * n + 3 * r * r + (15 + ALL) * r + 1 + (n + r + 1) * (n + r)
+            11 * n + n * n + 5 * r * n + 3 * r * r + (16 + ALL) * r + 1 + (n + r + 1) * (n + r)
         )
         self.q, self.v = self.y, after(self.y, n)
         self.a_free = doubles(self.table)
@@ -137,8 +140,8 @@ class Rubbing(RungeKutta):
         self.MR = after(self.R, r * n)
         self.G = after(self.MR, r * n)
         self.W = after(self.G, r * n)
-        self.S = after(self.W, r * r)
-        self.L = after(self.S, r * r)
+        self.S = after(self.W, r * r) if n_j > 0 else self.W
+        self.L = after(self.W, 2 * r * r)
         self.rate = after(self.L, r * r)
         self.bias = after(self.rate, r)
         self.gap = after(self.bias, r)
@@ -156,7 +159,10 @@ class Rubbing(RungeKutta):
         self.doubt = after(self.loads, ALL * r)
         self.effect = after(self.doubt, r)
         self.multiplier = after(self.effect, n)
-        self.effects = after(self.multiplier, r)
+        self.bent = after(self.multiplier, r)
+        self.P = after(self.bent, r) if n_j > 0 else self.R
+        self.MP = after(self.bent, r + r * n) if n_j > 0 else self.MR
+        self.effects = after(self.bent, r + 2 * r * n)
         self.per_contact = np.zeros(9 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking

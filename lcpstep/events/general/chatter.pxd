@@ -4,7 +4,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION
-cdef double CHECKED
+cdef double CHECKED, UNTOLD
 
 @cython.locals(moved=bint, some=bint, touches=bint)
 cdef bint close_chatter(Mechanism s, Record record, Tally tally) noexcept nogil
@@ -19,6 +19,14 @@ cdef void owe(Mechanism s) noexcept nogil
 cdef void hand_on(Mechanism s) noexcept nogil
 @cython.locals(low=bint, slow=bint)
 cdef double chatter_left(Mechanism s, Py_ssize_t c) noexcept nogil
-@cython.locals(held=bint, passed_on=bint)
+cdef void take_along(Mechanism s) noexcept nogil
+@cython.locals(fast=bint)
+cdef bint awaits(Mechanism s, Py_ssize_t c) noexcept nogil
+cdef bint is_told(Mechanism s, Py_ssize_t d) noexcept nogil
+@cython.locals(free=bint)
+cdef bint alternates(Mechanism s, Py_ssize_t c, Py_ssize_t d) noexcept nogil
+@cython.locals(held=bint)
+cdef bint passes_on(Mechanism s, Py_ssize_t c) noexcept nogil
+@cython.locals(passed_on=bint)
 cdef bint interrupted(Mechanism s, Py_ssize_t c, double T) noexcept nogil
 cdef double later(Mechanism s, Py_ssize_t c, double T) noexcept nogil

@@ -5,8 +5,10 @@ higher than the tolerance, and when nothing else happens before T to what the co
 answers another impact in another way than in flight, and its own may throw a contact off that rests. Closing takes
 the speed u, by an impulse that the contact force up to T pays for, and that contacts bear which stay closed. Hops as
 slow as the tolerance are left out too, elastic ones as well, and impacts of contacts that nothing presses (inelastic
-collapse) when they have both a speed and a way below it. Source: A. Nordmark, P. Piiroinen, Simulation and stability
-analysis of impacting systems with complete chattering, Nonlinear Dynamics 58 (2009).
+collapse) when they have both a speed and a way below it, together with those of the contacts that they alternate
+with: one that struck another at rest would leave it, and nothing would bring it back before the next blow.
+Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with complete chattering,
+Nonlinear Dynamics 58 (2009).
 """
 
 from __future__ import annotations
@@ -22,11 +24,14 @@ if not cython.compiled:
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.problem import CHECKED
     from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max, min, nan
+
+UNTOLD = 4.0 * RESOLUTION  # of a time: what two impacts must be apart to be told from one
 
 
 def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
@@ -40,6 +45,7 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
             some = some or s.contact.rest[c] >= 0.0
     if not some:
         return False
+    take_along(s)
     for c in range(n_c):
         touches = s.contact.closed[c] == 0 and s.contact.gap[c] == 0.0
         if touches and s.contact.speed[c] == 0.0:  # those just opened by the forces meet other forces now
@@ -57,6 +63,8 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
         return False
     for c in range(n_c):
         T, u, alpha = s.contact.rest[c], s.contact.speed[c], s.contact.curve[c]
+        if T >= 0.0:
+            s.contact.gap[c] = 0.0
         if T >= 0.0 and u != 0.0:
             p = max(-alpha * T - u, 0.0) / s.D[(s.n_j + c) * s.n_r + s.n_j + c]
             s.log(record, tally, t + T, c, ACCUMULATION, -abs(u), 0.0, p)
@@ -186,7 +194,7 @@ def chatter_left(s: Mechanism, c: int) -> float:
         return -1.0
     noise = speed_noise(s, c)
     if abs(alpha) * s.contact.since[c] <= noise:  # an inelastic collapse
-        return 0.0 if slow and u * s.contact.since[c] <= tolerance else -1.0
+        return 0.0 if slow and u * s.contact.since[c] <= tolerance and not awaits(s, c) else -1.0
     if not low:
         return -1.0
     T = accumulation(u, alpha, r)
@@ -200,12 +208,49 @@ def chatter_left(s: Mechanism, c: int) -> float:
     return T if change * T * speed <= -alpha * tolerance else -1.0
 
 
+def take_along(s: Mechanism) -> None:
+    """Of a collapse that is over those contacts too that are on their way to their next impact in it."""
+    for c in range(s.n_c):
+        if s.contact.rest[c] == 0.0 and s.contact.gap[c] == 0.0:
+            for d in range(s.n_c):
+                if s.contact.rest[d] < 0.0 and alternates(s, c, d) and not is_told(s, d):
+                    s.contact.rest[d] = 0.0
+
+
+def awaits(s: Mechanism, c: int) -> bool:
+    """Whether a contact that alternates with contact c in its collapse is still too fast to be closed with it."""
+    fast = False
+    for d in range(s.n_c):
+        fast = fast or (alternates(s, c, d) and is_told(s, d))
+    return fast
+
+
+def is_told(s: Mechanism, d: int) -> bool:
+    """Whether contact d, on its way to an impact, has a speed or a way above the tolerance."""
+    return -s.contact.speed[d] > speed_tolerance(s, d) or s.contact.gap[d] > gap_tolerance(s, d)
+
+
+def alternates(s: Mechanism, c: int, d: int) -> bool:
+    """Whether contact d, which nothing presses, strikes before contact c, which has just struck, does so again."""
+    g, u, since = s.contact.gap[d], s.contact.speed[d], max(s.contact.since[c], UNTOLD * abs(s.t0))
+    if d == c or s.contact.closed[d] == 1 or not (g > 0.0 and u < 0.0 and g <= -u * since):
+        return False
+    free = abs(s.contact.curve[d]) * since <= speed_noise(s, d)
+    return free and (passes_on(s, c) or s.D[(s.n_j + c) * s.n_r + s.n_j + d] != 0.0)
+
+
+def passes_on(s: Mechanism, c: int) -> bool:
+    """Whether joints or closed contacts pass impulses of contact c on."""
+    for i in range(s.n_j + s.n_c):
+        held = i < s.n_j or s.contact.closed[i - s.n_j] == 1
+        if held and s.D[(s.n_j + c) * s.n_r + i] != 0.0:
+            return True
+    return False
+
+
 def interrupted(s: Mechanism, c: int, T: float) -> bool:
     """Whether a contact that impacts connect with contact c closes within the time T."""
-    n_j, passed_on = s.n_j, False
-    for i in range(n_j + s.n_c):  # joints and closed contacts pass impulses on
-        held = i < n_j or s.contact.closed[i - n_j] == 1
-        passed_on = passed_on or (held and s.D[(n_j + c) * s.n_r + i] != 0.0)
+    n_j, passed_on = s.n_j, passes_on(s, c)
     for d in range(s.n_c):
         if d != c and s.contact.closed[d] == 0 and (passed_on or s.D[(n_j + c) * s.n_r + n_j + d] != 0.0):
             g, u, alpha = s.contact.gap[d], s.contact.speed[d], s.contact.curve[d]

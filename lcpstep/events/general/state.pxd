@@ -45,7 +45,7 @@ cdef class Mechanism(Clock):
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit
     cdef readonly double scan, t_end, rtol, atol
     cdef double length, found, seen_to, slope
-    cdef bint bare, parallel
+    cdef bint bare, parallel, relieved
     cdef readonly Py_ssize_t event_contact
     cdef Py_ssize_t guards, next, event_kind, n_nodes, n_held, n_held_joints
     cdef Doubles nodes, weights, q0, v0, q, v, dy, a, trial, a_free, force, work, M, R, MR, D, L, held, change

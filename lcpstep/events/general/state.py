@@ -133,6 +133,7 @@ class Mechanism(Clock):
     found, seen_to    event within it, looked for up to here; which contact and what it does
     bare              whether the acceleration is that without contacts
     parallel          whether the rows held were dependent where forces were last asked for
+    relieved          whether others hold the contact of the event in its place, a look ahead
     next              what comes next: BEGIN, MOVE, JUMP, SETTLE, OBEY or SWITCH
     watch, watched    of a system with modes: `smooth` again, which watches its guards; whether there is one
     guards            LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
@@ -186,7 +187,7 @@ class Mechanism(Clock):
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
         self.length, self.found, self.seen_to, self.bare, self.next = 0.0, 0.0, 0.0, False, BEGIN
-        self.parallel = False
+        self.parallel = self.relieved = False
         self.watched = isinstance(smooth, Motion)
         self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
         self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0

@@ -20,7 +20,7 @@ if not cython.compiled:
     )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
-    from lcpstep.events.general.held import constrain, hold_again, note, parted, project
+    from lcpstep.events.general.held import constrain, hold_again, is_held, note, parted, project
     from lcpstep.events.general.hops import carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import arrive, press_between, rebase
@@ -162,8 +162,9 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
     """Which contacts are closed, and carry a force, just after the multiplier of contact c has turned negative.
 
     Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
-    c, one looks further. Where they press it then, it is held up to there: later in the interval it may yet open.
-    Once it opens, others are no longer held for what they did beside it.
+    c, nor holds it in its place as the other wall of a slit does, one looks further. Where they press it then, it is
+    held up to there: later in the interval it may yet open. Once it opens, others are no longer held for what they
+    did beside it.
     """
     before, solved, found, seen = s.n_held, True, False, tau
     balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
@@ -177,7 +178,7 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
         if solved and not found:
             seen = tau + (ahead if look < LOOKS else first)
             solved = forces_at(s, before, seen)
-            found = s.contact.closed[c] == 0
+            found = s.contact.closed[c] == 0 or s.relieved
             ahead = min(ahead * FURTHER, 0.5 * (end - tau))
     if solved and found and any_held(s, s.t0 + seen):
         solved = forces_at(s, before, seen)
@@ -202,6 +203,7 @@ def forces_at(s: Mechanism, before: int, ahead: float) -> bool:
     observe(s, ahead)
     t = s.t0 + ahead
     solved = measure(s, t) and contact_forces(s, t) == DONE
+    s.relieved = not is_held(s, s.n_j + s.event_contact)
     for m in range(before):
         s.row[m] = s.kept[m]
     s.n_held = before

@@ -1,0 +1,8 @@
+from lcpstep.events.friction.state cimport Rubbing
+
+cdef double SAME, DEPENDENT, TOLD
+
+cdef void leave_joints(Rubbing s) noexcept nogil
+cdef void sweep(Rubbing s, Py_ssize_t j) noexcept nogil
+cdef void respond_on_joints(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef double acceleration_on_joints(Rubbing s, Py_ssize_t i) noexcept nogil

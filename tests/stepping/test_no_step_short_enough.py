@@ -1,0 +1,45 @@
+"""Steps by a tolerance where none was short enough: slow approaches that make large velocities jump, and no room."""
+
+import math
+
+import numpy as np
+import pytest
+
+from benchmarks.judge.describe import Description
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
+
+# Four coordinates between four planes in a shaking frame, in units in which a gap's speed of 1.4e-5 makes velocities
+# jump by 5e-4
+SHAKEN = Description(
+    M=((0.015625, 0.0, 0.0, 0.0), (0.0, 0.25, 0.0, 0.0), (0.0, 0.0, 64.0, 0.0), (0.0, 0.0, 0.0, 0.25)),
+    q0=(10.32, 1.156, -0.016, 2.92), v0=(0.0, 0.0, 0.0, 0.0), t_span=(95300.0, 95304.45945), h=0.00583,
+    G=((-0.063125, -0.03905, 2.16, -0.0153), (0.016375, -0.3225, 8.8, -0.87), (0.33875, -0.1075, -0.7192, 0.515),
+    (-0.0093625, -0.52, -4.92, 0.274)), offset=(0.7758278000000001, 2.88502, -4.8869372, -0.18105900000000003),
+    restitution=0.45, C=((0.0003125, 0.0, 0.0, 0.0), (0.0, 0.005, 0.0, 0.0), (0.0, 0.0, 1.28, 0.0), (0.0, 0.0, 0.0,
+    0.005)), constant=(-0.0915, -0.0585, -5.216, 0.1805), frame=(-0.1456, -0.0264, -0.00018625, 0.0258), omega=5.18,
+)  # fmt: skip
+
+# A dome that closes in on its body; the gap of contact 1 is 1.862 - 1.66 sqrt(1 + q^2) - 0.264 sin(11 t)
+DOME = Description(
+    M=((257.0,),), q0=(-0.508,), v0=(0.0,), t_span=(0.0, 0.1246), h=0.0089, G=((0.0,), (0.0,), (0.0,)),
+    offset=(3.2323585074017727, 1.8619133058228035, 0.20645120000000003), restitution=(0.37, 0.9, 0.0), K=((74.7,),),
+    constant=(-2520.0,), amplitude=(0.264, 0.264, 0.0), omega=11.0, bend=(-1.36, -1.66, -1.6), phase=(0.0, 0.0, 0.0),
+    round=(0.3, 1.0, 0.0), general=True, pendulum=8.12, b=(-1.34,),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("tolerance", [3e-2, 1e-2, 3e-3, 1e-3])
+def test_a_slow_approach_that_makes_velocities_jump_is_an_impact(tolerance):
+    t = np.linspace(*SHAKEN.t_span, 200)
+    reference = simulate(SHAKEN.scene(), EventDriven(1e-10, 1e-10), keep=t)
+    m = simulate(SHAKEN.scene(), Moreau(8 * SHAKEN.h, tolerance=tolerance), keep=t)
+    assert m.status == Status.DONE, m.message
+    assert np.max(np.abs(m.q - reference.q)) <= tolerance * (1.0 + np.max(np.abs(reference.q)))
+
+
+def test_events_without_end_at_one_instant_are_not_asked_for_by_ever_shorter_steps():
+    most = 2000
+    m = simulate(DOME.scene(), Located(8 * DOME.h, tolerance=1e-4, max_events=most))
+    assert m.status == Status.TOO_MANY_EVENTS
+    assert m.t[-1] == pytest.approx(math.asin((DOME.offset[1] - 1.66) / 0.264) / 11.0, rel=1e-9)
+    assert m.counts.lcp_calls < 16 * most  # 28 times `most` before

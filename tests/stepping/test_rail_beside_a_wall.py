@@ -1,0 +1,46 @@
+"""A point on a rail, held by two walls of which one is nearly parallel to it, by order 4 and by a tolerance.
+
+Along the rail the point has one coordinate: x = 0 where the walls or the force hold it there, and f t^2 / (2 m)
+where they do not.
+"""
+
+import numpy as np
+import pytest
+
+from lagrangian import LinearContacts, LinearJoints, LinearSystem, Scene
+from lcpstep import Located, Status, simulate
+
+SLOPES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]  # of the flat wall on the rail; at 1e-11 it counts as the rail
+
+
+def drawn(slope, seed):
+    """Scene, direction of the rail, mass and force along it, and the sides to which the walls let it go."""
+    rng = np.random.default_rng(seed)
+    angle, sides = rng.uniform(0.0, 2.0 * np.pi), rng.choice([-1.0, 1.0], 2)
+    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    flat = sides[0] * slope * along + rng.choice([-1.0, 1.0]) * across
+    steep = sides[1] * rng.choice([0.3, 1.0]) * along + rng.uniform(-1.0, 1.0) * across
+    masses, force = 10.0 ** rng.uniform(-2.0, 2.0, 2), rng.normal(size=2)
+    scene = Scene(
+        LinearSystem(M=np.diag(masses), force=force),
+        q0=np.zeros(2),
+        v0=np.zeros(2),
+        t_span=(0.0, 1.0),
+        contacts=LinearContacts([flat, steep], offset=[0.0, 0.0], restitution=0.5),
+        joints=LinearJoints([across], [0.0]),
+    )
+    return scene, along, float(masses @ along**2), float(force @ along), sides
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+@pytest.mark.parametrize("method", [Located(1e-2, order=4), Located(1e-2, tolerance=1e-6)], ids=repr)
+def test_a_wall_that_is_nearly_the_rail_s_own_holds_the_point_or_lets_it_go(slope, method):
+    for seed in range(12):
+        scene, along, mass, force, sides = drawn(slope, seed)
+        m = simulate(scene, method)
+        assert m.status == Status.DONE, (seed, m.message)
+        free = np.all(sides * force > 0.0)
+        exact = 0.5 * force / mass * m.t**2 if free else np.zeros_like(m.t)
+        reach = 0.5 * abs(force) / mass
+        # the row itself is known to 1e-16 / slope
+        assert np.max(np.abs(m.q @ along - exact)) <= (1e-12 + 1e-15 / slope) * reach, seed
