@@ -66,3 +66,15 @@ def test_by_steps_it_rests_too_and_goes_no_further_in_than_a_step_leads(seed, h)
     energy = 0.5 * np.sum(m.v**2, axis=1) - m.q @ force
     assert np.all(np.diff(energy) <= h * h * force @ force)  # what the force does within a step
     np.testing.assert_allclose(m.v[-1], 0.0, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.01)], ids=str)
+@pytest.mark.parametrize("seed", [3, 11, 15, 17, 21, 23, 35, 39, 63])
+def test_with_friction_it_rests_at_once(method, seed):
+    scene = rough_cage(seed)
+    m = simulate(scene, method)
+    assert m.status is Status.DONE, m.message
+    np.testing.assert_allclose(m.q, 0.0, rtol=0, atol=1e-12)
+    given = m.impulse.sum(0) @ scene.contacts.G + m.friction_impulse.sum(0) @ scene.contacts.friction.tangent
+    taken = scene.v0 + scene.system.force.constant
+    np.testing.assert_allclose(given, -taken, rtol=0, atol=1e-9 * np.abs(m.impulse).sum())

@@ -7,9 +7,8 @@ cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLE
 cdef double SEEN, STILL
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-@cython.locals(hit=bint)
-cdef bint approaches(Rubbing s) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
+cdef bint strike_together(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
 @cython.locals(share=double, own=bint)
 cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f, bint plastic) noexcept nogil
 cdef void strike_with(

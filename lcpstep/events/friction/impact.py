@@ -31,7 +31,7 @@ if not cython.compiled:
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import put_on_account
-    from lcpstep.events.friction.parting import let_go, rejoin
+    from lcpstep.events.friction.parting import approaches, let_go, rejoin
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.kernels.clock import RESOLUTION
@@ -75,29 +75,29 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     return TOO_MANY_EVENTS
 
 
-def approaches(s: Rubbing) -> bool:
-    """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
-    hit = False
-    for c in range(s.n_c):
-        u = s.velocity[s.n_j + c]
-        if s.mode[c] == OPEN and s.touches[c] == 1:
-            hit = hit or u < -s.terms[c]
-            if abs(u) <= s.terms[c] and s.parting[c] == 0:
-                s.mode[c] = SLIDES
-    return hit
-
-
 def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
-    """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found."""
+    """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found.
+
+    What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, the
+    impact is a plastic one.
+    """
     for c in range(s.n_c):
         i = s.n_j + c
         s.before[c] = s.velocity[i] if s.mode[c] == OPEN else 0.0
         if s.mode[c] == STICKS:
             s.velocity[i + s.n_c] = 0.0
+        s.free[c] = 1
+    if strike_together(s, record, tally, t, plastic):
+        return True
+    return not plastic and strike_together(s, record, tally, t, True)
+
+
+def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+    """`strike` by one of the laws, from the velocities before it."""
+    for c in range(s.n_c):
         least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
         if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
             s.mode[c] = SLIDES
-        s.free[c] = 1
     s.coefficients.use(s.problem.mu)
     n_a, n_f = list_unknowns(s)
     hold_joints(s)

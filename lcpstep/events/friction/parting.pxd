@@ -8,3 +8,5 @@ cdef void part_before(Rubbing s) noexcept nogil
 @cython.locals(landed=bint, new=bint)
 cdef bint let_go(Rubbing s, double t) noexcept nogil
 cdef void rejoin(Rubbing s) noexcept nogil
+@cython.locals(hit=bint)
+cdef bint approaches(Rubbing s) noexcept nogil

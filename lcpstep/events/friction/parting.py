@@ -54,3 +54,15 @@ def rejoin(s: Rubbing) -> None:
         if s.parting[c] == 1 and s.mode[c] == OPEN and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
             s.mode[c] = SLIDES
         s.parting[c] = 0
+
+
+def approaches(s: Rubbing) -> bool:
+    """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
+    hit = False
+    for c in range(s.n_c):
+        u = s.velocity[s.n_j + c]
+        if s.mode[c] == OPEN and s.touches[c] == 1:
+            hit = hit or u < -s.terms[c]
+            if abs(u) <= s.terms[c] and s.parting[c] == 0:
+                s.mode[c] = SLIDES
+    return hit
