@@ -38,7 +38,7 @@ def cam_force(t, omega, period):
         beta -= TWO_PI
     if beta > math.pi:
         beta = TWO_PI - beta
-    if beta <= LIFT:
+    if beta < LIFT:  # a motion that begins at the corner goes on beyond it
         return -STIFFNESS * BASE
     if beta <= NOSE:
         a, b, rho2 = -FLANK_KAPPA * math.sin(beta), FLANK_KAPPA * math.cos(beta), FLANK_RHO * FLANK_RHO
@@ -59,8 +59,7 @@ def cam_follower(h, n, out, rpm=358.0):
     omega, period = TWO_PI * rpm / 60.0, 60.0 / rpm
     inverse = 1.0 / (MASS + 0.25 * h * h * STIFFNESS)
     A_q, A_v, A_f = inverse * h * STIFFNESS, inverse * 0.5 * h * h * STIFFNESS, 0.5 * h * inverse
-    start = 2.0**-49 * period  # the cam's curvature jumps at zero: on the side where the motion goes on
-    q, v, force, impacts, first, store = 0.4, 0.4, cam_force(start, omega, period), 0, math.nan, len(out) > 0
+    q, v, force, impacts, first, store = 0.4, 0.4, cam_force(0.0, omega, period), 0, math.nan, len(out) > 0
     for i in range(n):
         next_force = cam_force(h * (i + 1), omega, period)
         v_next, p = v + A_f * (force + next_force) - A_q * q - A_v * v, 0.0

@@ -17,7 +17,7 @@ void cam_force(double t, unsigned int size, double *f, unsigned int size_z, doub
   double beta = omega * (t - period * floor(t / period)) + lift;
   if (beta > 2.0 * PI) beta -= 2.0 * PI;
   if (beta > PI) beta = 2.0 * PI - beta;
-  if (beta <= lift) {
+  if (beta < lift) {
     f[0] = -stiffness * (0.40 - 0.3);
     return;
   }

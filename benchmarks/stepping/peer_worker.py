@@ -29,7 +29,7 @@ def cam_force(t):
     mass, stiffness, omega, half = 1.221, 1430.8, 2.0 * math.pi * CAM_RPM / 60.0, math.pi / 2
     beta = (omega * t + half) % (2.0 * math.pi)
     beta = min(beta, 2.0 * math.pi - beta)
-    if beta <= half:
+    if beta < half:
         return -stiffness * (0.40 - 0.3)
     if beta > half + 1.22173047639603:
         return -stiffness * (0.55393320723821 - 0.3)
