@@ -4,6 +4,7 @@ Drawn cases are the same at every run, so that a change is judged by itself; `--
 others. None has a deadline: what it took would be that of whatever else the machine does.
 """
 
+import gc
 import importlib.machinery
 
 import pytest
@@ -26,6 +27,13 @@ def pytest_configure(config):
                 raise pytest.UsageError(
                     f"{name} has changed since it was built: python setup.py build_ext --inplace"
                 )
+
+
+def pytest_collection_finish(session):
+    """What has been loaded by now stays to the end: looks at it for garbage are in vain, and take a thirtieth."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
 
 
 @pytest.fixture

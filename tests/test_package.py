@@ -145,7 +145,7 @@ def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """The source archive and the wheel, made as CI makes them; modules that are built are taken over."""
+    """The source archive and the wheel; modules that are built are taken over."""
     folder = tmp_path_factory.mktemp("dist")
     words = [
         "-m",
@@ -161,6 +161,13 @@ def built(tmp_path_factory):
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return next(folder.glob("*.tar.gz")), next(folder.glob("*.whl"))
+
+
+@pytest.mark.slow
+def test_the_package_index_would_take_both(built):
+    words = [sys.executable, "-m", "twine", "check", "--strict", *map(str, built)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.slow
