@@ -115,6 +115,11 @@ def normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
     return checks.evaluate("contacts.jacobian", contacts.jacobian, (*at, np.array(scene.p)), shape)[c]
 
 
+def fixed_step(method: Any) -> float:
+    """Step of a method whose steps are all of one size [s]; 0 of other methods, and of steps by a tolerance."""
+    return getattr(method, "h", 0.0) if getattr(method, "tolerance", None) is None else 0.0
+
+
 def _step(run: Trajectory) -> float:
     """The longest step that the run may have taken; an event-driven one finds its impacts within none."""
     h = getattr(run.method, "h", 0.0)

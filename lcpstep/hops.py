@@ -17,17 +17,15 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.depth import normal
+from lcpstep.depth import fixed_step, normal
 from lcpstep.faults import cause, forget
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 LEAST = 8  # hops
 SHORT = 2.5  # steps, between one impact and the next
 SHARE, MOST, AMONG = 0.1, 0.5, 0.02  # of ways, in a step; the second of the median
-ENERGY = (
-    0.01,
-    2.0,
-)  # of the largest kinetic energy; what seems more are the forces of a step, and rounding hops
+# Of the largest kinetic energy; what seems more are the forces of a step, and rounding hops
+ENERGY = 0.01, 2.0
 KEPT = 16  # states that tell how far the coordinates went
 
 
@@ -36,9 +34,8 @@ def too_short(run: Trajectory) -> str:
     h, log = _step(run), run.impacts
     if h == 0.0 or run.status != Status.DONE or len(log) <= LEAST or len(run.t) < KEPT:
         return ""
-    if (
-        np.count_nonzero(np.diff(log.time) < SHORT * h) < LEAST
-    ):  # no event lies between two of a contact that hops
+    # No event lies between two of a contact that hops
+    if np.count_nonzero(np.diff(log.time) < SHORT * h) < LEAST:
         return ""
     log = log[log.kind == Kind.IMPACT]
     log = log[np.argsort(log.contact, kind="stable")]
@@ -97,6 +94,4 @@ def _largest_energy(run: Trajectory) -> float:
 
 def _step(run: Trajectory) -> float:
     """The step of a run of time-stepping, 0 of other methods and of steps by a tolerance."""
-    method = run.method
-    fixed = hasattr(method, "theta") and getattr(method, "tolerance", None) is None
-    return float(method.h) if fixed else 0.0
+    return fixed_step(run.method) if hasattr(run.method, "theta") else 0.0

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import LinearSystem
+from lcpstep.depth import fixed_step
 from lcpstep.trajectory import Status, Trajectory
 
 LOOKS = 64  # steps that are looked at
@@ -40,8 +41,8 @@ def overleapt(run: Trajectory) -> str | None:
         return None
     if run.counts.steps <= LEAST or len(run.t) <= LEAST or run.status != Status.DONE:
         return ""
-    h = getattr(run.method, "h", 0.0)
-    if h == 0.0 or getattr(run.method, "tolerance", None) is not None or not _stiff(run, h):
+    h = fixed_step(run.method)
+    if h == 0.0 or not _stiff(run, h):
         return ""
     return _skipped(run, system, h)
 

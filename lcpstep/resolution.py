@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lcpstep.balance import unbalanced
+from lcpstep.depth import fixed_step
 from lcpstep.faults import cause, forget
 from lcpstep.periods import overleapt
 from lcpstep.trajectory import Status, Trajectory
@@ -76,8 +77,6 @@ def _too_fast(run: Trajectory, m: Model, h: float, bound: float) -> str:
 
 def _explicit(run: Trajectory) -> tuple[float, float]:
     """The step h, or 0 where forces cannot change too fast for the method, and the bound of h omega."""
-    method = run.method
-    order = getattr(method, "order", None)
-    if getattr(method, "tolerance", None) is not None or order == "exact":
-        return 0.0, VERLET
-    return getattr(method, "h", 0.0), RUNGE_KUTTA if order == 4 else VERLET
+    order = getattr(run.method, "order", None)
+    h = 0.0 if order == "exact" else fixed_step(run.method)
+    return h, RUNGE_KUTTA if order == 4 else VERLET

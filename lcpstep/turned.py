@@ -16,6 +16,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from lagrangian import LinearContacts, LinearJoints
+from lcpstep.depth import fixed_step
 from lcpstep.faults import cause, forget
 from lcpstep.trajectory import Status, Trajectory
 
@@ -54,8 +55,7 @@ def asked(run: Trajectory) -> tuple[bool, bool]:
         return False, False
     from lcpstep.model import LARGEST_KEPT
 
-    fixed = getattr(method, "tolerance", None) is None and getattr(method, "h", 0.0) > 0.0
-    return (bent, round_) if fixed and run.scene.n_q <= LARGEST_KEPT else (False, False)
+    return (bent, round_) if fixed_step(method) > 0.0 and run.scene.n_q <= LARGEST_KEPT else (False, False)
 
 
 def _too_far(run: Trajectory, m: Model, impulse: Any, what: str) -> str:

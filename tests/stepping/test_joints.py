@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from lagrangian import Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
-from lcpstep import Moreau, simulate
+from lcpstep import Located, Moreau, simulate
 from lcpstep.errors import LcpStepError
 from tests.stepping.jointed import (
     G0,
@@ -164,7 +164,8 @@ def test_a_platform_on_three_parallel_rods_is_not_locked_by_the_third(projected)
     assert order(errors) == pytest.approx(2.0, abs=0.15)
 
 
-def test_redundant_joints_share_the_force_and_change_no_motion():
+@pytest.mark.parametrize("method", [Moreau, Located])
+def test_redundant_joints_share_the_force_and_change_no_motion(method):
     # the same joint three times, once doubled, once reversed: each carries a third, in its own unit
     def pair(G):
         return Scene(
@@ -173,7 +174,7 @@ def test_redundant_joints_share_the_force_and_change_no_motion():
         )  # fmt: skip
 
     h = 1e-2
-    one, three = (simulate(pair(G), Moreau(h)) for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]]))
+    one, three = (simulate(pair(G), method(h)) for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]]))
     np.testing.assert_allclose(three.q, one.q, rtol=0, atol=1e-15)
     np.testing.assert_allclose(one.q[-1], 1 / 6, rtol=1e-12)
     np.testing.assert_allclose(one.joint_impulse[1:, 0], -2 / 3 * h, rtol=1e-12)

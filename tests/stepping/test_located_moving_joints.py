@@ -107,24 +107,6 @@ def test_a_platform_on_three_parallel_rods_is_not_locked_by_the_third():
     assert slope(levels, errors_of(scene, levels, at, known)) >= 1.9
 
 
-def test_redundant_joints_share_the_force_and_change_no_motion():
-    # the same joint three times, once doubled, once reversed: each carries a third, in its own unit
-    def pair(G):
-        return Scene(
-            LinearSystem(M=np.diag([1.0, 2.0]), force=[1.0, 0.0]), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0),
-            joints=LinearJoints(G),
-        )  # fmt: skip
-
-    h = 1e-2
-    one, three = (simulate(pair(G), Located(h)) for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]]))
-    np.testing.assert_allclose(three.q, one.q, rtol=0, atol=1e-15)
-    np.testing.assert_allclose(one.q[-1], 1 / 6, rtol=1e-12)
-    np.testing.assert_allclose(one.joint_impulse[1:, 0], -2 / 3 * h, rtol=1e-12)
-    np.testing.assert_allclose(
-        three.joint_impulse[1:], np.tile(np.array([-2, -1, 2]) / 9 * h, (100, 1)), rtol=1e-12
-    )
-
-
 def test_contradicting_joints_end_the_run():
     scene = Scene(
         LinearSystem(M=np.eye(3)), np.zeros(3), [0.0, 1.0, 0.0], (0.0, 1.0),
