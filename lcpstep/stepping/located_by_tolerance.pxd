@@ -14,4 +14,6 @@ cdef class Attempts(Parts):
     @cython.locals(asked=bint)
     cdef double depth(self) noexcept nogil
     cdef double astray(self) noexcept nogil
+    @cython.locals(lasts=bint)
     cdef double wrong(self, double length) noexcept nogil
+    cdef double held_on(self, Py_ssize_t c, double length) noexcept nogil

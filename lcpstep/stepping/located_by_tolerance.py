@@ -136,14 +136,22 @@ class Attempts(Parts):
         for c in range(self.w.n_c):
             if self.saved.status[c] != CLOSED:
                 continue
-            p = 0.0
-            if self.means:
+            p, lasts = 0.0, self.half.status[c] == CLOSED and self.two.status[c] == CLOSED
+            lasts = lasts and self.one.status[c] == CLOSED and self.two.code == FINISHED
+            if lasts:
+                p = hidden(self.one.impulse[c], self.two.impulse[c])
+                if self.means or self.alike:
+                    p = max(p, self.held_on(c, length))
+            elif self.means:
                 end = self.two.time
                 opened = end if self.two.status[c] == CLOSED else min(0.5 * length, end)
                 if self.half.status[c] != CLOSED:
                     opened = 0.0
                 p = late(self.one.force[c], self.half.force[c], self.two.force[c], length, opened, end)
-            if self.one.status[c] == CLOSED and self.two.status[c] == CLOSED and self.two.code == FINISHED:
-                p = max(p, hidden(self.one.impulse[c], self.two.impulse[c]))
             worst = max(worst, p * largest(after(self.w.MG, c * self.w.n_q), 0.0, self.w.n_q))
         return worst
+
+    def held_on(self, c: int, length: float) -> float:
+        """Impulse by which a contact is wrong that both runs keep closed, by means of its force over the parts."""
+        one, first, two = self.one.impulse[c], self.half.impulse[c], self.two.impulse[c]
+        return late(one / length, 2.0 * first / length, 2.0 * (two - first) / length, length, length, length)

@@ -169,7 +169,7 @@ class Parts(Control):
             self.loads(to.force, to.impulse)
 
     def loads(self, force: Doubles, impulse: Doubles) -> None:
-        """Forces that would keep the contacts closed, means over the last piece; impulses since the step began.
+        """Forces that would keep the contacts closed, means over the last piece; their impulses since the step began.
 
         The force is unknown where a contact has opened at the end of the piece, with a velocity, and not at its
         beginning.

@@ -230,7 +230,6 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
     """Note the impact of a contact; the velocity it leaves with, to the last digit."""
     r, before = m.restitution[c], min(w.before[c], 0.0)
     w.impulse[c] += p
-    w.pushed[c] += p
     if w.status[c] == CLOSED:
         if p > 0.0:
             w.rate[c] = 0.0

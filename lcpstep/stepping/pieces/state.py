@@ -102,7 +102,7 @@ class Work:
     last            time of the last impact since the start of the step
     force_now       contact force
     older, older_time    the last positive contact force, and when
-    pushed          impulse since the step began that a tolerance looks at
+    pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
     impulse         since the last kept state; those of the n_j joints follow
     p               impulses of the event at hand, or forces of closed contacts, by contact; in
                     `impulses.choose_connected` 1 for contacts still to be looked at
