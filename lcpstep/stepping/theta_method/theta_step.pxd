@@ -12,7 +12,7 @@ cdef Py_ssize_t take_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, bint external, bint solved
 ) noexcept nogil
 cdef Py_ssize_t predict_active(Model m, Plan plan, State s, Rows c) noexcept nogil
-cdef double drifted(Model m, State s, Rows c, Py_ssize_t i) noexcept nogil
+cdef double drifted(Model m, Plan plan, State s, Rows c, Py_ssize_t i) noexcept nogil
 @cython.locals(entered=bint)
 cdef Py_ssize_t closes_again(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next) noexcept nogil
 @cython.locals(hold=bint)

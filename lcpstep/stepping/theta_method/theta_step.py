@@ -70,14 +70,14 @@ def take_step(
 
     `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
     """
-    n_a = predict_active(m, plan, s, c)
+    n_a = s.active if solved else predict_active(m, plan, s, c)
     code = step(m, plan, s, c, n_a, t, t_next, external, solved)
     while c.projected and code == FINISHED:
         more = closes_again(m, plan, s, c, n_a, t_next)
         if more == n_a:
             break
         n_a = more
-        code = step(m, plan, s, c, n_a, t, t_next, external, solved)
+        code = step(m, plan, s, c, n_a, t, t_next, external, False)
     if code != FINISHED:
         return code
     log_events(m, s, c, record, t_next)
@@ -91,18 +91,25 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> int:
     n_a = 0
     for i in range(c.n_c):
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
-        if gap <= plan.slack or (s.closed[i] > 0 and gap <= drifted(m, s, c, i)):
+        if gap <= plan.slack or (s.closed[i] > 0 and gap <= drifted(m, plan, s, c, i)):
             c.problem.ids[n_a] = i
             n_a += 1
     s.active = n_a
     return n_a
 
 
-def drifted(m: Model, s: State, c: Rows, i: int) -> float:
-    """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have gone far."""
-    size, G = 0.0, m.G if m.flat else c.H
-    for j in range(s.n_q):
-        size += abs(G[i * s.n_q + j] * s.q[j])
+def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int) -> float:
+    """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have gone far.
+
+    It rounds velocities too, to what the impulses of the last step, which cancel, have each made of them.
+    """
+    size, n, G = 0.0, s.n_q, m.G if m.flat else c.H
+    for j in range(n):
+        pushed = 0.0
+        for k in range(c.n_c):
+            if c.p[k] > 0.0:
+                pushed += abs(plan.X[k * n + j]) * c.p[k]
+        size += abs(G[i * n + j]) * (abs(s.q[j]) + plan.h * pushed)
     return (RESTING + RESOLUTION * s.steps) * size
 
 
