@@ -2,9 +2,11 @@ cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
 cdef Py_ssize_t NO_FORCES, DONE, JOINTS_FAILED
+cdef double PASSES
 
 @cython.locals(solved=bint)
 cdef Py_ssize_t contact_forces(Mechanism s, double t) noexcept nogil
+cdef bint stands(Mechanism s) noexcept nogil
 cdef bint presses(Mechanism s) noexcept nogil
 cdef void open_contacts(Mechanism s, double t) noexcept nogil
 cdef double terms(Mechanism s, Py_ssize_t c) noexcept nogil

@@ -28,6 +28,8 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
 
+PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
+
 
 def contact_forces(s: Mechanism, t: float) -> int:
     """Forces and accelerations of the closed contacts at time t; those that open are no longer closed.
@@ -62,6 +64,22 @@ def contact_forces(s: Mechanism, t: float) -> int:
         constrain(s, a)
     note(s, a)
     return DONE if solved or presses(s) else NO_FORCES
+
+
+def stands(s: Mechanism) -> bool:
+    """Whether no member accelerates into its surface: rows that rounding has dropped bear no load.
+
+    What has opened by the force of such a contact would close again at once, for ever.
+    """
+    for m in range(s.n_members):
+        c = s.contact.member[m]
+        i, alpha, size = s.n_j + c, s.contact.bias[c], terms(s, c)
+        for j in range(s.n_q):
+            alpha += s.R[i * s.n_q + j] * s.a[j]
+            size += abs(s.R[i * s.n_q + j] * s.a[j])
+        if alpha < -PASSES * size:
+            return False
+    return True
 
 
 def presses(s: Mechanism) -> bool:

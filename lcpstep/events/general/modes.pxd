@@ -3,7 +3,7 @@ from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t IMPACT, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
+cdef Py_ssize_t IMPACT, NO_FORCES, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS, ROUNDS
 
 cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
 @cython.locals(since=double)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.general.ends import IMPACT, NO_IMPULSES, RELEASE, STICK
+from lcpstep.events.general.ends import IMPACT, NO_FORCES, NO_IMPULSES, RELEASE, STICK
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
 
 if not cython.compiled:
@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.events.general.chatter import close_chatter, hand_on
     from lcpstep.events.general.cycle import fades, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
-    from lcpstep.events.general.forces import contact_forces
+    from lcpstep.events.general.forces import contact_forces, stands
     from lcpstep.events.general.held import constrain, hold_contacts, note
     from lcpstep.events.general.impact import speed_noise, strike
     from lcpstep.events.general.keep import keep_event
@@ -203,6 +203,8 @@ def forces(s: Mechanism, t: float) -> int:
     code = contact_forces(s, t) if s.constant else balanced_forces(s, t)
     if code == DONE:
         s.bare = closed == 0
+        if s.constant and not stands(s):
+            return NO_FORCES
     return code
 
 

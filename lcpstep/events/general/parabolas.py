@@ -54,6 +54,8 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
             keep(s, record, t)
         return
     s.contact.gap[meets] = 0.0
+    if tau == 0.0:
+        tally.stalled += 1
     s.next = JUMP
 
 

@@ -16,7 +16,7 @@ cdef class Joints:
     cdef public Py_ssize_t failed, culprit
     cdef bint moved
     cdef Doubles turning, stretch, curvature, free, load, piece, answer, push, J, J_try, MJ, S, share, before
-    cdef Doubles shifted
+    cdef Doubles shifted, P
 
 
 cdef void take(Joints j, double* M, double t, double* q, double* v) noexcept nogil
@@ -25,6 +25,6 @@ cdef void accelerate(
 ) noexcept nogil
 cdef void answer(Joints j, double* x, double* rate, double* out) noexcept nogil
 cdef void follow(Joints j, double* multipliers, double* x) noexcept nogil
-cdef void reduce(Joints j, Py_ssize_t c, double* x) noexcept nogil
+cdef void reduce(Joints j, double* M, Py_ssize_t c, double* row, double* x) noexcept nogil
 cdef bint put(Joints j, double* M, double t, double* q, double* v, double slack) noexcept nogil
 cdef bint turn(Joints j, double* v) noexcept nogil

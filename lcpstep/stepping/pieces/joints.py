@@ -45,6 +45,7 @@ class Joints:
     J, J_try, MJ : (n_j, n_q)   Jacobian, one to try, rows M^-1 J^T
     S : (n_j, n_j)              J M^-1 J^T, which `elimination` solves with
     share : (n_c, n_j)          multipliers for a unit force of each contact
+    P : (n_c, n_q)              what the joints leave of its row
     before, shifted : (n_q,)
     failed          why the run cannot go on, or 0;
     culprit         is then the joint that does not hold
@@ -63,7 +64,7 @@ class Joints:
         self.moved = False
         n, n_q, n_c = self.n_j, self.n_q, system.n_c
         self.elimination = Elimination(n, 0)
-        self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + 2 * n_q)
+        self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + (2 + n_c) * n_q)
         self.turning = doubles(self.numbers)
         self.stretch = after(self.turning, n)
         self.curvature = after(self.stretch, n)
@@ -79,6 +80,7 @@ class Joints:
         self.share = after(self.S, n * n)
         self.before = after(self.share, n_c * n)
         self.shifted = after(self.before, n_q)
+        self.P = after(self.shifted, n_q)
 
 
 def take(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles) -> None:
@@ -118,19 +120,23 @@ def follow(j: Joints, multipliers: Doubles, x: Doubles) -> None:
             x[i] += j.MJ[k * n_q + i] * multipliers[k]
 
 
-def reduce(j: Joints, c: int, x: Doubles) -> None:
-    """Take from M^-1 G_c^T, in x, what the joints hold back; nothing but rounding is nothing."""
-    n_q, share = j.n_q, after(j.share, c * j.n_j)
+def reduce(j: Joints, M: Doubles, c: int, row: Doubles, x: Doubles) -> None:
+    """Take from M^-1 G_c^T, in x, what the joints hold back, and from the row G_c itself; rounding is nothing.
+
+    Where a normal is nearly that of a joint only the row that is left, P_c = G_c + sum share_cj J_j, keeps digits.
+    """
+    n_q, share, P = j.n_q, after(j.share, c * j.n_j), after(j.P, c * j.n_q)
     for k in range(j.n_j):
         j.elimination.y[k] = -product(j.J, x, k, n_q)
     solve_joints(j.elimination, share)
     for i in range(n_q):
-        size = abs(x[i])
+        P[i], size = row[i], abs(row[i])
         for k in range(j.n_j):
-            x[i] += j.MJ[k * n_q + i] * share[k]
-            size += abs(j.MJ[k * n_q + i] * share[k])
-        if abs(x[i]) <= ROUNDING * size:
-            x[i] = 0.0
+            P[i] += j.J[k * n_q + i] * share[k]
+            size += abs(j.J[k * n_q + i] * share[k])
+        if abs(P[i]) <= ROUNDING * size:
+            P[i] = 0.0
+    response(j.system, M, j.shifted, P, x)
 
 
 def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -> bool:

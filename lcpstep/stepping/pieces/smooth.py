@@ -121,15 +121,17 @@ def mobility(m: Model, w: Work, c: int) -> None:
     """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
     response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
     if w.joined:
-        reduce_mobility(w.joints, c, after(w.MG, c * w.n_q))
+        reduce_mobility(w.joints, w.M, c, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
 
 
 def respond(m: Model, w: Work) -> None:
-    """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
+    """M^-1 G^T and the Delassus matrix at the Jacobian w.G, of what joints leave of it."""
     for c in range(w.n_c):
         mobility(m, w, c)
+    G = w.joints.P if w.joined else w.G
+    for c in range(w.n_c):
         for d in range(w.n_c):
-            w.W[d * w.n_c + c] = product(w.G, after(w.MG, c * w.n_q), d, w.n_q)
+            w.W[d * w.n_c + c] = product(G, after(w.MG, c * w.n_q), d, w.n_q)
 
 
 def refactor(m: Model, w: Work, t: float) -> bool:
