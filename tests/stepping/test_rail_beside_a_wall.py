@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagrangian import LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 SLOPES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]  # of the flat wall on the rail; at 1e-11 it counts as the rail
 
@@ -62,3 +62,17 @@ def test_where_rounding_leaves_nothing_of_the_wall_a_run_says_so(slope, method):
             assert off(*drawn_so, slope, m) <= 2.0, seed
         else:
             assert m.status in (Status.LCP_FAILED, Status.PROJECTION_FAILED)
+
+
+@pytest.mark.parametrize("slope", SLOPES)
+def test_moreau_s_steps_hold_it_as_far_as_positions_do(slope):
+    """Steps keep velocities on the rail and not positions, of whose rounding the flat wall sees 1 / slope."""
+    for seed in range(24):
+        drawn_so = drawn(slope, seed)
+        m = simulate(drawn_so[0], Moreau(1e-2))
+        if slope > 3e-7:
+            assert m.status == Status.DONE, (seed, m.message)
+            assert off(*drawn_so, slope, m) <= 1.0 / slope, seed
+        else:
+            assert m.status in (Status.DONE, Status.LCP_FAILED)
+            assert m.status == Status.LCP_FAILED or off(*drawn_so, slope, m) <= 1.0 / slope, seed

@@ -6,6 +6,7 @@ cdef double PASSES
 
 @cython.locals(solved=bint)
 cdef Py_ssize_t contact_forces(Mechanism s, double t) noexcept nogil
+@cython.locals(touches=bint)
 cdef bint stands(Mechanism s) noexcept nogil
 cdef bint presses(Mechanism s) noexcept nogil
 cdef void open_contacts(Mechanism s, double t) noexcept nogil

@@ -20,6 +20,7 @@ if not cython.compiled:
         hold,
         hold_contacts,
         hold_joints,
+        joints_own,
         note,
         solve_held,
     )
@@ -49,7 +50,7 @@ def contact_forces(s: Mechanism, t: float) -> int:
         s.contact.loaded[c] = 0
         s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
         s.contact.multiplier[c] = 0.0
-        if s.contact.closed[c] == 1:
+        if s.contact.closed[c] == 1 and not joints_own(s, c):
             s.contact.member[s.n_members], s.contact.b[s.n_members] = c, s.contact.curve[c]
             s.contact.noise[s.n_members] = 0.5 * NOISE * terms(s, c)
             s.n_members += 1
@@ -67,17 +68,19 @@ def contact_forces(s: Mechanism, t: float) -> int:
 
 
 def stands(s: Mechanism) -> bool:
-    """Whether no member accelerates into its surface: rows that rounding has dropped bear no load.
+    """Whether no closed contact pulls, and none that was accelerates into its surface, under constant forces.
 
-    What has opened by the force of such a contact would close again at once, for ever.
+    Rows that rounding has dropped bear no load: what has opened by the force of such a contact would close again at
+    once, for ever.
     """
-    for m in range(s.n_members):
-        c = s.contact.member[m]
+    most = largest(s.contact.multiplier, 0.0, s.n_c)
+    for c in range(s.n_c):
         i, alpha, size = s.n_j + c, s.contact.bias[c], terms(s, c)
         for j in range(s.n_q):
             alpha += s.R[i * s.n_q + j] * s.a[j]
             size += abs(s.R[i * s.n_q + j] * s.a[j])
-        if alpha < -PASSES * size:
+        touches = s.contact.closed[c] == 1 or (s.contact.gap[c] == 0.0 and s.contact.speed[c] == 0.0)
+        if (touches and alpha < -PASSES * size) or s.contact.multiplier[c] < -CHECKED * most:
             return False
     return True
 

@@ -6,6 +6,8 @@ cdef double PARTED, DISAGREEMENT
 
 cdef void hold(Mechanism s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Mechanism s) noexcept nogil
+@cython.locals(own=bint)
+cdef bint joints_own(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void hold_contacts(Mechanism s) noexcept nogil
 cdef bint hold_again(Mechanism s, double t, double* q, double* v) noexcept nogil
 cdef void solve_held(Mechanism s, Py_ssize_t k, double* x) noexcept nogil

@@ -42,6 +42,17 @@ def hold_joints(s: Mechanism) -> None:
     s.n_held_joints = s.n_held
 
 
+def joints_own(s: Mechanism, c: int) -> bool:
+    """Whether the row of contact c says what the joints, which must be the rows held, say: it bears nothing."""
+    if s.n_j == 0:
+        return False
+    k = s.n_held
+    hold(s, s.n_j + c)
+    own = s.n_held == k
+    s.n_held = k
+    return own
+
+
 def hold_contacts(s: Mechanism) -> None:
     """Hold the joints and the closed contacts, those that carry a force first."""
     n_j = s.n_j

@@ -3,6 +3,7 @@ from lcpstep.events.general.state cimport Mechanism
 
 cdef bint strike(Mechanism s) noexcept nogil
 @cython.locals(touches=bint)
+@cython.locals(touches=bint, takes_part=bint)
 cdef void gather(Mechanism s) noexcept nogil
 @cython.locals(solved=bint)
 cdef bint solve_law(Mechanism s, bint rebounds) noexcept nogil

@@ -13,7 +13,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.held import REFINEMENTS, hold, hold_joints, solve_held
+    from lcpstep.events.general.held import REFINEMENTS, hold, hold_joints, joints_own, solve_held
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.acceleration import inverse_mass
@@ -40,13 +40,15 @@ def strike(s: Mechanism) -> bool:
 
 
 def gather(s: Mechanism) -> None:
-    """The contacts that take part: those whose gap is zero and that do not separate."""
+    """The contacts that take part: those whose gap is zero and that do not separate; those of joints bear nothing."""
     s.n_members = 0
+    hold_joints(s)
     for c in range(s.n_c):
         s.contact.loaded[c] = 0
         u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
         touches = s.contact.gap[c] == 0.0 and s.contact.parting[c] == 0
-        if s.contact.closed[c] == 1 or (touches and u <= speed_noise(s, c)):
+        takes_part = s.contact.closed[c] == 1 or (touches and u <= speed_noise(s, c))
+        if takes_part and not (u >= -speed_noise(s, c) and joints_own(s, c)):
             s.contact.member[s.n_members] = c
             s.contact.noise[s.n_members] = speed_noise(s, c)
             s.n_members += 1

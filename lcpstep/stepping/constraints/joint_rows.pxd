@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.pointers cimport Doubles, Indices
 
-cdef double NEGLIGIBLE, EPSILON, CONTRADICTION, STALLED
+cdef double NEGLIGIBLE, NOTHING, LOST, EPSILON, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
 
 
@@ -9,7 +9,7 @@ cdef class Elimination:
     cdef object numbers, integers
     cdef Py_ssize_t n_j
     cdef bint redundant
-    cdef Doubles S, B, F, Z, values, scale, x, y, r, d
+    cdef Doubles S, B, F, Z, values, scale, x, y, r, d, P, way
     cdef Indices pivots
 
 
@@ -21,8 +21,16 @@ cdef void rotate(double* B, double* V, Py_ssize_t p, Py_ssize_t q, Py_ssize_t n)
 cdef void solve_joints(Elimination e, double* out) noexcept nogil
 cdef void apply_inverse(Elimination e) noexcept nogil
 cdef void eliminate(
-    Elimination e, double* W, Py_ssize_t stride, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* R, double* rate
+    Elimination e, double* W, Py_ssize_t n, double* H, double* X, Py_ssize_t n_q, Py_ssize_t* ids, Py_ssize_t n_a,
+    Py_ssize_t n_k, double* R, double* rate
 ) noexcept nogil
+cdef void sweep_out(
+    Elimination e, double* H, double* X, Py_ssize_t n_q, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_j, double* R
+) noexcept nogil
+cdef void leave(
+    Elimination e, double* H, Py_ssize_t n_q, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_j, Py_ssize_t k, double* out
+) noexcept nogil
+cdef bint lost(Elimination e, double* H, Py_ssize_t n_q, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef void joint_impulses(Elimination e, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p) noexcept nogil
 cdef void distribute(
     Elimination e, double* solution, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p, Py_ssize_t n

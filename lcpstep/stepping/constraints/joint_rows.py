@@ -22,13 +22,15 @@ if not cython.compiled:
 
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.linear import factorise, solve
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
 CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
 EPSILON = 2.220446049250313e-16
+NOTHING = 1e-12  # of the terms of a number: what is left of one
+LOST = 3e-7  # of a row: what joints leave of it that has no digits for velocities
 REFINEMENTS = 20
 SWEEPS = 30
 VECTORS = 6
@@ -46,13 +48,16 @@ class Elimination:
     redundant        S is singular
     Z : (2 n_c + 1, n_j)   S^-1 times the columns of G_J A^-1 G^T and, last, the rates of v_free
 
+    P : (2 n_c, n_q)       what joints leave of rows
+    way : (n_q,)           and of what a row's impulse does
+
     Parameters
     ----------
-    n_j, n_c : int   joints and contacts
+    n_j, n_c, n_q : int   joints, contacts and coordinates
     """
 
-    def __init__(self, n_j: int, n_c: int) -> None:
-        self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j)
+    def __init__(self, n_j: int, n_c: int, n_q: int) -> None:
+        self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j + (2 * n_c + 1) * n_q)
         self.integers, self.n_j = np.zeros(n_j, dtype=np.intp), n_j
         self.S, self.pivots, self.redundant = doubles(self.numbers), indices(self.integers), False
         self.B = after(self.S, n_j * n_j)
@@ -64,6 +69,8 @@ class Elimination:
         self.y = after(self.x, n_j)
         self.r = after(self.y, n_j)
         self.d = after(self.r, n_j)
+        self.P = after(self.d, n_j)
+        self.way = after(self.P, 2 * n_c * n_q)
 
 
 def factorise_joints(e: Elimination, W: Doubles, stride: int, first: int) -> None:
@@ -164,27 +171,64 @@ def apply_inverse(e: Elimination) -> None:
 
 
 def eliminate(
-    e: Elimination, W: Doubles, stride: int, ids: Indices, n_a: int, n_k: int, R: Doubles, rate: Doubles
-) -> None:
-    """Problem of the contacts ids[:n_a] alone, from the W and the rates of all, without the joints ids[n_a:n_k].
+    e: Elimination, W: Doubles, n: int, H: Doubles, X: Doubles, n_q: int, ids: Indices, n_a: int, n_k: int,
+    R: Doubles, rate: Doubles,
+) -> None:  # fmt: skip
+    """Problem of the contacts ids[:n_a] alone, from the n rows and rates of all, without the joints ids[n_a:n_k].
 
-    R = W - W_J S^-1 W_J^T, n_a numbers a row; the rates change in place; Z keeps what `joint_impulses` needs.
+    W = H X^T are the mobilities of all; R = W - W_J S^-1 W_J^T, n_a numbers a row, those of the contacts. The rates
+    change in place; Z keeps what `joint_impulses` needs.
     """
     n_j = n_k - n_a
     if n_j > 0:
-        factorise_joints(e, W, stride, ids[n_a])
+        factorise_joints(e, W, n, ids[n_a])
         for k in range(n_a + 1):
             for j in range(n_j):
-                e.y[j] = W[ids[n_a + j] * stride + ids[k]] if k < n_a else rate[n_a + j]
+                e.y[j] = W[ids[n_a + j] * n + ids[k]] if k < n_a else rate[n_a + j]
             solve_joints(e, after(e.Z, k * n_j))
     for i in range(n_a):
         for j in range(n_j):
-            rate[i] -= W[ids[i] * stride + ids[n_a + j]] * e.Z[n_a * n_j + j]
-        for k in range(n_a):
-            total = W[ids[i] * stride + ids[k]]
-            for j in range(n_j):
-                total -= W[ids[i] * stride + ids[n_a + j]] * e.Z[k * n_j + j]
-            R[i * n_a + k] = total
+            rate[i] -= W[ids[i] * n + ids[n_a + j]] * e.Z[n_a * n_j + j]
+        for k in range(n_a if n_j == 0 else 0):
+            R[i * n_a + k] = W[ids[i] * n + ids[k]]
+    if n_j > 0:
+        sweep_out(e, H, X, n_q, ids, n_a, n_j, R)
+
+
+def sweep_out(
+    e: Elimination, H: Doubles, X: Doubles, n_q: int, ids: Indices, n_a: int, n_j: int, R: Doubles
+) -> None:
+    """R of the rows that joints leave, P_k = H_k - sum Z_kj H_j, and X so: R alone is a difference without digits.
+
+    It is where a normal is nearly that of a joint.
+    """
+    for k in range(n_a):
+        leave(e, H, n_q, ids, n_a, n_j, k, after(e.P, k * n_q))
+    for k in range(n_a):
+        leave(e, X, n_q, ids, n_a, n_j, k, e.way)
+        for i in range(n_a):
+            R[i * n_a + k] = product(e.P, e.way, i, n_q)
+
+
+def leave(
+    e: Elimination, H: Doubles, n_q: int, ids: Indices, n_a: int, n_j: int, k: int, out: Doubles
+) -> None:
+    """What joints leave of row k; what is but rounding is nothing."""
+    for q in range(n_q):
+        out[q] = H[ids[k] * n_q + q]
+        size = abs(out[q])
+        for j in range(n_j):
+            term = e.Z[k * n_j + j] * H[ids[n_a + j] * n_q + q]
+            out[q] -= term
+            size += abs(term)
+        if abs(out[q]) <= NOTHING * size:
+            out[q] = 0.0
+
+
+def lost(e: Elimination, H: Doubles, n_q: int, i: int, k: int) -> bool:
+    """Whether of the k-th contact's row, H_i, so little is left that its impulse is not known."""
+    left, whole = largest(after(e.P, k * n_q), 0.0, n_q), largest(after(H, i * n_q), 0.0, n_q)
+    return 0.0 < left < LOST * whole
 
 
 def joint_impulses(e: Elimination, ids: Indices, n_a: int, n_k: int, p: Doubles) -> None:

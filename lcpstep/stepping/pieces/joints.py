@@ -22,12 +22,12 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, inf, max
     from lcpstep.stepping.constraints.joint_rows import (
         CONTRADICTION,
+        NOTHING,
         Elimination,
         arrived,
         factorise_joints,
         solve_joints,
     )
-    from lcpstep.stepping.pieces.codes import ROUNDING
 
 PROJECTIONS = 50  # of Newton
 HELPS = 0.25  # of a joint's gap: what an iteration may leave of it without a new Jacobian
@@ -63,7 +63,7 @@ class Joints:
         self.failed = self.culprit = 0
         self.moved = False
         n, n_q, n_c = self.n_j, self.n_q, system.n_c
-        self.elimination = Elimination(n, 0)
+        self.elimination = Elimination(n, 0, 0)
         self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + (2 + n_c) * n_q)
         self.turning = doubles(self.numbers)
         self.stretch = after(self.turning, n)
@@ -134,7 +134,7 @@ def reduce(j: Joints, M: Doubles, c: int, row: Doubles, x: Doubles) -> None:
         for k in range(j.n_j):
             P[i] += j.J[k * n_q + i] * share[k]
             size += abs(j.J[k * n_q + i] * share[k])
-        if abs(P[i]) <= ROUNDING * size:
+        if abs(P[i]) <= NOTHING * size:
             P[i] = 0.0
     response(j.system, M, j.shifted, P, x)
 

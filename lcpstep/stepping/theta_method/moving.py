@@ -127,7 +127,7 @@ class Rows:
         self.H_t = after(self.D, n_j * n_q)
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
-        self.elimination = Elimination(n_j, n_c)
+        self.elimination = Elimination(n_j, n_c, n_q)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)

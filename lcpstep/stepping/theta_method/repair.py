@@ -81,7 +81,8 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
         c.problem.rate[k] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
         response(m, c.M, s.try_q, after(c.H, i * s.n_q), after(c.Y, i * s.n_q))
     mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
-    eliminate(c.elimination, c.S, c.n, c.problem.ids, n_a, n_k, c.problem.mobility, c.problem.rate)
+    R, rate = c.problem.mobility, c.problem.rate
+    eliminate(c.elimination, c.S, c.n, c.H, c.Y, s.n_q, c.problem.ids, n_a, n_k, R, rate)
     if n_a > 0 and not solve_contacts(c.problem, n_a, 0):
         return False
     distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a, n_k, c.push, c.n)

@@ -4,12 +4,15 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
-cdef double CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
+cdef double UNTOLD, CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(
     Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
 ) noexcept nogil
+cdef bint loads_nothing(State s, Rows c, Py_ssize_t n_a) noexcept nogil
+cdef double terms(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
+cdef void without_joints(Plan plan, State s, Rows c, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 @cython.locals(impact=bint)
 cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint rebounds) noexcept nogil
 @cython.locals(found=bint)

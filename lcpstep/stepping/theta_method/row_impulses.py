@@ -22,7 +22,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.constraints.joint_rows import CONTRADICTION, distribute, eliminate
+    from lcpstep.stepping.constraints.joint_rows import CONTRADICTION, distribute, eliminate, lost
     from lcpstep.stepping.theta_method.implicit import REFRESH
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -31,6 +31,7 @@ CONVERGED = 1e-12  # change of the velocity, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
 EPS = 2.0**-52
 ROUNDING = 1e-13  # of these terms: what is left of it is no motion
+UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
@@ -46,25 +47,48 @@ def impulses(
     impact = rates(m, s, c, n_a, n_f, True)
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
-    eliminate(c.elimination, plan.W, c.n, ids, n_a + n_f, n_k, c.problem.mobility, rate)
+    without_joints(plan, s, c, n_a + n_f, n_k)
     if n_a > 0:
         if external and not solved:
             return NEED_LCP
         s.problems += 1
         if not solved and not solve(m, s, c, n_a, n_f, impact):
             impact = rates(m, s, c, n_a, n_f, False)
-            eliminate(c.elimination, plan.W, c.n, ids, n_a + n_f, n_k, c.problem.mobility, rate)
+            without_joints(plan, s, c, n_a + n_f, n_k)
             if not solve(m, s, c, n_a, n_f, impact):
                 return LCP_FAILED
+        if c.n_j > 0 and loads_nothing(s, c, n_a):
+            return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
     return FINISHED
+
+
+def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
+    """The problem of the first n rows that take part alone; joints follow them.
+
+    A row that says what joints say has nothing left but the rounding of its rate, which no impulse could change.
+    """
+    R, rate, ids = c.problem.mobility, c.problem.rate, c.problem.ids
+    eliminate(c.elimination, plan.W, c.n, c.H, plan.X, s.n_q, ids, n, n_k, R, rate)
+    if c.n_j > 0:
+        for k in range(n):
+            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * terms(c, s.v_free, ids[k], s.n_q):
+                rate[k] = 0.0
+
+
+def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
+    """Whether a contact bears of whose row joints have left next to nothing."""
+    for k in range(n_a):
+        if c.problem.impulse[k] > 0.0 and lost(c.elimination, c.H, s.n_q, c.problem.ids[k], k):
+            return True
+    return False
 
 
 def rates(m: Model, s: State, c: Rows, n_a: int, n_f: int, rebounds: bool) -> bool:
     """What the impulses are asked for, of every row that takes part; whether it is an impact.
 
     What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they
-    are asked for an end of the approach alone.
+    are asked for an end of the approach alone, up to its rounding.
     """
     ids, rate, impact = c.problem.ids, c.problem.rate, False
     for k in range(n_a + n_f + c.n_j):
@@ -72,7 +96,10 @@ def rates(m: Model, s: State, c: Rows, n_a: int, n_f: int, rebounds: bool) -> bo
     if n_f > 0 or c.in_turn:
         round_off(c, s.v_free, n_a + n_f, s.n_q)
         impact = strikes(s, c, n_a)
-    if rebounds and not c.in_turn:
+    if not rebounds:
+        for k in range(n_a):
+            rate[k] += ROUNDING * terms(c, s.v_free, ids[k], s.n_q)
+    elif not c.in_turn:
         for k in range(n_a):
             rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
         for f in range(n_f if impact else 0):
@@ -135,12 +162,16 @@ def round_off(c: Rows, v: Doubles, n_k: int, n_q: int) -> None:
     For a frictional contact that stays closed has no approach: whether it jams must not hang on a rounding's sign.
     """
     for k in range(n_k):
-        i = c.problem.ids[k]
-        terms = abs(c.H_t[i])
-        for j in range(n_q):
-            terms += abs(c.H[i * n_q + j] * v[j])
-        if not abs(c.problem.rate[k]) > NO_APPROACH * terms:
+        if not abs(c.problem.rate[k]) > NO_APPROACH * terms(c, v, c.problem.ids[k], n_q):
             c.problem.rate[k] = 0.0
+
+
+def terms(c: Rows, v: Doubles, i: int, n_q: int) -> float:
+    """Size of what the rate of row i is a sum of."""
+    size = abs(c.H_t[i])
+    for j in range(n_q):
+        size += abs(c.H[i * n_q + j] * v[j])
+    return size
 
 
 def usable(W: Doubles, ids: Indices, n_k: int, n: int) -> bool:
