@@ -11,8 +11,9 @@ cdef class Attempts(Parts):
     cdef bint is_stuck(self) noexcept nogil
     @cython.locals(event_first=bint)
     cdef void weigh(self, double length) noexcept nogil
-    @cython.locals(asked=bint)
     cdef double depth(self) noexcept nogil
+    @cython.locals(struck=bint)
+    cdef double sunk(self) noexcept nogil
     cdef double astray(self) noexcept nogil
     @cython.locals(lasts=bint)
     cdef double wrong(self, double length) noexcept nogil

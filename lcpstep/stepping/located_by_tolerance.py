@@ -86,25 +86,40 @@ class Attempts(Parts):
         return abs(self.stuck - before) <= SAME_TIME * abs(self.stuck)
 
     def depth(self) -> float:
-        """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near."""
-        deepest, t, asked = 0.0, self.half.time, False
+        """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near.
+
+        By what the start lay within obstacles, which both runs take it out of, it is not.
+        """
+        deepest, t = 0.0, self.half.time
         if not self.rough:
             return deepest
+        sunk = self.sunk()
         for c in range(self.w.n_c):
             if self.one.status[c] == CLOSED:
                 continue
             g, u, a = self.saved.gap[c], self.saved.rate[c], self.one.half[c]
-            if g == 0.0 and not asked:  # what has struck is that far from its obstacle, see `astray`
-                gaps(self.m, self.now(), self.saved.q, self.saved.v, self.w.gap_try)
-                asked = True
             begins = g if g != 0.0 else self.w.gap_try[c]
-            error = abs(begins + t * (u + t * a) - self.half.gap[c])
+            lifted = sunk * largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
+            error = max(0.0, abs(begins + t * (u + t * a) - self.half.gap[c]) - lifted)
             lowest = min(min(g, self.one.gap[c]), self.half.gap[c])
             if a > 0.0 > u:
                 lowest = min(lowest, g - 0.25 * u * u / a)
             if lowest < NEAR * error:
                 deepest = max(deepest, error)
         return deepest
+
+    def sunk(self) -> float:
+        """How far, along a coordinate, the start lay within what was just struck, see `astray`; gaps into w.gap_try."""
+        furthest, struck = 0.0, False
+        for c in range(self.w.n_c):
+            struck = struck or (self.one.status[c] != CLOSED and self.saved.gap[c] == 0.0)
+        if struck:
+            gaps(self.m, self.now(), self.saved.q, self.saved.v, self.w.gap_try)
+        for c in range(self.w.n_c if struck else 0):
+            steep = largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
+            if self.saved.status[c] != CLOSED and self.saved.gap[c] == 0.0 and steep > 0.0:
+                furthest = max(furthest, -self.w.gap_try[c] / steep)
+        return furthest
 
     def astray(self) -> float:
         """How far off an impact was found, along a coordinate: states before it lie on closed contacts' obstacles.
