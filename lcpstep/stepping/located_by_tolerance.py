@@ -109,7 +109,7 @@ class Attempts(Parts):
         return deepest
 
     def sunk(self) -> float:
-        """How far, along a coordinate, the start lay within what was just struck, see `astray`; gaps into w.gap_try."""
+        """How far, along a coordinate, the start lay within what has struck, see `astray`; gaps into w.gap_try."""
         furthest, struck = 0.0, False
         for c in range(self.w.n_c):
             struck = struck or (self.one.status[c] != CLOSED and self.saved.gap[c] == 0.0)
