@@ -242,11 +242,11 @@ def test_the_command_that_is_told_goes_on_from_there(tmp_path, monkeypatch):
         "--points",
         "200",
         "--drop",
-        "60000",
+        "30000",
         "--jobs",
         "1",
     ]
-    _, err, _ = interrupted(words, tmp_path, 5.0)
+    _, err, _ = interrupted(words, tmp_path, 3.0)
     assert "finished parts in out/parts" in said(err, "kept")
     parts = {file: file.stat().st_mtime_ns for file in tmp_path.rglob("part-*.npz")}
     monkeypatch.setattr("lcpstep.cli.studies.shutil.rmtree", lambda folder, **_: None)

@@ -143,36 +143,33 @@ def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
     assert not (tmp_path / "build" / "cython").exists()
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def built(folder):
     """The source archive and the wheel; modules that are built are taken over."""
-    folder = tmp_path_factory.mktemp("dist")
-    words = [
-        "-m",
-        "build",
-        "--no-isolation",
-        "--skip-dependency-check",
-        "--sdist",
-        "--wheel",
-        "--outdir",
-        str(folder),
-        str(ROOT),
-    ]
-    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, check=False)
+    words = ["-m", "build", "--no-isolation", "--skip-dependency-check", "--sdist", "--wheel", "--outdir"]
+    done = subprocess.run(
+        [sys.executable, *words, str(folder), str(ROOT)], capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return next(folder.glob("*.tar.gz")), next(folder.glob("*.whl"))
 
 
 @pytest.mark.slow
-def test_the_package_index_would_take_both(built):
-    words = [sys.executable, "-m", "twine", "check", "--strict", *map(str, built)]
+def test_what_is_handed_out_is_whole_and_works(tmp_path):
+    """One test, for building takes long: it would be done anew in every process that has one of several."""
+    archive, wheel = built(tmp_path)
+    the_package_index_would_take(archive, wheel)
+    the_archive_has_every_source_and_the_wheel_every_module(archive, wheel)
+    if UNPRIVILEGED is not None:  # permissions of POSIX, which root keeps to by setpriv alone
+        the_wheel_works_from_a_read_only_folder_with_a_home_that_takes_nothing(wheel, tmp_path)
+
+
+def the_package_index_would_take(*files):
+    words = [sys.executable, "-m", "twine", "check", "--strict", *map(str, files)]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.slow
-def test_the_archive_has_every_source_and_the_wheel_every_module(built):
-    archive, wheel = built
+def the_archive_has_every_source_and_the_wheel_every_module(archive, wheel):
     with tarfile.open(archive) as members:
         sources = {name.partition("/")[2] for name in members.getnames()}
     modules = set(zipfile.ZipFile(wheel).namelist())
@@ -187,11 +184,9 @@ def test_the_archive_has_every_source_and_the_wheel_every_module(built):
     assert not [name for name in sources if name.endswith((".so", ".pyd", ".kernel"))]
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(UNPRIVILEGED is None, reason="permissions of POSIX, which root keeps to by setpriv alone")
-def test_the_wheel_works_from_a_read_only_folder_with_a_home_that_takes_nothing(built, tmp_path):
+def the_wheel_works_from_a_read_only_folder_with_a_home_that_takes_nothing(wheel, tmp_path):
     place, mine, home, temporary = (tmp_path / name for name in ("site", "mine", "home", "temporary"))
-    zipfile.ZipFile(built[1]).extractall(place)
+    zipfile.ZipFile(wheel).extractall(place)
     for folder in (mine, home, temporary):
         folder.mkdir()
     (mine / "own.py").write_text(OWN_SCENE)
