@@ -46,6 +46,8 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     if len(run.t) < 2:
         return unknown(run, "only one state was kept")
     start, end = float(run.t[0]), _reached(run)
+    if not end > start:
+        return unknown(run, "the run ended where it began")
     scene = run.scene if end == run.scene.t_span[1] else replace(run.scene, t_span=(run.scene.t_span[0], end))
     error = None
     if every and run.counts.steps > MANY_STEPS and isinstance(run.method, (Moreau, Located)):

@@ -3,13 +3,14 @@
 import json
 import math
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.sparse import identity
 
 from lagrangian import Contacts, Harmonic, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, simulate, study
+from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, simulate, study
 from lcpstep.cli import main
 from lcpstep.errorbar import companions, estimate
 from lcpstep.errors import LcpStepError
@@ -102,6 +103,16 @@ def test_a_run_that_ends_early_has_a_bar_up_to_its_end():
     assert run.status.name == "TOO_MANY_EVENTS"
     assert run.error.until <= run.t[-1]
     assert run.error.position.sup < 1e-10
+
+
+def test_a_run_that_ends_where_it_began_says_so():
+    """It may have kept a state after an event there: an error had come of the span without length."""
+    run = simulate(scenes.bouncing_ball(t_end=1.0), Moreau(1e-2))
+    ends = dict(t=np.zeros(2), q=run.q[:2], v=run.v[:2], impulse=run.impulse[:2], impacts=run.impacts[:0])
+    bar = estimate.error_bar(replace(run, status=Status.LCP_FAILED, **ends), True, 1.0)
+    assert bar.reason == "the run ended where it began"
+    assert bar.position.sup == math.inf
+    assert bar.until == 0.0
 
 
 def test_the_command_prints_it(capsys, tmp_path):
