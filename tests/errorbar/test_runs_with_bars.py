@@ -108,7 +108,13 @@ def test_a_run_that_ends_early_has_a_bar_up_to_its_end():
 def test_a_run_that_ends_where_it_began_says_so():
     """It may have kept a state after an event there: an error had come of the span without length."""
     run = simulate(scenes.bouncing_ball(t_end=1.0), Moreau(1e-2))
-    ends = {"t": np.zeros(2), "q": run.q[:2], "v": run.v[:2], "impulse": run.impulse[:2], "impacts": run.impacts[:0]}
+    ends = {
+        "t": np.zeros(2),
+        "q": run.q[:2],
+        "v": run.v[:2],
+        "impulse": run.impulse[:2],
+        "impacts": run.impacts[:0],
+    }
     bar = estimate.error_bar(replace(run, status=Status.LCP_FAILED, **ends), True, 1.0)
     assert bar.reason == "the run ended where it began"
     assert bar.position.sup == math.inf
