@@ -1,15 +1,15 @@
 cimport cython
 from lcpstep.pointers cimport Doubles, Indices
 
-cdef double NEGLIGIBLE, NOTHING, LOST, EPSILON, CONTRADICTION, STALLED
+cdef double NEGLIGIBLE, NOTHING, NEARLY, LOST, EPSILON, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
 
 
 cdef class Elimination:
     cdef object numbers, integers
     cdef Py_ssize_t n_j
-    cdef bint redundant
-    cdef Doubles S, B, F, Z, values, scale, x, y, r, d, P, way
+    cdef bint redundant, swept
+    cdef Doubles S, B, F, Z, values, scale, x, y, r, d, P, way, size
     cdef Indices pivots
 
 

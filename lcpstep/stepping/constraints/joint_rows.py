@@ -30,6 +30,7 @@ CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
 EPSILON = 2.220446049250313e-16
 NOTHING = 1e-12  # of the terms of a number: what is left of one
+NEARLY = 1e-3  # of a mobility: what joints leave of it with digits enough
 LOST = 3e-7  # of a row: what joints leave of it that has no digits for velocities
 REFINEMENTS = 20
 SWEEPS = 30
@@ -46,10 +47,11 @@ class Elimination:
     values, scale, x, y, r, d : (n_j,)   eigenvalues; units; the solution, its right-hand side, residual and change
     pivots : (n_j,)
     redundant        S is singular
+    swept            P tells what joints leave of rows
     Z : (2 n_c + 1, n_j)   S^-1 times the columns of G_J A^-1 G^T and, last, the rates of v_free
 
     P : (2 n_c, n_q)       what joints leave of rows
-    way : (n_q,)           and of what a row's impulse does
+    way, size : (n_q,)     and of what a row's impulse does; size of the terms of either
 
     Parameters
     ----------
@@ -57,9 +59,10 @@ class Elimination:
     """
 
     def __init__(self, n_j: int, n_c: int, n_q: int) -> None:
-        self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j + (2 * n_c + 1) * n_q)
+        self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j + (2 * n_c + 2) * n_q)
         self.integers, self.n_j = np.zeros(n_j, dtype=np.intp), n_j
-        self.S, self.pivots, self.redundant = doubles(self.numbers), indices(self.integers), False
+        self.S, self.pivots = doubles(self.numbers), indices(self.integers)
+        self.redundant = self.swept = False
         self.B = after(self.S, n_j * n_j)
         self.F = after(self.B, n_j * n_j)
         self.Z = after(self.F, n_j * n_j)
@@ -71,6 +74,7 @@ class Elimination:
         self.d = after(self.r, n_j)
         self.P = after(self.d, n_j)
         self.way = after(self.P, 2 * n_c * n_q)
+        self.size = after(self.way, n_q)
 
 
 def factorise_joints(e: Elimination, W: Doubles, stride: int, first: int) -> None:
@@ -186,21 +190,26 @@ def eliminate(
             for j in range(n_j):
                 e.y[j] = W[ids[n_a + j] * n + ids[k]] if k < n_a else rate[n_a + j]
             solve_joints(e, after(e.Z, k * n_j))
+    e.swept = False
     for i in range(n_a):
         for j in range(n_j):
             rate[i] -= W[ids[i] * n + ids[n_a + j]] * e.Z[n_a * n_j + j]
-        for k in range(n_a if n_j == 0 else 0):
-            R[i * n_a + k] = W[ids[i] * n + ids[k]]
-    if n_j > 0:
+        for k in range(n_a):
+            total = W[ids[i] * n + ids[k]]
+            for j in range(n_j):
+                total -= W[ids[i] * n + ids[n_a + j]] * e.Z[k * n_j + j]
+            R[i * n_a + k] = total
+        e.swept = e.swept or not R[i * n_a + i] > NEARLY * W[ids[i] * n + ids[i]]
+    if e.swept and n_j > 0:
         sweep_out(e, H, X, n_q, ids, n_a, n_j, R)
 
 
 def sweep_out(
     e: Elimination, H: Doubles, X: Doubles, n_q: int, ids: Indices, n_a: int, n_j: int, R: Doubles
 ) -> None:
-    """R of the rows that joints leave, P_k = H_k - sum Z_kj H_j, and X so: R alone is a difference without digits.
+    """R of the rows that joints leave, P_k = H_k - sum Z_kj H_j, and X so: where a normal is nearly that of a joint.
 
-    It is where a normal is nearly that of a joint.
+    There the difference of mobilities has no digits.
     """
     for k in range(n_a):
         leave(e, H, n_q, ids, n_a, n_j, k, after(e.P, k * n_q))
@@ -214,19 +223,23 @@ def leave(
     e: Elimination, H: Doubles, n_q: int, ids: Indices, n_a: int, n_j: int, k: int, out: Doubles
 ) -> None:
     """What joints leave of row k; what is but rounding is nothing."""
+    row = after(H, ids[k] * n_q)
     for q in range(n_q):
-        out[q] = H[ids[k] * n_q + q]
-        size = abs(out[q])
-        for j in range(n_j):
-            term = e.Z[k * n_j + j] * H[ids[n_a + j] * n_q + q]
-            out[q] -= term
-            size += abs(term)
-        if abs(out[q]) <= NOTHING * size:
+        out[q], e.size[q] = row[q], abs(row[q])
+    for j in range(n_j):
+        share, row = e.Z[k * n_j + j], after(H, ids[n_a + j] * n_q)
+        for q in range(n_q if share != 0.0 else 0):
+            out[q] -= share * row[q]
+            e.size[q] += abs(share * row[q])
+    for q in range(n_q):
+        if abs(out[q]) <= NOTHING * e.size[q]:
             out[q] = 0.0
 
 
 def lost(e: Elimination, H: Doubles, n_q: int, i: int, k: int) -> bool:
     """Whether of the k-th contact's row, H_i, so little is left that its impulse is not known."""
+    if not e.swept:
+        return False
     left, whole = largest(after(e.P, k * n_q), 0.0, n_q), largest(after(H, i * n_q), 0.0, n_q)
     return 0.0 < left < LOST * whole
 
