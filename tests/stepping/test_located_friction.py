@@ -14,6 +14,7 @@ from lcpstep import EventDriven, Kind, LcpStepError, Located, Status, continued,
 from lcpstep import energy as energy_balance
 from tests.events.rough import G0, block, energy, shaken_slip, shaken_tangent, times
 from tests.marks import shared
+from tests.random_friction import draw
 from tests.uncompiled import both_ways
 
 ORDERS = (2, 4)
@@ -250,3 +251,19 @@ def test_the_woodpeckers_orbit_is_the_same_to_ten_digits():
         found, y = impact_of_the_orbit(scene, method)
         assert abs(found / period - 1.0) < 10.0**-digits
         assert np.max(np.abs(y - x)[1:]) < 10.0**-digits * np.max(np.abs(x[1:]))
+
+
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize("n", [500, 2000, 4000])
+def test_endless_impacts_of_one_foot_between_those_of_the_other_have_an_end(n, order):
+    """Hops lower than what steps resolve of a gap were followed until they had fallen that deep, so none was the last.
+
+    The other foot stops to slide meanwhile, an event that was taken for the first one.
+    """
+    scene = draw(577)
+    start, end = scene.t_span
+    m = simulate(scene, Located((end - start) / n, order=order, max_events=2000))
+    reference = simulate(scene, EventDriven())
+    assert m.status == Status.DONE
+    assert len(m.impacts) == len(reference.impacts)
+    assert np.max(np.abs(m.q[-1] - reference.q[-1])) < 1e-4

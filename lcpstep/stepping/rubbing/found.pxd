@@ -1,4 +1,5 @@
 cimport cython
+from libc.math cimport sqrt
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t OPEN, SLIDES
@@ -15,7 +16,7 @@ cdef void note_bends(Strides s, double t, double* y, double* dy, double* bend) n
 cdef bint read_guards(Strides s, double t, double* y) noexcept nogil
 cdef bint note_arrival(Strides s, double t, double h) noexcept nogil
 cdef void note_middle(Strides s, double t, double h, double* value) noexcept nogil
-@cython.locals(least=double, place=double)
+@cython.locals(least=double, place=double, low=double)
 cdef Py_ssize_t first_event(Strides s, double h) noexcept nogil
 cdef void arm(Strides s) noexcept nogil
 cdef bint is_motion(Strides s, Py_ssize_t g) noexcept nogil

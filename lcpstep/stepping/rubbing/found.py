@@ -17,6 +17,8 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
+    from math import sqrt
+
     from lcpstep.events.friction.equations import measure_biases, measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.state import GUARDS, NOISE
@@ -134,7 +136,9 @@ def first_event(s: Strides, h: float) -> int:
         if least > (0.0 if s.armed[g] == 1 else -s.band[g]):
             continue
         elevate(s, bend(s, g, h))
-        place = first_fall(s, g)
+        place, low = first_fall(s, g), low_hop(s, g, h)
+        if place != NONE and low > 0.0:  # by where it has fallen out of its band others may have acted
+            place = min(place, low / h)
         if place != NONE and place < s.found:
             s.guard, s.found = g, place
             _, slope, _ = taylor(s.scan.c, place, s.scan.half)
@@ -206,9 +210,9 @@ def low_hop(s: Strides, g: int, h: float) -> float:
     c, u = g // GUARDS, s.begin_slope[g]
     if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1 or u <= 0.0:
         return 0.0
-    half = 0.5 * s.begin_bend[c]
-    rises = half >= 0.0 or u * u > -4.0 * half * s.band[g]
-    return 0.0 if rises else min(-u / half, h)
+    half, above = 0.5 * s.begin_bend[c], max(s.begin_value[g], 0.0)
+    rises = half >= 0.0 or u * u > -4.0 * half * (s.band[g] - above)
+    return 0.0 if rises else min(-0.5 * (u + sqrt(u * u - 4.0 * half * above)) / half, h)
 
 
 def locate(s: Strides, g: int, h: float) -> float:
