@@ -256,7 +256,7 @@ def test_the_woodpeckers_orbit_is_the_same_to_ten_digits():
 @pytest.mark.parametrize("order", [2, 4])
 @pytest.mark.parametrize("n", [500, 2000, 4000])
 def test_endless_impacts_of_one_foot_between_those_of_the_other_have_an_end(n, order):
-    """Hops lower than what steps resolve of a gap were followed until they had fallen that deep, so none was the last.
+    """Hops lower than what steps resolve of a gap were followed until they had fallen that deep: none was the last.
 
     The other foot stops to slide meanwhile, an event that was taken for the first one.
     """
