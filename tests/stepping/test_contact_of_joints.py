@@ -14,7 +14,7 @@ from lcpstep import EventDriven, Located, Moreau, Status, simulate
 METHODS = [EventDriven(), Located(1e-2), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6), Moreau(1e-2)]
 
 
-def drawn(seed, resting, kind=LinearSystem):
+def drawn(seed, resting, kind=np.asarray):
     """The same body on joints with such a contact and without it."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 6))
