@@ -27,7 +27,7 @@ if not cython.compiled:
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, inf
 
 PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
 
@@ -68,12 +68,12 @@ def contact_forces(s: Mechanism, t: float) -> int:
 
 
 def stands(s: Mechanism) -> bool:
-    """Whether no closed contact pulls, and none that was accelerates into its surface, under constant forces.
+    """Whether no contact that touches accelerates into its surface, and none pulls, if forces are constant.
 
     Rows that rounding has dropped bear no load: what has opened by the force of such a contact would close again at
-    once, for ever.
+    once, for ever. Forces that are not constant let go of what pulls in the next step.
     """
-    most = largest(s.contact.multiplier, 0.0, s.n_c)
+    most = largest(s.contact.multiplier, 0.0, s.n_c) if s.constant else inf
     for c in range(s.n_c):
         i, alpha, size = s.n_j + c, s.contact.bias[c], terms(s, c)
         for j in range(s.n_q):

@@ -203,8 +203,7 @@ def forces(s: Mechanism, t: float) -> int:
     code = contact_forces(s, t) if s.constant else balanced_forces(s, t)
     if code == DONE:
         s.bare = closed == 0
-        if s.constant and not stands(s):
-            return NO_FORCES
+        code = DONE if stands(s) else NO_FORCES
     return code
 
 
