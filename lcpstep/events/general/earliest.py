@@ -4,7 +4,8 @@ Gaps are looked at on the dense output of a Runge-Kutta step: on an interval sho
 change its sign at most once (`turns_unseen` says which is not), that change splits the gap velocity into monotone
 parts, whose changes of sign split the gap into monotone parts; so a gap that dips below zero and returns is found. A
 closed contact opens where its multiplier turns negative, be it for a moment between two places looked at: one that
-changes by several times its least value may turn there.
+changes by several times its least value may turn there. One whose row depends on those held is looked at anew where
+these keep it closed no longer: it opens, or bears what they have borne.
 """
 
 from __future__ import annotations
@@ -44,6 +45,8 @@ def first_event(s: Mechanism, a: float, b: float) -> float:
                 end, right = lowest(s, c, a, b, left, right, noise)
             if right < -noise and s.contact.held_until[c] < s.t0 + end:
                 tau, kind = opening(s, c, a, end, left, right), OPENS
+            elif s.right.curve[c] != 0.0 and s.contact.held_until[c] < s.t0 + b:
+                tau, kind = max(a, s.contact.held_until[c] - s.t0), OPENS
         elif s.contact.lands[c] != NONE:
             if a < s.contact.lands[c] <= b:
                 tau, kind = s.contact.lands[c], LANDS

@@ -24,6 +24,7 @@ if not cython.compiled:
 REFINEMENTS = 6
 PARTED = 1e3  # tolerances by which joints that say the same may differ
 DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
+DRIFT = 1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero, and no rounding
 
 
 def hold(s: Mechanism, i: int) -> None:
@@ -121,7 +122,10 @@ def constrain(s: Mechanism, a: Doubles) -> None:
 
 
 def note(s: Mechanism, a: Doubles) -> None:
-    """Multipliers of the rows held, and the gap accelerations of all contacts."""
+    """Multipliers of the rows held, and the gap accelerations of all contacts.
+
+    Closed contacts whose rows depend on those held are kept by these, but where obstacles move apart.
+    """
     n_j, n_c = s.n_j, s.n_c
     for i in range(n_j):
         s.joint.multiplier[i] = 0.0
@@ -136,8 +140,18 @@ def note(s: Mechanism, a: Doubles) -> None:
             s.contact.multiplier[i - n_j] = s.held[m]
             s.contact.curve[i - n_j] = 0.0
     for c in range(n_c):
-        if s.contact.closed[c] == 1:
+        if s.contact.closed[c] == 1 and not drifts(s, a, c):
             s.contact.curve[c] = 0.0
+
+
+def drifts(s: Mechanism, a: Doubles, c: int) -> bool:
+    """Whether a gap acceleration, in `curve`, is no rounding under the acceleration a."""
+    i, alpha = s.n_j + c, abs(s.contact.curve[c])
+    size = abs(bias_of(s, i))
+    if alpha > DRIFT * size:
+        for j in range(s.n_q):
+            size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
+    return alpha > DRIFT * size
 
 
 def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:

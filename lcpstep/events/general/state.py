@@ -133,7 +133,7 @@ class Mechanism(Clock):
     found, seen_to    event within it, looked for up to here; which contact and what it does
     bare              whether the acceleration is that without contacts
     parallel          whether the rows held were dependent where forces were last asked for
-    relieved          whether others hold the contact of the event in its place, a look ahead
+    relieved          whether others hold the contact of the event in its place, or it in theirs, a look ahead
     next              what comes next: BEGIN, MOVE, JUMP, SETTLE, OBEY or SWITCH
     watch, watched    of a system with modes: `smooth` again, which watches its guards; whether there is one
     guards            LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)

@@ -16,11 +16,11 @@ cdef Py_ssize_t complete_to_guard(Mechanism s, Record record, Tally tally) noexc
 cdef void make_dense(Mechanism s, double tau) noexcept nogil
 cdef double shorten(Mechanism s, double tau) noexcept nogil
 cdef double missed(Mechanism s, double tau) noexcept nogil
-@cython.locals(solved=bint, found=bint, balanced=bint)
+@cython.locals(solved=bint, found=bint, balanced=bint, owned=bint)
 cdef bint look_ahead(Mechanism s, Py_ssize_t c, double tau, double end) noexcept nogil
 @cython.locals(some=bint)
 cdef bint any_held(Mechanism s, double t) noexcept nogil
 @cython.locals(solved=bint)
-cdef bint forces_at(Mechanism s, Py_ssize_t before, double ahead) noexcept nogil
+cdef bint forces_at(Mechanism s, Py_ssize_t before, double ahead, bint owned) noexcept nogil
 cdef void take_over(Mechanism s, Record record, Tally tally, double t, double tau) noexcept nogil
 cdef Py_ssize_t pass_end(Mechanism s, Record record, Tally tally) noexcept nogil

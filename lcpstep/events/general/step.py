@@ -164,12 +164,12 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
     Forces that have balanced at the start of the interval need a while to grow beyond rounding; where nothing opens
     c, nor holds it in its place as the other wall of a slit does, one looks further. Where they press it then, it is
     held up to there: later in the interval it may yet open. Once it opens, others are no longer held for what they
-    did beside it.
+    did beside it. A contact that was not held itself, for its row depends on others, is to open or to be held.
     """
     before, solved, found, seen = s.n_held, True, False, tau
     balanced = s.left.multiplier[c] <= -BALANCED * s.right.multiplier[c]
     ahead = (BALANCED if balanced else LOOK_AHEAD) * s.length
-    first = ahead
+    first, owned = ahead, is_held(s, s.n_j + c)
     for m in range(before):  # the rows held are needed for the rest of the interval
         s.kept[m] = s.row[m]
     for d in range(s.n_c):
@@ -177,11 +177,11 @@ def look_ahead(s: Mechanism, c: int, tau: float, end: float) -> bool:
     for look in range(LOOKS + 1):
         if solved and not found:
             seen = tau + (ahead if look < LOOKS else first)
-            solved = forces_at(s, before, seen)
+            solved = forces_at(s, before, seen, owned)
             found = s.contact.closed[c] == 0 or s.relieved
             ahead = min(ahead * FURTHER, 0.5 * (end - tau))
     if solved and found and any_held(s, s.t0 + seen):
-        solved = forces_at(s, before, seen)
+        solved = forces_at(s, before, seen, owned)
     if s.contact.closed[c] == 1:
         s.contact.held_until[c] = s.t0 + (tau + first if s.contact.multiplier[c] > 0.0 else end)
     return solved
@@ -196,14 +196,17 @@ def any_held(s: Mechanism, t: float) -> bool:
     return some
 
 
-def forces_at(s: Mechanism, before: int, ahead: float) -> bool:
-    """The same at a time after the base, from the motion with the rows in `kept`, which stay held."""
+def forces_at(s: Mechanism, before: int, ahead: float, owned: bool) -> bool:
+    """The same at a time after the base, from the motion with the rows in `kept`, which stay held.
+
+    owned : whether that of the contact of the event is among them
+    """
     for d in range(s.n_c):
         s.contact.closed[d] = 1 if s.left.multiplier[d] == 1.0 else 0
     observe(s, ahead)
     t = s.t0 + ahead
     solved = measure(s, t) and contact_forces(s, t) == DONE
-    s.relieved = not is_held(s, s.n_j + s.event_contact)
+    s.relieved = is_held(s, s.n_j + s.event_contact) != owned
     for m in range(before):
         s.row[m] = s.kept[m]
     s.n_held = before
