@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.judge.describe import Description
+from lagrangian import Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 # Four coordinates between four planes in a shaking frame, in units in which a gap's speed of 1.4e-5 makes velocities
@@ -64,3 +65,21 @@ def test_an_error_that_was_accepted_is_not_counted_again_in_the_next_step(tolera
         assert m.status == Status.DONE, (end, m.message)
         true = simulate(scene, EventDriven(), keep=m.t).q
         assert np.max(np.abs(m.q - true)) <= tolerance
+
+
+def pushed_later(t, q, v, p, out):
+    """The force turns about; at that time it is already the new one."""
+    out[0] = 3.0 if t >= p[0] else -3.0
+
+
+@pytest.mark.parametrize("at", [0.1875, 0.19, 0.25, 0.5, 0.999])
+@pytest.mark.parametrize("h", [0.1, 0.5])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-5])
+def test_a_force_may_jump_where_steps_of_every_size_end(at, h, tolerance):
+    """Each step that ends there meets the new force; its first half does not, and the second did so no less."""
+    scene = Scene(System(1, 1.0, pushed_later), 0.0, 0.0, (0.0, 1.0), p=[at], corners=[at])
+    m = simulate(scene, Moreau(h, tolerance=tolerance))
+    assert m.status == Status.DONE, m.message
+    assert m.q[-1, 0] == pytest.approx(-1.5 * at**2 - 3.0 * at * (1.0 - at) + 1.5 * (1.0 - at) ** 2, abs=tolerance)
+    assert m.v[-1, 0] == pytest.approx(3.0 - 6.0 * at, abs=tolerance)
+    assert m.counts.steps < 1000
