@@ -18,14 +18,16 @@ def pressed(t, q, v, p, out):
 
 
 def powers(t, q, v, p, out):
-    """Each obstacle goes as p[i] t^k, k = p[-1] the same for all; a gap has the slope that its obstacle is given by."""
+    """Each obstacle goes as p[i] t^k, k = p[-1] the same for all, in the unit of its gap."""
     k = p[-1]
     for i in range(out.shape[0]):
         out[i, 0], out[i, 1] = p[i] * t**k, p[i] * k * t ** (k - 1.0)
         out[i, 2] = p[i] * k * (k - 1.0) * t ** (k - 2.0)
 
 
-@pytest.mark.parametrize("rates", [(0.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (-0.3, 0.2), (0.2, -0.3, -0.1)])
+@pytest.mark.parametrize(
+    "rates", [(0.0, -1.0), (-1.0, 0.0), (0.0, 1.0), (1.0, 0.0), (-0.3, 0.2), (0.2, -0.3, -0.1)]
+)
 @pytest.mark.parametrize("power", [3.0, 4.0, 5.0])
 def test_the_highest_obstacle_bears_the_body_and_the_others_are_left(rates, power):
     slopes = np.array([1.5, 3.0, 0.5])[: len(rates)]
@@ -35,7 +37,8 @@ def test_the_highest_obstacle_bears_the_body_and_the_others_are_left(rates, powe
     )  # fmt: skip
     m = simulate(scene, EventDriven())
     highest = int(np.argmax(np.array(rates) / slopes))
-    assert m.status is Status.DONE and not m.doubt
+    assert m.status is Status.DONE
+    assert not m.doubt
     np.testing.assert_allclose(m.q[:, 0], rates[highest] / slopes[highest] * m.t**power, rtol=0, atol=1e-9)
     left = m.impacts[m.impacts.kind == Kind.RELEASE].contact
     assert sorted(left) == [c for c in range(len(rates)) if c != highest]

@@ -80,6 +80,8 @@ def test_a_force_may_jump_where_steps_of_every_size_end(at, h, tolerance):
     scene = Scene(System(1, 1.0, pushed_later), 0.0, 0.0, (0.0, 1.0), p=[at], corners=[at])
     m = simulate(scene, Moreau(h, tolerance=tolerance))
     assert m.status == Status.DONE, m.message
-    assert m.q[-1, 0] == pytest.approx(-1.5 * at**2 - 3.0 * at * (1.0 - at) + 1.5 * (1.0 - at) ** 2, abs=tolerance)
+    assert m.q[-1, 0] == pytest.approx(
+        -1.5 * at**2 - 3.0 * at * (1.0 - at) + 1.5 * (1.0 - at) ** 2, abs=tolerance
+    )
     assert m.v[-1, 0] == pytest.approx(3.0 - 6.0 * at, abs=tolerance)
     assert m.counts.steps < 1000

@@ -24,7 +24,9 @@ if not cython.compiled:
 REFINEMENTS = 6
 PARTED = 1e3  # tolerances by which joints that say the same may differ
 DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
-DRIFT = 1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero, and no rounding
+DRIFT = (
+    1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero, and no rounding
+)
 
 
 def hold(s: Mechanism, i: int) -> None:
