@@ -8,6 +8,7 @@ cdef double PASSES
 cdef Py_ssize_t contact_forces(Mechanism s, double t) noexcept nogil
 @cython.locals(touches=bint)
 cdef bint stands(Mechanism s) noexcept nogil
+cdef bint enters(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef bint presses(Mechanism s) noexcept nogil
 cdef void open_contacts(Mechanism s, double t) noexcept nogil
 cdef double terms(Mechanism s, Py_ssize_t c) noexcept nogil

@@ -75,14 +75,24 @@ def stands(s: Mechanism) -> bool:
     """
     most = largest(s.contact.multiplier, 0.0, s.n_c) if s.constant else inf
     for c in range(s.n_c):
-        i, alpha, size = s.n_j + c, s.contact.bias[c], terms(s, c)
-        for j in range(s.n_q):
-            alpha += s.R[i * s.n_q + j] * s.a[j]
-            size += abs(s.R[i * s.n_q + j] * s.a[j])
+        if s.contact.multiplier[c] < -CHECKED * most:
+            return False
         touches = s.contact.closed[c] == 1 or (s.contact.gap[c] == 0.0 and s.contact.speed[c] == 0.0)
-        if (touches and alpha < -PASSES * size) or s.contact.multiplier[c] < -CHECKED * most:
+        if touches and enters(s, c):
             return False
     return True
+
+
+def enters(s: Mechanism, c: int) -> bool:
+    """Whether contact c accelerates into its surface, by more than rounding."""
+    i = s.n_j + c
+    alpha = product(s.R, s.a, i, s.n_q) + s.contact.bias[c]
+    if alpha >= 0.0:
+        return False
+    size = terms(s, c)
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * s.a[j])
+    return alpha < -PASSES * size
 
 
 def presses(s: Mechanism) -> bool:
