@@ -12,6 +12,7 @@ from lcpstep.events.friction.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 if not cython.compiled:
     from lcpstep.events.friction.equations import apply, measure_velocities
     from lcpstep.events.friction.held import hold_joints, hold_modes, stop_rows
+    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import CERTAIN, FOR_EVER, left, proportion
@@ -37,7 +38,7 @@ def recurs(s: Rubbing) -> float:
     for c in range(s.n_c):
         i = n_j + c
         if s.turn_impulse[c] > 0.0:
-            if s.coefficients.rough[c] == 1 and not rubs_on(s, i + s.n_c, ratio):
+            if rubs(s, c) and not rubs_on(s, i + s.n_c, ratio):
                 return 0.0
         elif (
             s.mode[c] == OPEN
@@ -68,7 +69,7 @@ def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> 
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
             s.clock.log(record, tally, t, c, ACCUMULATION, before, 0.0, p)
             if s.mode[c] == OPEN:
-                rough = s.coefficients.rough[c] == 1
+                rough = rubs(s, c)
                 s.mode[c] = STICKS if rough and rests(s, s.n_j + s.n_c + c, ratio) else SLIDES
     for i in range(s.n_j):
         apply(s, i, rest * s.turn_impulse[pushed + i])

@@ -25,6 +25,7 @@ if not cython.compiled:
         speed_tolerance,
     )
     from lcpstep.events.friction.held import is_held, right_hand_side
+    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
     from lcpstep.kernels.vectors import copy, largest, product
@@ -71,7 +72,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
         if is_held(s, i) or (s.mode[c] == LEANS and is_held(s, i + s.n_c)):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
-        if s.mode[c] == SLIDES and s.coefficients.rough[c] == 1:
+        if s.mode[c] == SLIDES and rubs(s, c):
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
             most = s.mu_s[c] * s.multiplier[i]

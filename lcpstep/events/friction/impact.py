@@ -31,6 +31,7 @@ if not cython.compiled:
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
     from lcpstep.events.friction.keep import put_on_account
+    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.parting import approaches, let_go, rejoin
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
@@ -99,8 +100,8 @@ def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic:
         if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
             s.mode[c] = SLIDES
     s.coefficients.use(s.problem.mu)
-    n_a, n_f = list_unknowns(s)
     hold_joints(s)
+    n_a, n_f = list_unknowns(s)
     fill(s, n_a, n_f)
     if not find_impulses(s, n_a, n_f, plastic):
         return False
@@ -164,8 +165,8 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         s.free[c] = 1
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
     s.coefficients.use(s.problem.mu)
-    n_a, n_f = list_unknowns(s)
     hold_joints(s)
+    n_a, n_f = list_unknowns(s)
     fill(s, n_a, n_f)
     for a in range(n_a):
         s.problem.rate[a] = 0.0
@@ -234,14 +235,14 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
 def close(s: Rubbing, c: int) -> None:
     """Take the velocity of contact c, which slides on as before, unless that stops it."""
     i = s.n_j + s.n_c + c
-    slip, rough = s.velocity[i], s.coefficients.rough[c] == 1
+    slip, rough = s.velocity[i], rubs(s, c)
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
     s.mode[c] = SLIDES if not rough or abs(slip) > still(s, i) else STICKS
     if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
         s.mode[c] = STICKS
     if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
         for d in range(s.n_c):
-            s.mode[d] = STICKS if s.mode[d] != OPEN and s.coefficients.rough[d] == 1 else s.mode[d]
+            s.mode[d] = STICKS if s.mode[d] != OPEN and rubs(s, d) else s.mode[d]
         hold_modes(s)
     copy(s.account, s.impulse, s.n_r)
     copy(s.seen, s.v, s.n_q)

@@ -13,7 +13,6 @@ cdef Py_ssize_t decide(Rubbing s) noexcept nogil
 cdef void rest_where_possible(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 @cython.locals(some=bint, goes=bint)
 cdef bint begin_to_slide(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
-@cython.locals(moves_alone=bint)
 cdef Py_ssize_t find_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void read_modes(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double acceleration(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil

@@ -30,7 +30,7 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
-    from lcpstep.events.friction.on_joints import acceleration_on_joints
+    from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
@@ -103,9 +103,7 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
-        i = s.n_j + c
-        moves_alone = s.S[i * s.n_r + i] > 0.0
-        if s.free[c] == 0 and moves_alone and s.problem.mobility[a * m + a] <= 0.0:
+        if s.free[c] == 0 and can_bear(s, c) and s.problem.mobility[a * m + a] <= 0.0:
             jams = a
     if jams >= 0:
         s.culprit = s.problem.ids[jams]
@@ -163,7 +161,12 @@ def undecided(s: Rubbing) -> bool:
 
 
 def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
-    """Whether the contact of unknown a has neither a normal force nor an acceleration, with it or without."""
+    """Whether the contact of unknown a has neither a normal force nor an acceleration, with it or without.
+
+    One whose normal the joints hold never has: nothing decides about it.
+    """
+    if not can_bear(s, s.problem.ids[a]):
+        return False
     push = s.problem.mobility[a * (n_a + n_f) + a] * s.problem.impulse[a]
     free = is_nothing(s, a, s.problem.rate[a], n_a, n_f)
     return free and is_nothing(s, a, push, n_a, n_f) and not opens(s, a, n_a, n_f)
@@ -280,4 +283,4 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
 
 def turned(s: Rubbing, c: int) -> bool:
     """Whether contact c slides the other way than when last told."""
-    return s.coefficients.rough[c] == 1 and s.direction[c] != s.was_direction[c]
+    return rubs(s, c) and s.direction[c] != s.was_direction[c]

@@ -62,6 +62,17 @@ def respond_on_joints(s: Rubbing, i: int) -> None:
     response(s.contacts, s.M, s.work, after(s.P, i * s.n_q), after(s.MP, i * s.n_q))
 
 
+def rubs(s: Rubbing, c: int) -> bool:
+    """Whether contact c may have friction: one whose normal the joints hold already bears nothing to rub with."""
+    return s.coefficients.rough[c] == 1 and can_bear(s, c)
+
+
+def can_bear(s: Rubbing, c: int) -> bool:
+    """Whether the joints leave anything of contact c's normal."""
+    i = s.n_j + c
+    return s.S[i * s.n_r + i] > 0.0
+
+
 def acceleration_on_joints(s: Rubbing, i: int) -> float:
     """The acceleration of contact or tangent row i under `a`, which the joints allow."""
     if s.S[i * s.n_r + i] > 0.0:

@@ -11,6 +11,7 @@ import cython
 from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
+    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import Rubbing
 
 
@@ -27,7 +28,7 @@ def list_unknowns(s: Rubbing) -> tuple[int, int]:
     for c in range(s.n_c):
         if s.mode[c] != OPEN:
             s.problem.ids[n_a] = c
-            if s.free[c] == 1 and s.coefficients.rough[c] == 1:
+            if s.free[c] == 1 and rubs(s, c):
                 s.problem.carrier[n_f] = n_a
                 n_f += 1
             n_a += 1
@@ -42,7 +43,7 @@ def fill(s: Rubbing, n_a: int, n_f: int) -> None:
         for b in range(m):
             k = row_of(s, b, n_a)
             share = 0.0
-            if b < n_a and s.free[s.problem.ids[b]] == 0:
-                c = s.problem.ids[b]
+            c = s.problem.ids[b] if b < n_a else -1
+            if c >= 0 and s.free[c] == 0 and rubs(s, c):
                 share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
             s.problem.mobility[a * m + b] = s.S[i * r + k] - share

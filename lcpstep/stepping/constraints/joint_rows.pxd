@@ -35,3 +35,8 @@ cdef void joint_impulses(Elimination e, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssiz
 cdef void distribute(
     Elimination e, double* solution, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p, Py_ssize_t n
 ) noexcept nogil
+@cython.locals(hold=bint)
+cdef bint joints_hold(
+    double* J, double* J_t, double* J_start, Py_ssize_t n_j, double* v, double* v_free, double* v_next,
+    Py_ssize_t n_q, double* X, double* p, Py_ssize_t n, double turning, Py_ssize_t* failed,
+) noexcept nogil

@@ -268,3 +268,29 @@ def distribute(
 def arrived(worst: float, before: float, slack: float) -> bool:
     """Whether Newton's iteration for positions is at its end: gaps within the slack, or no smaller for rounding."""
     return worst <= slack or 0.5 * before < worst <= STALLED * slack
+
+
+def joints_hold(
+    J: Doubles, J_t: Doubles, J_start: Doubles, n_j: int, v: Doubles, v_free: Doubles, v_next: Doubles, n_q: int,
+    X: Doubles, p: Doubles, n: int, turning: float, failed: Indices,
+) -> bool:  # fmt: skip
+    """Whether the joints' rates are zero after the step; marks those for which they are not.
+
+    Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted. What
+    the impulses p of all n rows change a velocity by, X^T p, counts to its size: with unequal masses it is much more
+    than the rest.
+    """
+    hold = True
+    for j in range(n_j):
+        rate, size, turned = J_t[j], abs(J_t[j]), 0.0
+        for i in range(n_q):
+            row = J[j * n_q + i]
+            rate += row * v_next[i]
+            speed = max(max(abs(v_next[i]), abs(v[i])), abs(v_free[i]))
+            for k in range(n):
+                speed = max(speed, abs(X[k * n_q + i] * p[k]))
+            size += abs(row) * speed
+            turned += abs(row - J_start[j * n_q + i]) * speed
+        failed[j] = 0 if abs(rate) <= CONTRADICTION * size + turning * turned else 1
+        hold = hold and failed[j] == 0
+    return hold

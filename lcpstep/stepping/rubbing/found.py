@@ -21,6 +21,7 @@ if not cython.compiled:
 
     from lcpstep.events.friction.equations import measure_biases, measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
+    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS, NOISE
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.kernels.clock import RESOLUTION
@@ -158,7 +159,7 @@ def is_motion(s: Strides, g: int) -> bool:
     c = g // GUARDS
     if g % GUARDS == 0:
         return s.mode[c] == OPEN
-    return s.mode[c] == SLIDES and g % GUARDS == 1 and s.coefficients.rough[c] == 1
+    return s.mode[c] == SLIDES and g % GUARDS == 1 and rubs(s, c)
 
 
 def curve(s: Strides, g: int, h: float) -> float:

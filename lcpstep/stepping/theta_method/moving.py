@@ -76,6 +76,7 @@ class Rows:
     joints, tangents       models, their rows in the place of the contacts': see `lcpstep.model`
     coefficients           of friction
     n_c, n_t, n_j, n       contacts, tangents (none or n_c), joints, and all of them
+    n_f                    tangents that take part in the step at hand
     projected, turning     positions are repaired; joints' rows change
     H : (n, n_q)           rows of the velocities: H v + H_t is the rate; T and J: those of tangents and of joints
     H_t : (n,)             likewise T_t, J_t
@@ -114,7 +115,7 @@ class Rows:
         self.joints, self.tangents, self.problem = joints, tangents, problem
         self.coefficients, self.in_turn = coefficients, in_turn
         self.coefficients.use(self.problem.mu)
-        self.n_c, self.n_t, self.n_j, self.n = n_c, n_t, n_j, n
+        self.n_c, self.n_t, self.n_j, self.n, self.n_f = n_c, n_t, n_j, n, 0
         self.projected, self.turning = projected, not joints.flat
         self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
         self.tangent_restitution = doubles(tangent_restitution)

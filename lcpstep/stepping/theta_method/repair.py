@@ -58,7 +58,10 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
 
 
 def correct(m: Model, s: State, c: Rows, t: float) -> bool:
-    """One step of Newton's method; False where the linearised gaps allow no position."""
+    """One step of Newton's method; False where the linearised gaps allow no position.
+
+    The gap of a contact whose normal the joints hold is that of a position on the joints: no change could mend it.
+    """
     n_a = 0
     # A contact once in danger stays in the problem, so that none is pushed through another.
     for i in range(c.n_c):
@@ -83,6 +86,9 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
     mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
     R, rate = c.problem.mobility, c.problem.rate
     eliminate(c.elimination, c.S, c.n, c.H, c.Y, s.n_q, c.problem.ids, n_a, n_k, R, rate)
+    for k in range(n_a):
+        if not R[k * n_a + k] > 0.0:
+            rate[k] = 0.0
     if n_a > 0 and not solve_contacts(c.problem, n_a, 0):
         return False
     distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a, n_k, c.push, c.n)

@@ -8,13 +8,14 @@ cdef double UNTOLD, CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(
-    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, double t_next, bint external, bint solved
+    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next, bint external, bint solved
 ) noexcept nogil
+cdef bint leave_out_what_bears_nothing(Rows c, Py_ssize_t n_a) noexcept nogil
 cdef bint loads_nothing(State s, Rows c, Py_ssize_t n_a) noexcept nogil
 cdef double terms(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
 cdef void without_joints(Plan plan, State s, Rows c, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 @cython.locals(impact=bint)
-cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint rebounds) noexcept nogil
+cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, bint rebounds) noexcept nogil
 @cython.locals(found=bint)
 cdef bint solve(Model m, State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f, bint impact) noexcept nogil
 cdef void note_sticking(State s, Rows c, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
@@ -29,10 +30,5 @@ cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexc
 cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
 cdef void compliance(bint linear, Plan plan, State s, double* row, double* out) noexcept nogil
 cpdef constant_rows(Model m, Plan plan, State s, Rows c, double t)
-cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_f, Py_ssize_t n_k) noexcept nogil
+cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void apply_once(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
-@cython.locals(hold=bint)
-cdef bint joints_hold(
-    double* J, double* J_t, double* J_start, Py_ssize_t n_j, double* v, double* v_free, double* v_next,
-    Py_ssize_t n_q, double* X, double* p, Py_ssize_t n, double turning, Py_ssize_t* failed,
-) noexcept nogil

@@ -22,7 +22,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.constraints.joint_rows import CONTRADICTION, distribute, eliminate, lost
+    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
     from lcpstep.stepping.theta_method.implicit import REFRESH
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -36,30 +36,34 @@ NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
 def impulses(
-    m: Model, plan: Plan, s: State, c: Rows, n_a: int, n_f: int, t_next: float, external: bool, solved: bool
+    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, external: bool, solved: bool
 ) -> int:
     """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
-    n_k, ids, rate = n_a + n_f + c.n_j, c.problem.ids, c.problem.rate
+    n_k, ids, rate = n_a + c.n_f + c.n_j, c.problem.ids, c.problem.rate
     if c.n_j > 0:
         gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
     if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
         respond(m.linear, plan, s, c, n_k)
-    impact = rates(m, s, c, n_a, n_f, True)
+    impact = rates(m, s, c, n_a, True)
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
-    without_joints(plan, s, c, n_a + n_f, n_k)
+    without_joints(plan, s, c, n_a + c.n_f, n_k)
+    if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
+        n_k = n_a + c.n_f + c.n_j
+        impact = rates(m, s, c, n_a, True)
+        without_joints(plan, s, c, n_a + c.n_f, n_k)
     if n_a > 0:
         if external and not solved:
             return NEED_LCP
         s.problems += 1
-        if not solved and not solve(m, s, c, n_a, n_f, impact):
-            impact = rates(m, s, c, n_a, n_f, False)
-            without_joints(plan, s, c, n_a + n_f, n_k)
-            if not solve(m, s, c, n_a, n_f, impact):
+        if not solved and not solve(m, s, c, n_a, c.n_f, impact):
+            impact = rates(m, s, c, n_a, False)
+            without_joints(plan, s, c, n_a + c.n_f, n_k)
+            if not solve(m, s, c, n_a, c.n_f, impact):
                 return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
-    distribute(c.elimination, c.problem.impulse, ids, n_a + n_f, n_k, c.p, c.n)
+    distribute(c.elimination, c.problem.impulse, ids, n_a + c.n_f, n_k, c.p, c.n)
     return FINISHED
 
 
@@ -76,6 +80,22 @@ def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
                 rate[k] = 0.0
 
 
+def leave_out_what_bears_nothing(c: Rows, n_a: int) -> bool:
+    """Leave out the tangents of contacts whose normals the joints hold already, as theirs; were there any?"""
+    n_f, ids, carrier = 0, c.problem.ids, c.problem.carrier
+    for f in range(c.n_f):
+        k = carrier[f]
+        if c.problem.mobility[k * (n_a + c.n_f) + k] > 0.0:
+            carrier[n_f], ids[n_a + n_f] = k, ids[n_a + f]
+            n_f += 1
+    if n_f == c.n_f:
+        return False
+    for j in range(c.n_j):
+        ids[n_a + n_f + j] = ids[n_a + c.n_f + j]
+    c.n_f = n_f
+    return True
+
+
 def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
     """Whether a contact bears of whose row joints have left next to nothing."""
     for k in range(n_a):
@@ -84,13 +104,13 @@ def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
     return False
 
 
-def rates(m: Model, s: State, c: Rows, n_a: int, n_f: int, rebounds: bool) -> bool:
+def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     """What the impulses are asked for, of every row that takes part; whether it is an impact.
 
     What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they
     are asked for an end of the approach alone, up to its rounding.
     """
-    ids, rate, impact = c.problem.ids, c.problem.rate, False
+    ids, rate, n_f, impact = c.problem.ids, c.problem.rate, c.n_f, False
     for k in range(n_a + n_f + c.n_j):
         rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
     if n_f > 0 or c.in_turn:
@@ -232,7 +252,7 @@ def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
 
 
-def apply(plan: Plan, s: State, c: Rows, n_f: int, n_k: int) -> bool:
+def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
     """next_v = v_free + X^T p; whether that has hardly changed it.
 
     Where friction acts, a velocity that is nothing but rounding is zero: what sticks is at rest.
@@ -245,7 +265,7 @@ def apply(plan: Plan, s: State, c: Rows, n_f: int, n_k: int) -> bool:
             term = X[ids[k] * n_q + i] * p[ids[k]]
             total += term
             terms += abs(term)
-        if n_f > 0 and abs(total) <= ROUNDING * terms:
+        if c.n_f > 0 and abs(total) <= ROUNDING * terms:
             total = 0.0
         change = max(change, abs(total - s.next_v[i]))
         moved = max(moved, plan.h * abs(total - s.next_v[i]) - EPS * abs(s.q[i]))
@@ -263,29 +283,3 @@ def apply_once(plan: Plan, s: State, c: Rows, n_k: int) -> None:
         for k in range(n_k):
             total += X[ids[k] * n_q + i] * p[ids[k]]
         s.next_v[i] = total
-
-
-def joints_hold(
-    J: Doubles, J_t: Doubles, J_start: Doubles, n_j: int, v: Doubles, v_free: Doubles, v_next: Doubles, n_q: int,
-    X: Doubles, p: Doubles, n: int, turning: float, failed: Indices,
-) -> bool:  # fmt: skip
-    """Whether the joints' rates are zero after the step; marks those for which they are not.
-
-    Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted. What
-    the impulses p of all n rows change a velocity by, X^T p, counts to its size: with unequal masses it is much more
-    than the rest.
-    """
-    hold = True
-    for j in range(n_j):
-        rate, size, turned = J_t[j], abs(J_t[j]), 0.0
-        for i in range(n_q):
-            row = J[j * n_q + i]
-            rate += row * v_next[i]
-            speed = max(max(abs(v_next[i]), abs(v[i])), abs(v_free[i]))
-            for k in range(n):
-                speed = max(speed, abs(X[k * n_q + i] * p[k]))
-            size += abs(row) * speed
-            turned += abs(row - J_start[j * n_q + i]) * speed
-        failed[j] = 0 if abs(rate) <= CONTRADICTION * size + turning * turned else 1
-        hold = hold and failed[j] == 0
-    return hold

@@ -41,6 +41,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import COLUMNS, Record
     from lcpstep.kernels.vectors import clear, copy, finite, product
     from lcpstep.pointers import abs, after, whole
+    from lcpstep.stepping.constraints.joint_rows import joints_hold
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -49,7 +50,6 @@ if not cython.compiled:
         apply,
         apply_once,
         impulses,
-        joints_hold,
         note_sticking,
         take_part,
     )
@@ -136,17 +136,16 @@ def step(
     m: Model, plan: Plan, s: State, c: Rows, n_a: int, t: float, t_next: float, external: bool, solved: bool
 ) -> int:
     """One step with n_a active contacts into next_q, next_v, and the impulses."""
-    n_f = 0
+    c.n_f = 0
     if c.n > c.n_c:
-        n_f = take_part(c.problem.ids, c.problem.carrier, c.coefficients.rough, n_a, c.n_c, c.n_t, c.n_j)
-    n_k = n_a + n_f + c.n_j
+        c.n_f = take_part(c.problem.ids, c.problem.carrier, c.coefficients.rough, n_a, c.n_c, c.n_t, c.n_j)
     if n_a > 0:
         predicted_rates(m, plan, s, c, t_next)
-    if n_f > 0 and not tangent_rates(s, c, t, t_next):
+    if c.n_f > 0 and not tangent_rates(s, c, t, t_next):
         return NOT_FINITE
     if c.n_j > 0:
         gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
-    if n_k == 0:
+    if n_a + c.n_j == 0:
         clear(c.p, c.n)
     if not solved:
         copy(s.next_v, s.v, s.n_q)
@@ -160,23 +159,24 @@ def step(
             return NOT_FINITE
         if not finite(s.v_free, s.n_q):
             return NOT_FINITE
-        if n_k > 0:
-            code = impulses(m, plan, s, c, n_a, n_f, t_next, external, solved)
+        if n_a + c.n_j > 0:
+            code = impulses(m, plan, s, c, n_a, t_next, external, solved)
             if code != FINISHED:
                 return code
             solved = False
-        if n_f == 0 and m.linear and not c.turning:
+        n_k = n_a + c.n_f + c.n_j
+        if c.n_f == 0 and m.linear and not c.turning:
             apply_once(plan, s, c, n_k)
             break
-        if apply(plan, s, c, n_f, n_k) or (m.linear and not c.turning):
+        if apply(plan, s, c, n_k) or (m.linear and not c.turning):
             break
         s.iteration += 1
         if s.iteration >= MAX_ITERATIONS:
             if s.moved > 0.0:
                 return NEWTON_FAILED
             break  # forces that cancel, at places which rounding does not tell apart
-    if c.coefficients.two or n_f > 1:
-        note_sticking(s, c, n_a, n_f)
+    if c.coefficients.two or c.n_f > 1:
+        note_sticking(s, c, n_a, c.n_f)
     position(plan, s)
     if c.n_j == 0:
         return FINISHED
