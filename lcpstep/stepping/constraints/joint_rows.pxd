@@ -15,7 +15,9 @@ cdef class Elimination:
 
 @cython.locals(regular=bint)
 cdef void factorise_joints(Elimination e, double* W, Py_ssize_t stride, Py_ssize_t first) noexcept nogil
-cdef bint arrived(double worst, double before, double slack) noexcept nogil
+cdef bint arrived(
+    double worst, double before, double slack, double* G, Py_ssize_t n, double* q, Py_ssize_t n_q
+) noexcept nogil
 cdef void diagonalise(Elimination e) noexcept nogil
 cdef void rotate(double* B, double* V, Py_ssize_t p, Py_ssize_t q, Py_ssize_t n) noexcept nogil
 cdef void solve_joints(Elimination e, double* out) noexcept nogil

@@ -265,9 +265,19 @@ def distribute(
     joint_impulses(e, ids, n_a, n_k, p)
 
 
-def arrived(worst: float, before: float, slack: float) -> bool:
-    """Whether Newton's iteration for positions is at its end: gaps within the slack, or no smaller for rounding."""
-    return worst <= slack or 0.5 * before < worst <= STALLED * slack
+def arrived(worst: float, before: float, slack: float, G: Doubles, n: int, q: Doubles, n_q: int) -> bool:
+    """Whether Newton's iteration for positions is at its end: gaps within the slack, or no smaller for rounding.
+
+    The slack is that of a step; rounding is that of the terms G q of n gaps as well, wherever the motion has gone.
+    """
+    if worst <= slack or not 0.5 * before < worst:
+        return worst <= slack
+    for k in range(n):
+        terms = 0.0
+        for i in range(n_q):
+            terms += abs(G[k * n_q + i] * q[i])
+        slack = max(slack, EPSILON * terms)
+    return worst <= STALLED * slack
 
 
 def joints_hold(

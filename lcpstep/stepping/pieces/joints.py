@@ -149,7 +149,7 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
         for k in range(j.n_j):
             if not abs(j.stretch[k]) <= worst:
                 worst, j.culprit = abs(j.stretch[k]), k
-        if arrived(worst, before, slack):
+        if arrived(worst, before, slack, j.J, j.n_j, q, j.n_q):
             return True
         if not worst < inf:
             return False

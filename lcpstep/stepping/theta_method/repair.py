@@ -47,7 +47,7 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
             worst = max(worst, -c.gaps[i])
         for i in range(c.n_j):
             worst = max(worst, abs(c.joint_gaps[i]))
-        if arrived(worst, before, plan.slack):
+        if arrived(worst, before, plan.slack, c.H, c.n, s.next_q, s.n_q):
             return FINISHED
         if not worst < inf:
             return PROJECTION_FAILED
