@@ -31,10 +31,10 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
     from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
-    from lcpstep.events.friction.problem import fill, list_unknowns, row_of
+    from lcpstep.events.friction.problem import fill, list_unknowns, row_of, size_of_rate, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
-    from lcpstep.kernels.coulomb import motion_of, solve_contacts
+    from lcpstep.kernels.coulomb import motion_of
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.tally import Tally
@@ -109,7 +109,7 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
         s.culprit = s.problem.ids[jams]
         if n_a == 1:
             return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
-    if not solve_contacts(s.problem, n_a, n_f):
+    if not solve_forces(s, n_a, n_f):
         return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
     other = opened_or_closed(s.problem, n_a) if jams < 0 and n_f == 0 else -1
     if other >= 0:
@@ -190,10 +190,7 @@ def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     """Size of the terms of the same acceleration, their signs left aside."""
-    m, i = n_a + n_f, row_of(s, a, n_a)
-    size = abs(s.bias[i])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
+    m, size = n_a + n_f, size_of_rate(s, row_of(s, a, n_a))
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size

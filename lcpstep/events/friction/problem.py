@@ -12,7 +12,9 @@ from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
     from lcpstep.events.friction.on_joints import rubs
-    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.pointers import abs
 
 
 def row_of(s: Rubbing, a: int, n_a: int) -> int:
@@ -47,3 +49,30 @@ def fill(s: Rubbing, n_a: int, n_f: int) -> None:
             if c >= 0 and s.free[c] == 0 and rubs(s, c):
                 share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
             s.problem.mobility[a * m + b] = s.S[i * r + k] - share
+
+
+def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Forces for the accelerations in `rate`; where there are none, for those that rounding does not tell from them.
+
+    What is held from both sides has two accelerations that are one but for its sign, each with a rounding of its own.
+    """
+    if solve_contacts(s.problem, n_a, n_f):
+        return True
+    allow(s, n_a, 1.0)
+    found = solve_contacts(s.problem, n_a, n_f)
+    allow(s, n_a, -1.0)
+    return found
+
+
+def allow(s: Rubbing, n_a: int, sign: float) -> None:
+    """Raise, or lower, the accelerations of the normals by their rounding."""
+    for a in range(n_a):
+        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size_of_rate(s, row_of(s, a, n_a))
+
+
+def size_of_rate(s: Rubbing, i: int) -> float:
+    """Size of the terms of row i's acceleration without contact forces, their signs left aside."""
+    size = abs(s.bias[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
+    return size

@@ -14,7 +14,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.coulomb import ContactProblem
+    from lcpstep.kernels.coulomb import ContactProblem, motion_of
     from lcpstep.kernels.linear import factorise, positive_definite, solve
     from lcpstep.kernels.vectors import largest
     from lcpstep.pointers import abs
@@ -30,9 +30,19 @@ def opened_or_closed(c: ContactProblem, n: int) -> int:
     for pressed in range(1 << n):
         if answers(c, n, pressed):
             for i in range(n):
-                if (c.b[i] > 0.0) != (c.impulse[i] > 0.0):
+                if (c.b[i] > 0.0) != (c.impulse[i] > 0.0) and parts(c, n, i):
                     return i
     return -1
+
+
+def parts(c: ContactProblem, n: int, i: int) -> bool:
+    """Whether contact i accelerates otherwise under the forces `b` than under those found.
+
+    Contacts that say the same share a force in many ways: one of them may carry none and stays closed all the same.
+    """
+    one, size = motion_of(c, c.impulse, i, n)
+    two, more = motion_of(c, c.b, i, n)
+    return abs(two - one) > CLEARLY * (size + more)
 
 
 def is_smooth(c: ContactProblem, n: int) -> bool:
