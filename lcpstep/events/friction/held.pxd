@@ -9,6 +9,7 @@ cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double entry(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef Py_ssize_t first_between(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef bint leans(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Rubbing s) noexcept nogil
 cdef void accelerate_on_joints(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil

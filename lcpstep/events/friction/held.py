@@ -79,11 +79,16 @@ def hold(s: Rubbing, i: int) -> bool:
         pivot -= s.L[k * r + j] * s.L[j * r + k]
         size += abs(s.L[k * r + j] * s.L[j * r + k])
     s.L[k * r + k] = pivot
-    # of a tangent that is held with its share of the normal's force the sign tells nothing
-    if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and i >= s.n_j + s.n_c and pull(s, i) != 0.0):
+    # of what leans on others the sign tells nothing: it does not slide
+    if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and leans(s, i)):
         s.n_held = k + 1
         return True
     return pivot >= -DEPENDENT * size
+
+
+def leans(s: Rubbing, i: int) -> bool:
+    """Whether row i is of a contact that leans on others."""
+    return i >= s.n_j and s.mode[(i - s.n_j) % s.n_c] == LEANS
 
 
 def hold_joints(s: Rubbing) -> None:

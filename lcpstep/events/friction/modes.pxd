@@ -24,8 +24,10 @@ cdef bint is_nothing(Rubbing s, Py_ssize_t a, double alpha, Py_ssize_t n_a, Py_s
 cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-@cython.locals(leaning=Py_ssize_t)
+@cython.locals(stands=bint)
 cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
+@cython.locals(leaning=Py_ssize_t)
+cdef void take_over(Rubbing s) noexcept nogil
 cdef void stand_alone(Rubbing s) noexcept nogil
 cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)

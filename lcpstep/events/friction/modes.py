@@ -28,6 +28,7 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
+    from lcpstep.events.friction.bracing import braced
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
     from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
@@ -205,7 +206,17 @@ def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 
 
 def adopt_modes(s: Rubbing) -> int:
-    """Take over the modes decided, and hold their rows."""
+    """Take over the modes decided, and hold their rows, or others that carry the load where these do not."""
+    take_over(s)
+    stands = hold_modes(s)
+    if stands and not braced(s):
+        take_over(s)
+        stands = hold_modes(s)
+    return DONE if stands else PAINLEVE_INCONSISTENT
+
+
+def take_over(s: Rubbing) -> None:
+    """The modes decided; what leans on others sticks where these, or nothing but it, can carry it."""
     leaning = 0
     for c in range(s.n_c):
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
@@ -213,7 +224,6 @@ def adopt_modes(s: Rubbing) -> int:
         leaning += s.mode[c] == LEANS
     if leaning > 0 and not stand(s):
         stand_alone(s)
-    return DONE if hold_modes(s) else PAINLEVE_INCONSISTENT
 
 
 def stand_alone(s: Rubbing) -> None:
