@@ -33,7 +33,6 @@ cdef void leave(
     Elimination e, double* H, Py_ssize_t n_q, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_j, Py_ssize_t k, double* out
 ) noexcept nogil
 cdef bint lost(Elimination e, double* H, Py_ssize_t n_q, Py_ssize_t i, Py_ssize_t k) noexcept nogil
-cdef void joint_impulses(Elimination e, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p) noexcept nogil
 cdef void distribute(
     Elimination e, double* solution, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_k, double* p, Py_ssize_t n
 ) noexcept nogil

@@ -181,7 +181,7 @@ def eliminate(
     """Problem of the contacts ids[:n_a] alone, from the n rows and rates of all, without the joints ids[n_a:n_k].
 
     W = H X^T are the mobilities of all; R = W - W_J S^-1 W_J^T, n_a numbers a row, those of the contacts. The rates
-    change in place; Z keeps what `joint_impulses` needs.
+    change in place; Z keeps what `distribute` needs.
     """
     n_j = n_k - n_a
     if n_j > 0:
@@ -244,25 +244,20 @@ def lost(e: Elimination, H: Doubles, n_q: int, i: int, k: int) -> bool:
     return 0.0 < left < LOST * whole
 
 
-def joint_impulses(e: Elimination, ids: Indices, n_a: int, n_k: int, p: Doubles) -> None:
-    """Impulses of the joints ids[n_a:n_k] that belong to those of the contacts ids[:n_a], both in p."""
+def distribute(
+    e: Elimination, solution: Doubles, ids: Indices, n_a: int, n_k: int, p: Doubles, n: int
+) -> None:
+    """Impulses p of all n rows: those of the contacts ids[:n_a], and of the joints ids[n_a:n_k] that go with them."""
     n_j = n_k - n_a
+    for i in range(n):
+        p[i] = 0.0
+    for k in range(n_a):
+        p[ids[k]] = solution[k]
     for j in range(n_j):
         total = -e.Z[n_a * n_j + j]
         for k in range(n_a):
             total -= e.Z[k * n_j + j] * p[ids[k]]
         p[ids[n_a + j]] = total
-
-
-def distribute(
-    e: Elimination, solution: Doubles, ids: Indices, n_a: int, n_k: int, p: Doubles, n: int
-) -> None:
-    """Impulses of all n rows; zero on those that take no part."""
-    for i in range(n):
-        p[i] = 0.0
-    for k in range(n_a):
-        p[ids[k]] = solution[k]
-    joint_impulses(e, ids, n_a, n_k, p)
 
 
 def arrived(worst: float, before: float, slack: float, G: Doubles, n: int, q: Doubles, n_q: int) -> bool:
