@@ -15,7 +15,11 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, after
+    from lcpstep.pointers import Doubles, abs, after
+
+
+JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
+BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
 
 
 def measure(s: Mechanism, t: float) -> bool:
@@ -70,11 +74,26 @@ def measure_again(s: Mechanism, t: float) -> bool:
 
 
 def constraint_rows(s: Mechanism, t: float, q: Doubles, v: Doubles) -> None:
-    """Jacobians of joints and contacts into R, and their rates at rest."""
+    """Jacobians of joints and contacts into R, and their rates at rest, on their side of a corner."""
     if s.n_j > 0:
-        gap_rates(s.joints, t, q, v, s.joint.G, s.joint.rate)
+        rates_on_side(s, s.joints, s.joint, t, q, v)
     if s.n_c > 0:
-        gap_rates(s.model, t, q, v, s.contact.G, s.contact.rate)
+        rates_on_side(s, s.model, s.contact, t, q, v)
+
+
+def rates_on_side(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """The same of one model. A callback tells on a corner of either side; where that is the other one, the rates here
+    are those of the straight line through two times inside, for there is no digit to lose: contacts may be at rest.
+    """
+    side = s.inside(t)
+    if side != t:
+        gap_rates(model, side, q, v, now.G, now.near)
+        gap_rates(model, 2.0 * side - t, q, v, now.G, now.shifted)
+    gap_rates(model, t, q, v, now.G, now.rate)
+    for i in range(now.n if side != t else 0):
+        jump, size = abs(now.near[i] - now.rate[i]), abs(now.near[i]) + abs(now.rate[i])
+        if jump > JUMPS * size + BENDS * abs(now.shifted[i] - now.near[i]):
+            now.rate[i] = 2.0 * now.near[i] - now.shifted[i]
 
 
 def biases(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:

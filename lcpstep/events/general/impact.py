@@ -61,6 +61,8 @@ def solve_law(s: Mechanism, rebounds: bool) -> bool:
         u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
         s.contact.loaded[c] = 0
         s.contact.b[a] = (1.0 + s.model.restitution[c]) * min(u, 0.0) if rebounds else min(u, 0.0)
+        if s.contact.closed[c] == 1:
+            s.contact.b[a] = s.contact.b[a] + s.contact.thrown[c]
     hold_joints(s)
     solved = solve_contacts(s)
     most = impulses(s)

@@ -14,6 +14,7 @@ import cython
 from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
+    from lcpstep.events.general.corner import pass_corner
     from lcpstep.events.general.equations import measure
     from lcpstep.events.general.keep import keep
     from lcpstep.events.general.modes import jump, obey, settle
@@ -94,8 +95,7 @@ def go_further(s: Mechanism, record: Record, tally: Tally) -> int:
     elif record.row == 0 and record.n_times == 0:
         keep(s, record, s.t0)
     elif s.t0 >= s.high:
-        s.find_corners(s.t0)
-        s.next = SETTLE
+        return pass_corner(s, record, tally)
     elif s.constant:
         fly(s, record, tally)
     else:

@@ -19,12 +19,13 @@ cdef class Seen:
 
 cdef class Rows(Seen):
     cdef object own
-    cdef Doubles rate, bias, shifted, turn_impulse, impulse, G
+    cdef Doubles rate, bias, shifted, near, turn_impulse, impulse, G
 
 
 cdef class Contacts(Rows):
     cdef object history, marks
     cdef Doubles struck, since, held_until, chatter_end, rest, owed, terms, turn_speed, synchronous, lands, b
+    cdef Doubles thrown
     cdef Doubles z, noise
     cdef Indices member, closed, was_closed, loaded, carried, parting
 

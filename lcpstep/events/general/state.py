@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
-ROWS, CONTACTS, MARKS = 5, 13, 6  # numbers per row, per contact besides, and marks of a contact
+ROWS, CONTACTS, MARKS = 6, 14, 6  # numbers per row, per contact besides, and marks of a contact
 BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
 NOISE = 64 * RESOLUTION
@@ -42,7 +42,7 @@ class Rows(Seen):
     """Contacts or joints at the state of the system; each is a row of the equations.
 
     rate, bias        gap velocity at rest, and gap acceleration at v' = 0
-    shifted           work space of the bias
+    shifted, near     work space of the bias, and of rates
     impulse           since the last kept state
     turn_impulse      since a number of impacts ago, at one instant
     G : (n, n_q)      Jacobian; also work space of the bias
@@ -58,7 +58,8 @@ class Rows(Seen):
         self.rate = doubles(self.own)
         self.bias = after(self.rate, n)
         self.shifted = after(self.bias, n)
-        self.turn_impulse = after(self.shifted, n)
+        self.near = after(self.shifted, n)
+        self.turn_impulse = after(self.near, n)
         self.impulse = after(self.turn_impulse, n)
         self.G = self.rate
 
@@ -74,6 +75,7 @@ class Contacts(Rows):
     terms             size of the terms of a gap velocity, at the impacts of one instant
     turn_speed        speed a number of impacts ago
     synchronous       whether gap and speed are those of q, v
+    thrown            by how much the gap velocity of a closed contact jumps, at a corner
     lands             when a short hop ends after the base time; see `hops`
     b, z, noise       by member: right-hand side and solution of the problem, rounding of b
     member            contacts of the problem
@@ -95,7 +97,8 @@ class Contacts(Rows):
         self.turn_speed = after(self.terms, n)
         self.synchronous = after(self.turn_speed, n)
         self.lands = after(self.synchronous, n)
-        self.b = after(self.lands, n)
+        self.thrown = after(self.lands, n)
+        self.b = after(self.thrown, n)
         self.z = after(self.b, n)
         self.noise = after(self.z, n)
         self.member = indices(self.marks)

@@ -1,0 +1,61 @@
+"""Corners of a scene, as kernels: beyond one accelerations, and velocities of obstacles, are those of the far side.
+
+Where the velocity of an obstacle jumps under a contact that is closed, u- = 0 is taken before the jump and u+ >= 0
+after it: the obstacle takes the body along or, dropping, leaves it. Bodies in flight see its new velocity.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.general.ends import NO_IMPULSES
+from lcpstep.kernels.status import BUFFER_FULL, DONE
+
+if not cython.compiled:
+    from lcpstep.events.general.equations import JUMPS, constraint_rows
+    from lcpstep.events.general.impact import strike
+    from lcpstep.events.general.modes import tell_impacts
+    from lcpstep.events.general.state import JUMP, SETTLE, Mechanism
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs
+
+
+def pass_corner(s: Mechanism, record: Record, tally: Tally) -> int:
+    """Enter the next smooth interval; an impact where an obstacle's velocity jumps under a closed contact."""
+    if record.event + 4 * s.n_c + 4 > record.event_capacity:
+        return BUFFER_FULL
+    s.next = SETTLE
+    if not throws(s):
+        return DONE
+    s.next = JUMP
+    solved = strike(s)
+    for c in range(s.n_c):
+        s.contact.thrown[c] = 0.0
+    if not solved:
+        return NO_IMPULSES
+    tell_impacts(s, record, tally, s.t0)
+    return DONE
+
+
+def throws(s: Mechanism) -> bool:
+    """Whether a closed contact is struck or left by its obstacle; gap velocities of open ones are the new ones."""
+    some = False
+    before = s.left.curve
+    copy(before, s.contact.rate, s.n_c)
+    s.find_corners(s.t0)
+    constraint_rows(s, s.t0, s.q, s.v)
+    for c in range(s.n_c):
+        jump, size = s.contact.rate[c] - before[c], abs(s.contact.rate[c]) + abs(before[c])
+        for j in range(s.n_q):
+            size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
+        s.contact.terms[c], s.contact.parting[c], s.contact.thrown[c] = size, 0, 0.0
+        if abs(jump) <= JUMPS * size:
+            jump = 0.0
+        if s.contact.closed[c] == 1:
+            s.contact.thrown[c], some = jump, some or jump != 0.0
+        else:
+            s.contact.speed[c] = s.contact.speed[c] + jump
+        s.left.speed[c] = s.contact.speed[c]
+    return some
