@@ -109,7 +109,10 @@ class Attempts(Parts):
         return deepest
 
     def sunk(self) -> float:
-        """How far, along a coordinate, the start lay within what has struck, see `astray`; gaps into w.gap_try."""
+        """How far, along a coordinate, the start lay within what has struck, see `astray`; gaps into w.gap_try.
+
+        What has struck may have been closed by it, while another contact there was thrown off.
+        """
         furthest, struck = 0.0, False
         for c in range(self.w.n_c):
             struck = struck or (self.one.status[c] != CLOSED and self.saved.gap[c] == 0.0)
@@ -117,7 +120,7 @@ class Attempts(Parts):
             gaps(self.m, self.now(), self.saved.q, self.saved.v, self.w.gap_try)
         for c in range(self.w.n_c if struck else 0):
             steep = largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
-            if self.saved.status[c] != CLOSED and self.saved.gap[c] == 0.0 and steep > 0.0:
+            if (self.saved.status[c] == CLOSED or self.saved.gap[c] == 0.0) and steep > 0.0:
                 furthest = max(furthest, -self.w.gap_try[c] / steep)
         return furthest
 

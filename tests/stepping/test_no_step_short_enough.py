@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.judge.describe import Description
-from lagrangian import Scene, System
+from lagrangian import LinearContacts, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 # Four coordinates between four planes in a shaking frame, in units in which a gap's speed of 1.4e-5 makes velocities
@@ -85,3 +85,29 @@ def test_a_force_may_jump_where_steps_of_every_size_end(at, h, tolerance):
     )
     assert m.v[-1, 0] == pytest.approx(3.0 - 6.0 * at, abs=tolerance)
     assert m.counts.steps < 1000
+
+
+def pressed(t, q, v, p, out):
+    out[0] = -28.0
+
+
+def two_tables(t, q, v, p, out):
+    """Both swing; the one below the body from time 0 is overtaken by the other."""
+    for i in range(2):
+        a, phase = p[2 * i], p[2 * i + 1]
+        out[i, 0] = a * (math.sin(8.0 * t + phase) - math.sin(phase))
+        out[i, 1], out[i, 2] = 8.0 * a * math.cos(8.0 * t + phase), -64.0 * a * math.sin(8.0 * t + phase)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 5e-4, 2e-4, 1e-4, 1e-5])
+def test_a_late_impact_that_closes_and_throws_off_a_neighbour_is_not_counted_again(tolerance):
+    """The impact is late by what the tolerance allows, and the body rises by that when the next step begins."""
+    for end in np.arange(0.3, 0.6, 0.01):
+        scene = Scene(
+            System(1, 1.0, pressed), 0.0, 0.74, (0.0, end), p=[-0.375, 0.8125, -0.125, -1.125],
+            contacts=LinearContacts([[1.0], [2.0]], 0.0, 0.0, motion=two_tables),
+        )  # fmt: skip
+        m = simulate(scene, Located(0.77 * end, tolerance=tolerance))
+        assert m.status == Status.DONE, (end, m.message)
+        true = simulate(scene, EventDriven(), keep=m.t).q
+        assert np.max(np.abs(m.q - true)) <= tolerance
