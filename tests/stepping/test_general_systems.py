@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System
-from lcpstep import Moreau, simulate
+from lcpstep import Moreau, Status, simulate
 from tests.known import SPREAD, pendulum_angle, without_contact
 from tests.models import bowl_scene, no_damping, pendulum
 from tests.stepping.test_order import slope
@@ -198,3 +198,25 @@ def test_impacts_with_a_curved_moving_obstacle_obey_newton_with_order_one(theta)
             worst.append(abs(u[1] + 0.6 * u[0]))
         errors.append(np.mean(worst))
     assert slope(levels, errors) == pytest.approx(1.0, abs=0.25)
+
+
+def sprung(t, q, v, p, out):
+    for i in range(2):
+        out[i] = -9.0 * p[0] - 4.0 * q[i] - 0.5 * v[i]
+
+
+@pytest.mark.parametrize("at", [0.0, 1.0, -2.25])
+@pytest.mark.parametrize("unit", [2.0**20, 2.0**30, 2.0**60, 2.0**-30])
+def test_moreau_moves_alike_whatever_the_unit_of_length(unit, at):
+    """From rest, where forces are large or cancel: differences were of 1e-10 m/s, which showed rounding."""
+
+    def run(unit):
+        contacts = LinearContacts(np.eye(2), 4.0 * unit, 0.5)
+        scene = Scene(
+            System(2, np.eye(2), sprung), [at * unit] * 2, [0.0, 0.0], (0.0, 3.0), contacts=contacts, p=[unit]
+        )
+        return simulate(scene, Moreau(1.0 / 64.0))
+
+    one, other = run(1.0), run(unit)
+    assert other.status == Status.DONE
+    np.testing.assert_allclose(other.q, unit * one.q, rtol=0, atol=1e-9 * unit)

@@ -3,10 +3,11 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.stepping.theta_method.moving cimport State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
-cdef double DIFFERENCE
+cdef double DIFFERENCE, SLOW, FAR
 cdef Py_ssize_t REFRESH
 
 @cython.locals(fresh=bint, given=bint)
 cdef bint linearise(Model m, Plan plan, State s, double t, double t_next) noexcept nogil
+cdef double least_speed(State s, double h) noexcept nogil
 cdef void residual(Model m, Plan plan, State s, double t_next, double* v) noexcept nogil
 cdef void given_jacobian(Model m, Plan plan, State s, double t_next) noexcept nogil

@@ -19,11 +19,13 @@ if not cython.compiled:
     from lcpstep.kernels.linear import factorise, positive_definite, solve
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import add, copy, largest
-    from lcpstep.pointers import Doubles
+    from lcpstep.pointers import Doubles, abs, max
     from lcpstep.stepping.theta_method.moving import State
     from lcpstep.stepping.theta_method.plan import Plan
 
 DIFFERENCE = 1e-7  # relative; A only steers the iteration, its error does not enter the motion
+SLOW = 1e-3  # velocities below it are as good as none, as are this share of what the forces make in a step,
+FAR = 1e-7  # and this of the way to where the body is, in a step: differences are to be none of rounding
 REFRESH = 5  # iterations with one A
 
 
@@ -36,7 +38,7 @@ def linearise(m: Model, plan: Plan, s: State, t: float, t_next: float) -> bool:
         copy(s.J, s.M_start, n * n)
         if not positive_definite(s.J, n):
             return False
-    shift = DIFFERENCE * largest(s.next_v, 1e-3, n)
+    shift = DIFFERENCE * largest(s.next_v, least_speed(s, plan.h), n)
     for j in range(n if fresh and not given else 0, -1, -1):  # the last one at next_v itself
         copy(s.try_v, s.next_v, n)
         if j > 0:
@@ -58,6 +60,15 @@ def linearise(m: Model, plan: Plan, s: State, t: float, t_next: float) -> bool:
     for i in range(n):
         s.v_free[i] = s.next_v[i] - s.R[i]
     return True
+
+
+def least_speed(s: State, h: float) -> float:
+    """The velocity below which a body counts as being at rest, whatever the units."""
+    least = SLOW
+    for i in range(s.n_q):
+        made = h * abs(s.force[i]) / s.M_start[i * s.n_q + i]
+        least = max(least, max(SLOW * made, FAR * abs(s.q[i]) / h))
+    return least
 
 
 def residual(m: Model, plan: Plan, s: State, t_next: float, v: Doubles) -> None:
