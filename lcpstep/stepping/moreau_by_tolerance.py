@@ -7,6 +7,8 @@ Beside the difference of the two runs these count as errors, for both may agree 
     depth            by which a contact without impulse has gone below its obstacle, or has been below in between: an
                      impact that is still to come, so that it takes no more than a step with an event may, however
                      long the step (up to there velocities are wrong by all of their jump)
+    height           by which a gap has opened above a contact that is pressed and does not strike: its obstacle has
+                     gone away within the step, and is still again
 
 and what releases and friction hide (`hidden_switches`).
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
@@ -171,6 +173,8 @@ class Attempts(Control):
                 # normals that are nearly parallel, or other units, make of a slow approach a jump of velocities
                 closes = abs(self.s.u[i] - self.part_u[i]) > slow or (thrown and self.s.closed[i] == 1)
                 struck = struck or closes
+                if not closes:
+                    gained = max(gained, self.s.g[i] - max(0.0, self.part_g[i]))
             else:
                 gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
                 if gained > 0.0:

@@ -228,3 +228,29 @@ def test_friction_in_a_mechanism_is_adapted_too():
         assert m.status == Status.DONE
         found.append(np.max(np.abs(m.q - fine)))
     assert np.all(np.array(found) <= 3.0 * np.array(TOLERANCES[:3]) * (1.0 + np.max(np.abs(fine))))
+
+
+def sunk(t, q, v, p, out):
+    """A table that sinks by p[0] from time p[1] to p[2], and is still before and after."""
+    x = min(1.0, max(0.0, (t - p[1]) / (p[2] - p[1])))
+    out[0, 0] = -p[0] * x * x * (3.0 - 2.0 * x)
+    out[0, 1] = -p[0] * 6.0 * x * (1.0 - x) / (p[2] - p[1])
+    out[0, 2] = -p[0] * (6.0 - 12.0 * x) / (p[2] - p[1]) ** 2 if 0.0 < x < 1.0 else 0.0
+
+
+@pytest.mark.parametrize("span", [1.0, 3.0])
+@pytest.mark.parametrize("begins", [1.75, 1.7, 1.64])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_a_table_that_sinks_between_two_looks_leaves_what_lay_on_it(tolerance, begins, span):
+    """Its speed is zero at both, and so is that of the body, which a spring and its weight press onto it."""
+    ends = begins + 0.125
+    scene = Scene(
+        LinearSystem(0.5, K=64.0, force=-2.0), 0.0, 0.0, (0.0, 3.0),
+        LinearContacts(1.0, 0.0, 0.0, motion=sunk), p=[0.4375, begins, ends], corners=[begins, ends],
+    )  # fmt: skip
+    m = simulate(scene, Moreau(span, tolerance=tolerance))
+    assert m.status == Status.DONE
+    since = np.maximum(m.t - begins, 0.0)  # it swings about -2 / 64 with sqrt(128) rad/s
+    np.testing.assert_allclose(
+        m.q[:, 0], -(1.0 - np.cos(np.sqrt(128.0) * since)) / 32.0, rtol=0, atol=tolerance
+    )
