@@ -207,7 +207,7 @@ def eliminate(
 def sweep_out(
     e: Elimination, H: Doubles, X: Doubles, n_q: int, ids: Indices, n_a: int, n_j: int, R: Doubles
 ) -> None:
-    """R of what joints leave of rows, P_k = H_k - sum Z_kj H_j, and of X so: the difference of R may have no digits."""
+    """R of what joints leave of rows, P_k = H_k - sum Z_kj H_j, and of X so: R as a difference has no digits."""
     for k in range(n_a):
         leave(e, H, n_q, ids, n_a, n_j, k, after(e.P, k * n_q))
     for k in range(n_a):
