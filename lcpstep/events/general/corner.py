@@ -13,13 +13,13 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE
 
 if not cython.compiled:
     from lcpstep.events.general.equations import JUMPS, constraint_rows
-    from lcpstep.events.general.impact import strike
+    from lcpstep.events.general.impact import speed_tolerance, strike
     from lcpstep.events.general.modes import tell_impacts
     from lcpstep.events.general.state import JUMP, SETTLE, Mechanism
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max
 
 
 def pass_corner(s: Mechanism, record: Record, tally: Tally) -> int:
@@ -43,6 +43,7 @@ def throws(s: Mechanism) -> bool:
     """Whether a closed contact is struck or left by its obstacle; gap velocities of open ones are the new ones."""
     some = False
     before = s.left.curve
+    constraint_rows(s, s.t0, s.q, s.v)  # as they are here, and not where gaps were last looked at
     copy(before, s.contact.rate, s.n_c)
     s.find_corners(s.t0)
     constraint_rows(s, s.t0, s.q, s.v)
@@ -51,7 +52,7 @@ def throws(s: Mechanism) -> bool:
         for j in range(s.n_q):
             size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
         s.contact.terms[c], s.contact.parting[c], s.contact.thrown[c] = size, 0, 0.0
-        if abs(jump) <= JUMPS * size:
+        if abs(jump) <= max(JUMPS * size, speed_tolerance(s, c)):
             jump = 0.0
         if s.contact.closed[c] == 1:
             s.contact.thrown[c], some = jump, some or jump != 0.0

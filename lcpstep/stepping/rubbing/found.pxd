@@ -1,5 +1,4 @@
 cimport cython
-from libc.math cimport sqrt
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t OPEN, SLIDES

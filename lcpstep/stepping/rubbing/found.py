@@ -17,8 +17,6 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from math import sqrt
-
     from lcpstep.events.friction.equations import measure_biases, measure_rates, size_of
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.on_joints import rubs
@@ -211,9 +209,9 @@ def low_hop(s: Strides, g: int, h: float) -> float:
     c, u = g // GUARDS, s.begin_slope[g]
     if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1 or u <= 0.0:
         return 0.0
-    half, above = 0.5 * s.begin_bend[c], max(s.begin_value[g], 0.0)
-    rises = half >= 0.0 or u * u > -4.0 * half * (s.band[g] - above)
-    return 0.0 if rises else min(-0.5 * (u + sqrt(u * u - 4.0 * half * above)) / half, h)
+    half = 0.5 * s.begin_bend[c]
+    rises = half >= 0.0 or u * u > -4.0 * half * s.band[g]
+    return 0.0 if rises else min(-u / half, h)
 
 
 def locate(s: Strides, g: int, h: float) -> float:
