@@ -27,7 +27,7 @@ if not cython.compiled:
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs, inf
+    from lcpstep.pointers import abs
 
 PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
 
@@ -68,12 +68,12 @@ def contact_forces(s: Mechanism, t: float) -> int:
 
 
 def stands(s: Mechanism) -> bool:
-    """Whether no contact that touches accelerates into its surface, and none pulls, if forces are constant.
+    """Whether no contact that touches accelerates into its surface, and none pulls, under constant forces.
 
     Rows that rounding has dropped bear no load: what has opened by the force of such a contact would close again at
     once, for ever. Forces that are not constant let go of what pulls in the next step.
     """
-    most = largest(s.contact.multiplier, 0.0, s.n_c) if s.constant else inf
+    most = largest(s.contact.multiplier, 0.0, s.n_c)
     for c in range(s.n_c):
         if s.contact.multiplier[c] < -CHECKED * most:
             return False

@@ -203,7 +203,7 @@ def forces(s: Mechanism, t: float) -> int:
     code = contact_forces(s, t) if s.constant else balanced_forces(s, t)
     if code == DONE:
         s.bare = closed == 0
-        code = DONE if stands(s) else NO_FORCES
+        code = NO_FORCES if s.constant and not stands(s) else DONE
     return code
 
 
