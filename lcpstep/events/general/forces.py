@@ -22,6 +22,7 @@ if not cython.compiled:
         hold_joints,
         joints_own,
         note,
+        size_of_rate,
         solve_held,
     )
     from lcpstep.events.general.problem import CHECKED, solve_contacts
@@ -87,12 +88,7 @@ def enters(s: Mechanism, c: int) -> bool:
     """Whether contact c accelerates into its surface, by more than rounding."""
     i = s.n_j + c
     alpha = product(s.R, s.a, i, s.n_q) + s.contact.bias[c]
-    if alpha >= 0.0:
-        return False
-    size = terms(s, c)
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j] * s.a[j])
-    return alpha < -PASSES * size
+    return alpha < 0.0 and alpha < -PASSES * size_of_rate(s, i, s.a)
 
 
 def presses(s: Mechanism) -> bool:

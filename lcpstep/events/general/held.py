@@ -24,9 +24,7 @@ if not cython.compiled:
 REFINEMENTS = 6
 PARTED = 1e3  # tolerances by which joints that say the same may differ
 DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
-DRIFT = (
-    1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero, and no rounding
-)
+DRIFT = 1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero
 
 
 def hold(s: Mechanism, i: int) -> None:
@@ -148,12 +146,16 @@ def note(s: Mechanism, a: Doubles) -> None:
 
 def drifts(s: Mechanism, a: Doubles, c: int) -> bool:
     """Whether a gap acceleration, in `curve`, is no rounding under the acceleration a."""
-    i, alpha = s.n_j + c, abs(s.contact.curve[c])
+    alpha = abs(s.contact.curve[c])
+    return alpha > 0.0 and alpha > DRIFT * size_of_rate(s, s.n_j + c, a)
+
+
+def size_of_rate(s: Mechanism, i: int, a: Doubles) -> float:
+    """Size of the terms of row i's acceleration under a, and without the rows held, their signs left aside."""
     size = abs(bias_of(s, i))
-    if alpha > DRIFT * size:
-        for j in range(s.n_q):
-            size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
-    return alpha > DRIFT * size
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
+    return size
 
 
 def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:
@@ -211,12 +213,9 @@ def is_held(s: Mechanism, i: int) -> bool:
 def contradiction(s: Mechanism, a: Doubles) -> int:
     """The first joint left out whose acceleration is not zero under the others, or -1."""
     for i in range(s.n_j):
-        if not is_held(s, i):
-            size = abs(s.joint.bias[i])
-            for j in range(s.n_q):
-                size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
-            if abs(product(s.R, a, i, s.n_q) + s.joint.bias[i]) > DISAGREEMENT * size:
-                return i
+        off = abs(product(s.R, a, i, s.n_q) + s.joint.bias[i])
+        if not is_held(s, i) and off > DISAGREEMENT * size_of_rate(s, i, a):
+            return i
     return -1
 
 

@@ -22,10 +22,10 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, inf, max
     from lcpstep.stepping.constraints.joint_rows import (
         CONTRADICTION,
-        NOTHING,
         Elimination,
         arrived,
         factorise_joints,
+        leave,
         solve_joints,
     )
 
@@ -63,7 +63,7 @@ class Joints:
         self.failed = self.culprit = 0
         self.moved = False
         n, n_q, n_c = self.n_j, self.n_q, system.n_c
-        self.elimination = Elimination(n, 0, 0)
+        self.elimination = Elimination(n, 0, n_q)
         self.numbers = np.zeros((VECTORS + 3 * n_q + n + n_c) * n + (2 + n_c) * n_q)
         self.turning = doubles(self.numbers)
         self.stretch = after(self.turning, n)
@@ -129,13 +129,7 @@ def reduce(j: Joints, M: Doubles, c: int, row: Doubles, x: Doubles) -> None:
     for k in range(j.n_j):
         j.elimination.y[k] = -product(j.J, x, k, n_q)
     solve_joints(j.elimination, share)
-    for i in range(n_q):
-        P[i], size = row[i], abs(row[i])
-        for k in range(j.n_j):
-            P[i] += j.J[k * n_q + i] * share[k]
-            size += abs(j.J[k * n_q + i] * share[k])
-        if abs(P[i]) <= NOTHING * size:
-            P[i] = 0.0
+    leave(j.elimination, row, j.J, share, 1.0, n_q, P)
     response(j.system, M, j.shifted, P, x)
 
 

@@ -12,7 +12,7 @@ cdef Py_ssize_t impulses(
 ) noexcept nogil
 cdef bint leave_out_what_bears_nothing(Rows c, Py_ssize_t n_a) noexcept nogil
 cdef bint loads_nothing(State s, Rows c, Py_ssize_t n_a) noexcept nogil
-cdef double terms(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
+cdef double size_of_rate(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
 cdef void without_joints(Plan plan, State s, Rows c, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
 @cython.locals(impact=bint)
 cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, bint rebounds) noexcept nogil

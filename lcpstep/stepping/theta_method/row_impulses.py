@@ -76,7 +76,7 @@ def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
     eliminate(c.elimination, plan.W, c.n, c.H, plan.X, s.n_q, ids, n, n_k, R, rate)
     if c.n_j > 0:
         for k in range(n):
-            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * terms(c, s.v_free, ids[k], s.n_q):
+            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, s.v_free, ids[k], s.n_q):
                 rate[k] = 0.0
 
 
@@ -118,7 +118,7 @@ def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
         impact = strikes(s, c, n_a)
     if not rebounds:
         for k in range(n_a):
-            rate[k] += ROUNDING * terms(c, s.v_free, ids[k], s.n_q)
+            rate[k] += ROUNDING * size_of_rate(c, s.v_free, ids[k], s.n_q)
     elif not c.in_turn:
         for k in range(n_a):
             rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
@@ -182,11 +182,11 @@ def round_off(c: Rows, v: Doubles, n_k: int, n_q: int) -> None:
     For a frictional contact that stays closed has no approach: whether it jams must not hang on a rounding's sign.
     """
     for k in range(n_k):
-        if not abs(c.problem.rate[k]) > NO_APPROACH * terms(c, v, c.problem.ids[k], n_q):
+        if not abs(c.problem.rate[k]) > NO_APPROACH * size_of_rate(c, v, c.problem.ids[k], n_q):
             c.problem.rate[k] = 0.0
 
 
-def terms(c: Rows, v: Doubles, i: int, n_q: int) -> float:
+def size_of_rate(c: Rows, v: Doubles, i: int, n_q: int) -> float:
     """Size of what the rate of row i is a sum of."""
     size = abs(c.H_t[i])
     for j in range(n_q):
