@@ -10,6 +10,7 @@ cdef class Function:
     cdef Py_ssize_t[5] sizes
     cdef Py_ssize_t length
     cdef readonly bint given
+    cdef readonly Py_ssize_t address
     cdef void fill(self, double t, double* q, double* v, double* out) noexcept nogil
 
 

@@ -31,7 +31,7 @@ class Function:
     """
 
     def __init__(self, address: int, p: Any, n_q: int, n_v: int, shape: tuple[int, ...]) -> None:
-        self.kept, self.given = p, address != 0
+        self.kept, self.given, self.address = p, address != 0, address
         self.f, self.p = callback_at(address), doubles(p)
         self.length = shape[0] * (shape[1] if len(shape) > 1 else 1)
         sizes = (n_q, n_v, len(p), shape[0], shape[1] if len(shape) > 1 else 0)

@@ -5,7 +5,8 @@ from lcpstep.pointers cimport Doubles
 
 @cython.final
 cdef class Model:
-    cdef object kept, of_modes
+    cdef readonly object kept
+    cdef object of_modes
     cdef readonly dict arrays
     cdef readonly Py_ssize_t n_q, n_c
     cdef public Py_ssize_t mode

@@ -31,6 +31,7 @@ class Model:
     frame_now : (n_q, 3)    work space: c, c', c''
     motion_now : (n_c, 3)   work space: s, s', s''
     arrays      the arrays by name, for Python
+    kept        Python functions that are called back, with what must outlive this object
 
     Parameters
     ----------

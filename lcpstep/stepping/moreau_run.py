@@ -22,7 +22,7 @@ from lcpstep.stepping.extent import is_stiff, places
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import RESTING, number
+from lcpstep.stepping.steps import RESTING, inverse, number
 from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
@@ -185,14 +185,14 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     X and W are those of the contacts; with tangents or joints, or where they change, there is but room for them.
     """
     M, C, K, G = (m.arrays[name] for name in ("M", "C", "K", "G"))
-    inverse: Any = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
+    A_inverse: Any = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
     A_q = A_v = np.zeros(M.shape)
     if is_stiff(m):
-        inverse = np.linalg.inv(M + h * theta * C + (h * theta) ** 2 * K)
-        A_q, A_v = h * inverse @ K, inverse @ (h * C + h * h * theta * K)
+        A_inverse = inverse(M + h * theta * C + (h * theta) ** 2 * K)
+        A_q, A_v = h * A_inverse @ K, A_inverse @ (h * C + h * h * theta * K)
     X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
     if c.n == m.n_c:
-        A_g = inverse @ G.T
+        A_g = A_inverse @ G.T
         X, W = A_g.T, G @ A_g
-    matrices = {"A_q": A_q, "A_v": A_v, "A_f": h * inverse, "X": X, "W": W}
+    matrices = {"A_q": A_q, "A_v": A_v, "A_f": h * A_inverse, "X": X, "W": W}
     return Plan(h, theta, slack, constant, matrices)

@@ -14,13 +14,13 @@ MARGIN = 2.0**-49  # relative: what rounding may make of the phase of a callback
 
 def start_side(scene: Scene, t: float) -> float:
     """The time t, or, where that is a corner of the scene to rounding, the next one that callbacks tell from it."""
-    corners = np.asarray(scene.corners)
-    if len(corners) == 0:
-        return t
     period = scene.period
     periodic = math.isfinite(period)
     margin = MARGIN * max(abs(t), period if periodic else scene.t_span[1] - scene.t_span[0])
-    apart = t - corners
-    if periodic:
-        apart = (apart + 0.5 * period) % period - 0.5 * period
-    return t + margin if np.any(np.abs(apart) <= margin) else t
+    for corner in np.asarray(scene.corners).tolist():
+        apart = t - corner
+        if periodic:
+            apart = (apart + 0.5 * period) % period - 0.5 * period
+        if abs(apart) <= margin:
+            return t + margin
+    return t

@@ -5,9 +5,11 @@ Steps that are lost in the rounding of the times they are added to are refused: 
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
 
@@ -20,6 +22,11 @@ RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 def largest(*numbers: Any) -> float:
     """The largest of all numbers by its size; 0 of none."""
     return float(np.abs(np.concatenate([np.ravel(x) for x in numbers])).max(initial=0.0))
+
+
+def inverse(A: Any) -> NDArray[np.float64]:
+    """The inverse of a small matrix; of one number without asking LAPACK."""
+    return np.asarray(1.0 / A if A.size == 1 else np.linalg.inv(A))
 
 
 def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
@@ -48,7 +55,8 @@ def number(span: tuple[float, float], h: float) -> int:
     return divided(span, h)[-1][3]
 
 
-def divided(span: tuple[float, float], h: float) -> list[tuple[float, float, int, int]]:
+@functools.lru_cache(maxsize=16)
+def divided(span: tuple[float, float], h: float) -> tuple[tuple[float, float, int, int], ...]:
     """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
     start, end = span
     steps = (end - start) / h
@@ -58,4 +66,4 @@ def divided(span: tuple[float, float], h: float) -> list[tuple[float, float, int
     if whole == 0 or not fits:
         last = start + whole * h
         found.append((end - last, last, whole, whole + 1))
-    return found
+    return tuple(found)

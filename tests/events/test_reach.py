@@ -77,3 +77,28 @@ def test_states_within_a_leap_are_those_of_the_free_motion():
     kept = simulate(make(), EventDriven(), keep=wanted)
     np.testing.assert_allclose(kept.q, q, rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(kept.v, v, rtol=0.0, atol=1e-11)
+
+
+HEIGHT = 0.0
+
+
+def raised(t, q, v, p, out):
+    out[0, 0] = HEIGHT * (1.0 - np.cos(2.0 * np.pi * t))
+    out[0, 1] = HEIGHT * 2.0 * np.pi * np.sin(2.0 * np.pi * t)
+    out[0, 2] = HEIGHT * 4.0 * np.pi**2 * np.cos(2.0 * np.pi * t)
+
+
+@pytest.mark.parametrize("plain", [False, True])
+def test_a_table_is_looked_at_again_when_its_height_has_changed(plain, monkeypatch):
+    """In a scene that stays the same object; the flight would pass over it, with the bounds of before."""
+    if plain:
+        monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    scene = above(raised)
+    low = simulate(scene, EventDriven()).impacts[0]
+    monkeypatch.setattr(f"{__name__}.HEIGHT", 0.2)
+    high = simulate(scene, EventDriven())
+    assert 0.1 + 3.0 * low.time - 5.0 * low.time**2 == pytest.approx(0.0, abs=1e-12)
+    t = high.impacts[0].time
+    assert t < low.time - 0.01
+    assert 0.1 + 3.0 * t - 5.0 * t**2 == pytest.approx(0.2 * (1.0 - np.cos(2.0 * np.pi * t)), abs=1e-12)
+    assert np.array_equal(high.t, simulate(above(raised), EventDriven()).t)

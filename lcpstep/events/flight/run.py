@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,13 +26,26 @@ from lcpstep.recording import Kept, Recorder, States
 from lcpstep.turns import turns
 
 Array = NDArray[np.float64]
+KNOWN: WeakKeyDictionary[Scene, tuple[Any, dict[str, float]]] = WeakKeyDictionary()  # what scenes have told
 
 
 def bounds(scene: Scene, m: Model, o: Any, method: Any) -> dict[str, float]:
-    """What a flight is given by name, see `motion.Flight`."""
+    """What a flight is given by name, see `motion.Flight`.
+
+    The scene is looked at once, unless its functions are compiled anew, or are in Python, which may see to changes.
+    """
+    functions, told = KNOWN.get(scene, (None, {}))
+    if m.kept or functions != (m.frame.address, m.motion.address):
+        told = bounds_of_motion(scene, m, o)
+        KNOWN[scene] = (m.frame.address, m.motion.address), told
+    return told | {"rtol": method.rtol, "atol": method.atol}
+
+
+def bounds_of_motion(scene: Scene, m: Model, o: Any) -> dict[str, float]:
+    """The same but for tolerances."""
     rate = max(math.sqrt(abs(o.w2)), abs(o.delta), abs(o.Omega))
     samples = seen(scene, m) if m.frame.given or m.motion.given else None
-    given = {"scan": scan_interval(scene, m, rate, samples), "rtol": method.rtol, "atol": method.atol}
+    given = {"scan": scan_interval(scene, m, rate, samples)}
     if scene.n_c == 0:
         return given | {"clear": math.inf, "bend": 0.0, "size": 0.0, "rate": 0.0}
     far = reach(scene, m, samples)

@@ -16,6 +16,7 @@ from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.start import MARGIN
+from lcpstep.stepping.steps import inverse
 from lcpstep.turns import turns
 
 if TYPE_CHECKING:
@@ -79,17 +80,17 @@ def implicit(m: Model, stiff: bool, method: Located, h: float) -> Array:
     if not (stiff and method.order == 2):
         return m.arrays["M_inverse"]
     M, C, K = (m.arrays[name] for name in ("M", "C", "K"))
-    return np.asarray(np.linalg.inv(M + 0.5 * h * C + 0.25 * h**2 * K))
+    return inverse(M + 0.5 * h * C + 0.25 * h**2 * K)
 
 
-def size(scene: Scene, m: Model, method: Located, piece: float, inverse: Array) -> float:
+def size(scene: Scene, m: Model, method: Located, piece: float, pushes: Array) -> float:
     """Lengths at hand at the start [m]: places, offsets, what moves in a piece of motion: what rounding is of.
 
     1 where nothing is there yet, and where gaps are functions, of which nothing is known but the places. By a
     tolerance steps are shorter than h; what they may be wrong by is no gap.
     """
     at, pushed = (scene.t_span[0], scene.q0, scene.v0), method.tolerance is None
-    own = extent(m, *at, method.h, piece, inverse, pushed)
+    own = extent(m, *at, method.h, piece, pushes, pushed)
     if method.tolerance is not None:
         own = max(own, min(1.0, NO_GAP * method.tolerance / ROUNDING))
     return own or 1.0
