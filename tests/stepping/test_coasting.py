@@ -1,9 +1,9 @@
-"""Free steps taken in registers are those of the general step, to the last bit."""
+"""Steps of one coordinate and contact are those of the general step, to the last bit."""
 
 import numpy as np
 import pytest
 
-from lagrangian import scenes
+from lagrangian import LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, Moreau, simulate
 
 SCENES = [
@@ -11,7 +11,12 @@ SCENES = [
     scenes.impact_oscillator(t_end=20.0),
     scenes.cam_follower(t_end=0.5),
     scenes.cam_follower(rpm=120.0, q0=0.0, v0=0.0, t_end=0.5),
-]
+    Scene(
+        name="stopped, held and let go",  # by a spring at a stop that it leaves again
+        system=LinearSystem(2.0, C=0.3, K=90.0, force=-1.0), q0=0.3, v0=-2.0, t_span=(0.0, 2.0),
+        contacts=LinearContacts(-3.0, offset=1.2, restitution=0.2),
+    ),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda s: s.name)

@@ -10,5 +10,6 @@ NEWTON_FAILED, JOINTS_FAILED = int(Status.NEWTON_FAILED), int(Status.JOINTS_FAIL
 PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
 NEED_LCP = -2  # solve the problem at hand
 # Kinds of events
+NO_EVENT = -1
 IMPACT, STICK, RELEASE = int(Kind.IMPACT), int(Kind.STICK), int(Kind.RELEASE)
 MAX_ITERATIONS = 25  # of Newton, per step

@@ -25,9 +25,6 @@ cdef void begin(Model m, State s, Rows c, Record record, double t, double side) 
 cdef Py_ssize_t end_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, Py_ssize_t events
 ) noexcept nogil
-cdef void coast(
-    Model m, Plan plan, State s, Record record, double t0, Py_ssize_t first, Py_ssize_t last
-) noexcept nogil
 cdef void advance(Model m, State s, Rows c, double t) noexcept nogil
 cdef void measure(Model m, State s, Rows c, double t) noexcept nogil
 cdef void keep_times(double h, State s, Record record, double t, double t_next) noexcept nogil

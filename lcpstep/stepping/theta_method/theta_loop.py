@@ -9,12 +9,13 @@ from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINIT
 
 if not cython.compiled:
     from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, obstacle, total_force
+    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, finite, product
     from lcpstep.pointers import min
     from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.one_contact import glide
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.theta_step import take_step
 
@@ -52,16 +53,18 @@ class Steps(Stepwise):
         return AHEAD if self.s.steps < goal else ARRIVED
 
     def move(self) -> int:
-        """A step, after those that nothing happens in; says why no more can be taken."""
+        """A step, after those that are taken in registers; says why no more can be taken."""
         if self.record.full(2 * self.s.n_c):
             return BUFFER_FULL
-        if self.single and self.s.closed[0] == 0 and not self.solved:
+        if self.single and not self.solved:
             end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
-            coast(self.m, self.plan, self.s, self.record, self.t0, self.first, end)
+            glide(self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end, self.external)
             if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
                 return NOT_FINITE
             if self.s.steps >= self.last:
                 return FINISHED
+            if self.record.full(2):
+                return BUFFER_FULL
         k, events = self.s.steps - self.first, self.record.event
         t, t_next = self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1)
         code = take_step(
@@ -99,39 +102,6 @@ def end_step(
     if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
         record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
-
-
-def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int, last: int) -> None:
-    """Free steps of one linear degree of freedom, up to the first in which its contact is active.
-
-    The arithmetic is that of a step to the last bit; only the state stays in registers, which halves the time.
-    """
-    h, theta = plan.h, plan.theta
-    A_f, A_q, A_v = plan.A_f[0], plan.A_q[0], plan.A_v[0]
-    G, offset, slack = m.G[0], m.offset[0], plan.slack
-    q, v, g, u, f = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0]
-    k = s.steps
-    left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
-    while k < last and g + 0.5 * h * u > slack:
-        t = t0 + h * (k + 1 - first)
-        external_force(m, t, s.q, s.v, s.next_force)
-        f_next = s.next_force[0]
-        v_next = v + (A_f * (theta * f_next + (1.0 - theta) * f) - A_q * q - A_v * v)
-        if v_next - v_next != 0.0:
-            break
-        q += h * (theta * v_next + (1.0 - theta) * v)
-        v, f = v_next, f_next
-        obstacle(m, t, s.q, s.v)
-        g = offset - m.motion_now[0] + G * q
-        u = G * v - m.motion_now[1]
-        k += 1
-        left -= 1
-        if left == 0 and g - g == 0.0 and u - u == 0.0:
-            left = record.every
-            record.keep_one(t, 0.0, q, v, s.impulse)
-    s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
-    s.forces += k - s.steps
-    s.steps = k
 
 
 def advance(m: Model, s: State, c: Rows, t: float) -> None:

@@ -4,8 +4,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
-cdef Py_ssize_t FINISHED, IMPACT, JOINTS_FAILED, NEWTON_FAILED, NOT_FINITE, RELEASE, STICK
-cdef Py_ssize_t MAX_ITERATIONS
+cdef Py_ssize_t FINISHED, JOINTS_FAILED, MAX_ITERATIONS, NEWTON_FAILED, NO_EVENT, NOT_FINITE, RELEASE
 cdef double RESOLUTION, RESTING
 
 cdef Py_ssize_t take_step(

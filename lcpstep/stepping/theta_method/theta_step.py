@@ -26,13 +26,12 @@ import cython
 from lcpstep.stepping.steps import RESOLUTION, RESTING
 from lcpstep.stepping.theta_method.codes import (
     FINISHED,
-    IMPACT,
     JOINTS_FAILED,
     MAX_ITERATIONS,
     NEWTON_FAILED,
+    NO_EVENT,
     NOT_FINITE,
     RELEASE,
-    STICK,
 )
 
 if not cython.compiled:
@@ -44,6 +43,7 @@ if not cython.compiled:
     from lcpstep.stepping.constraints.joint_rows import joints_hold
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.repair import project
     from lcpstep.stepping.theta_method.row_impulses import (
@@ -234,19 +234,10 @@ def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> No
     """Note impacts, the beginning of lasting contact, and its end."""
     first, released = record.event, False
     for i in range(c.n_c):
-        kind = -1
-        if c.p[i] > 0.0:
-            if s.closed[i] == 0:
-                kind = IMPACT
-            elif s.closed[i] == 1:
-                kind = STICK
-            s.closed[i] = s.closed[i] + 1 if s.closed[i] < 2 else 2
-        else:
-            if s.closed[i] == 2:
-                kind = RELEASE
-            s.closed[i] = 0
+        kind = kind_of(c.p[i], s.closed[i])
+        s.closed[i] = closed_since(c.p[i], s.closed[i])
         released = released or kind == RELEASE
-        if kind >= 0:
+        if kind != NO_EVENT:
             u = 0.0 if kind == RELEASE else product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
             record.note(t_next, i, s.u[i], u, c.p[i], kind)
     if not released:
