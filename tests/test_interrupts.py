@@ -17,7 +17,7 @@ from tests.marks import shared
 from tests.processes import environment
 
 READY = "import sys; from lcpstep.cli import command; print('ready', flush=True); command()"
-AFTER = 0.8  # of a command's start [s]: long enough for it to be at work, where the machine is not busy
+AFTER = 0.5  # of a command's start [s]: long enough for it to be at work, where the machine is not busy
 LIMIT = 5.0  # [s]; one second on a machine that is not busy
 LONG = {
     "compare": "cam-follower --h 1e-7",

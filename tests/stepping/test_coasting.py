@@ -46,3 +46,16 @@ def test_states_asked_for_now_and_then_are_those_asked_for_in_every_step(scene, 
     np.testing.assert_array_equal(fast.q, slow.q[3::41])
     np.testing.assert_array_equal(fast.v, slow.v[3::41])
     np.testing.assert_array_equal(fast.impacts, slow.impacts)
+
+
+@pytest.mark.parametrize("every", [1, 3, "impacts", [20.0]])
+def test_a_log_that_fills_up_in_between_changes_no_bit(every):
+    scene = Scene(
+        system=LinearSystem(1.0, force=-9.81), q0=0.0, v0=3e-3, t_span=(0.0, 20.0),
+        contacts=LinearContacts(1.0, restitution=1.0),
+    )  # fmt: skip
+    slow, fast = (simulate(scene, Moreau(1e-3), keep=k) for k in (np.linspace(0.0, 20.0, 20_001), every))
+    assert len(slow.impacts) == 10_000  # a hop of two steps each
+    np.testing.assert_array_equal(slow.impacts, fast.impacts)
+    np.testing.assert_array_equal(slow.q[np.searchsorted(slow.t, fast.t)], fast.q)
+    assert slow.counts == fast.counts
