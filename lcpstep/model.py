@@ -260,8 +260,7 @@ def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[
         fields = _known(contacts, _flat_rows, scene)
     else:
         fields = _known(contacts, _curved_rows, scene) | {"G": np.zeros((n_c, scene.n_q))}
-    # A run by a tolerance changes its own restitutions
-    return fields | {"motion_now": np.zeros((n_c, 3)), "restitution": fields["restitution"].copy()}
+    return fields | {"motion_now": np.zeros((n_c, 3))}
 
 
 def _rows(n_c: int) -> dict[str, Any]:

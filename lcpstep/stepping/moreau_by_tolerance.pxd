@@ -23,7 +23,7 @@ cdef class Attempts(Control):
     cdef double share
     cdef Doubles times
     cdef Py_ssize_t steps_before
-    cdef Doubles begin, one_q, one_v, part_q, part_v, between_q, between_v, part_g, part_u, restitution
+    cdef Doubles begin, one_q, one_v, part_q, part_v, between_q, between_v, part_g, part_u
     cdef Indices closed
     cdef Doubles A_q, A_v, A_f, X, W
     cdef void place_saved(self)

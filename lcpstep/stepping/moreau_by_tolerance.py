@@ -44,7 +44,6 @@ class Attempts(Control):
     way                         the loop, which takes the parts of a step
     m, plan, s, rows            as it has them; the matrices of the plan are those of the part at hand
     times                       states asked for, which are kept here and not by the loop
-    restitution                 the scene's own, (n_c,)
     begin, closed, steps_before   the state at the start of the step: numbers, marks, and how many steps it is after
     one_q, one_v                where the one step led
     part_q, part_v, part_g, part_u        the state at the start of the part at hand, its numbers in the same order
@@ -77,19 +76,17 @@ class Attempts(Control):
         self.A_f, self.X = doubles(self.matrices["A_f"]), doubles(self.matrices["X"])
         self.W = doubles(self.matrices["W"])
         self.place_saved()
-        copy(self.restitution, self.m.restitution, s.n_c)
         self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
 
     def place_saved(self) -> None:
         """Where the state at the start of steps and parts is kept."""
         n_q, n_c, n = self.s.n_q, self.s.n_c, self.s.n_moving
-        self.kept, self.steps_before = (np.zeros(2 * n + 4 * n_q + n_c), np.zeros(2 * n_c, dtype=np.intp)), 0
+        self.kept, self.steps_before = (np.zeros(2 * n + 4 * n_q), np.zeros(2 * n_c, dtype=np.intp)), 0
         self.begin, self.closed = doubles(self.kept[0]), indices(self.kept[1])
         self.part_q, self.one_q = after(self.begin, n), after(self.begin, 2 * n)
         self.part_v, self.part_g = after(self.part_q, n_q), after(self.part_q, 3 * n_q)
         self.part_u, self.one_v = after(self.part_g, n_c), after(self.one_q, n_q)
         self.between_q, self.between_v = after(self.one_q, 2 * n_q), after(self.one_q, 3 * n_q)
-        self.restitution = after(self.one_q, 4 * n_q)
 
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""
@@ -157,9 +154,9 @@ class Attempts(Control):
     def before(self, slow: float) -> None:
         """Remember where a part begins; contacts slower than `slow` have no restitution in it."""
         copy(self.part_q, self.s.q, self.s.n_moving)
+        self.rows.blows.least = slow
         for i in range(self.s.n_c):
             self.rows.p[i] = 0.0
-            self.m.restitution[i] = self.restitution[i] if abs(self.s.u[i]) > slow else 0.0
 
     def after_part(self, h: float, slow: float) -> None:
         """Errors of a part at its contacts."""

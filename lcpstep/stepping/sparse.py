@@ -9,6 +9,7 @@ The step is solved for the change of the velocity, x = v+ - v, and the impulses 
 by `lcp.saddle`, which starts from the contacts that carried an impulse in the step before and needs no dense matrix:
 memory and time are about linear in the number of bodies where the graph of their connections is narrow.
 
+Where some contacts separate while others strike, several such problems follow one another, see `sparse_blows`.
 A velocity that contact forces hold at zero up to rounding is zero, so that a pile at rest does not creep.
 Source: G. Osorio, Complex Behavior in Impacting Systems, eqs. 3.17-3.34.
 """
@@ -25,10 +26,11 @@ from lcpstep.kernels.layout import LEAD, LENGTH, MODE, TIME
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
+from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, largest
+from lcpstep.stepping.steps import LATE, LEFT, RESOLUTION, RESTING, largest
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -152,20 +154,35 @@ class SparseRun(StepRun):
         self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
-        point = self.contact(step, r, active, s_t)
-        if not point.solved:
-            return self.v, Status.LCP_FAILED
-        self.p, self.active = np.maximum(point.z, 0.0), active
-        self.impulse += self.p
-        return step.at_rest(self.v + point.x, r, self.p), Status.DONE
+        e, v, u, push, p = self.equations, self.v, self.u, r, np.zeros(len(s_t))
+        blows = Blows(active, self.slow(step, r, active, s_t))
+        while blows.follows(u):
+            point = self.contact(step, push, blows, v, s_t, blows.rebound(u, e.restitution))
+            if not point.solved:
+                return self.v, Status.LCP_FAILED
+            v, p = v + point.x, p + np.maximum(point.z, 0.0)
+            u, push = e.G @ v - s_t, np.zeros(len(v))
+        self.p, self.active = p, active
+        self.impulse += p
+        return step.at_rest(v, r, p), Status.DONE
 
-    def contact(self, step: Step, r: Array, active: Any, s_t: Array) -> Point:
-        """Change of the velocity and impulses: those of the step before are tried first."""
+    def slow(self, step: Step, r: Array, active: Any, s_t: Array) -> float:
+        """Speed beyond which contacts strike or separate, by `Blows`; -1 where they do not do both."""
+        if not opens_and_closes(self.u[active], 0.0):
+            return -1.0
+        e, v_free = self.equations, self.v + step.without_contact(r)
+        speeds = forced(step, self.u, e.G @ v_free - s_t, self.v, v_free, self.q)
+        most = float(np.max(speeds[active]))
+        return most if opens_and_closes(self.u[active], most) else -1.0
+
+    def contact(self, step: Step, r: Array, blows: Blows, v: Array, s_t: Array, rebound: Array) -> Point:
+        """Change of the velocity v and impulses: those of the step before are tried first."""
         e, saddle = self.equations, step.saddle
-        rebound = e.restitution * self.u
-        size = saddle.abs_G @ np.abs(self.v) + np.abs(s_t) + np.abs(rebound)
+        active, size = blows.chosen, saddle.abs_G @ np.abs(v) + np.abs(s_t) + np.abs(rebound)
         self.problems += bool(active.any())
-        problem = Problem(r, e.G @ self.v - s_t + rebound, size, active)
+        if blows.taken > 1:
+            size = np.maximum(size, LEFT * np.max(size))
+        problem = Problem(r, e.G @ v - s_t + rebound, size, active)
         return saddle.solve(problem, (self.p > 0.0) | ~self.active, self.p)
 
     def log(self, t: float, u: Array) -> bool:

@@ -9,7 +9,7 @@ treated as there (`theta_method.row_impulses`), so that both kinds of steps give
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,8 @@ from lagrangian import Joints, Scene
 from lcpstep.lcp.factor import factoriser
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
-from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Problem
+from lcpstep.stepping.sparse_blows import Blows
+from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Point, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
 from lcpstep.stepping.sparse_stiction import Stiction
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS
@@ -36,6 +37,14 @@ NO_APPROACH = 1e-11
 EPSILON = float(np.finfo(float).eps)
 
 
+class Before(NamedTuple):
+    """Before a blow: the velocity, with all that forces do in the step; gap velocities; sliding velocities."""
+
+    v: Array
+    u: Array
+    sliding: Array
+
+
 class CoupledStep(Step):
     """Steps of one size h: A factorised once, and its matrix with those of the joints and contacts."""
 
@@ -44,6 +53,10 @@ class CoupledStep(Step):
         A = self.saddle.A
         self.A_solve = factoriser(A).factor(np.ones(A.shape[0], dtype=bool), np.zeros(A.shape[0]))
         self.coupled = Coupled(A, equations.G, T, J)
+
+    def without_contact(self, r: Array) -> Array:
+        """Change of the velocity, A^-1 r."""
+        return self.A_solve(r)
 
 
 class CoupledRun(SparseRun):
@@ -73,30 +86,27 @@ class CoupledRun(SparseRun):
         self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
-        v_free = self.v + step.A_solve(r)
+        v_free = self.v + step.without_contact(r)
         rough, sliding = active & self.stiction.rough, self.T @ self.v + self.stiction.slip(t)
         if rough.any() and not self.stiction.measure(t, self.q, sliding):
             return self.v, Status.NOT_FINITE
         slip = self.stiction.slip(t_next)
-        rates, sizes, impact = self.rates(step, v_free, active, s_t, sliding, slip)
+        slow = self.slow(step, r, active, s_t)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
         J_start, _ = self.joints.at(t, self.q, self.v)
-        v, speeds = self.v, np.abs(v_free)
+        v = self.v
         for _ in range(MAX_ITERATIONS):
             q = self.q + step.h * (step.theta * v + (1.0 - step.theta) * self.v)
             data, J_t = self.joints.at(t_next, q, v)
             if self.joints.turning:
                 step.coupled.turn(data, step.theta * data + (1.0 - step.theta) * J_start)
-            J = step.coupled.R[: self.joints.n]
-            b, size = np.append(J @ v_free + J_t, rates), np.append(abs(J) @ speeds + np.abs(J_t), sizes)
-            if not np.all(np.isfinite(b)):
-                return v, Status.NOT_FINITE
-            self.problems += bool(active.any())
-            problem = Problem(b, size, active, rough, self.stiction.mu, np.max(speeds))
-            point = self.stiction.solve(step.coupled, problem, modes, p, sliding, impact)
-            if not point.solved:
-                return v, Status.JOINTS_FAILED if point.joints > CONTRADICTION else Status.LCP_FAILED
-            modes, p, before = point.modes, point.p, v
+            J, before = step.coupled.R[: self.joints.n], v
+            known = Before(v_free, self.u, sliding), (J_t, s_t, slip)
+            point, status = self.strike(step, Blows(active, slow), *known, modes, p)
+            if status != Status.DONE:
+                return v, status
+            problem, impact = self.problem(step, active, *known, Blows(active, slow))
+            modes, p = point.modes, point.p
             terms = np.abs(v_free) + point.size_x / step.coupled.diagonal
             v = v_free + point.x
             v[np.abs(v) <= np.maximum(ROUNDING * terms, EPSILON * problem.speed)] = 0.0
@@ -119,22 +129,56 @@ class CoupledRun(SparseRun):
         self.impulse += np.concatenate([self.p, *([p_T] if self.frictional else []), p_J])
         return v, Status.DONE
 
-    def rates(
-        self, step: Any, v_free: Array, active: Any, s_t: Array, sliding: Array, slip: Array
-    ) -> tuple[Array, Array, bool]:
-        """Rates of normals and tangents at v_free with what restitution adds, sizes of terms; is there an impact?
+    def strike(
+        self, step: Any, blows: Blows, before: Before, rest: tuple[Array, Array, Array], modes: Any, p: Array
+    ) -> tuple[Point, Status]:
+        """Impulses of all blows of the step together, and the change of the velocity that they make."""
+        whole: Any = None
+        while blows.follows(before.u):
+            problem, impact = self.problem(step, blows.chosen, before, rest, blows)
+            if not np.all(np.isfinite(problem.b)):
+                return whole, Status.NOT_FINITE
+            self.problems += bool(blows.chosen.any())
+            point = self.stiction.solve(step.coupled, problem, modes, p, before.sliding, impact)
+            if not point.solved:
+                return point, Status.JOINTS_FAILED if point.joints > CONTRADICTION else Status.LCP_FAILED
+            modes, p, v = point.modes, point.p, before.v + point.x
+            before = Before(v, self.equations.G @ v - rest[1], self.T @ v + rest[2])
+            if whole is not None:
+                added = {
+                    "x": whole.x + point.x,
+                    "p": whole.p + point.p,
+                    "size_x": whole.size_x + point.size_x,
+                }
+                point = point._replace(**added)
+            whole = point
+        return whole, Status.DONE
 
-        sliding, slip : (n_c,)   sliding velocities at the start of the step, and those of v = 0 at its end
-        """
-        e, speeds, rough = self.equations, np.abs(v_free), active & self.stiction.rough
-        b = [e.G @ v_free - s_t, self.T @ v_free + slip]
+    def problem(
+        self, step: Any, active: Any, before: Before, rest: tuple[Array, Array, Array], blows: Blows
+    ) -> tuple[Problem, bool]:
+        """The problem of a blow; is it an impact? `rest`: rates of joints, normals and tangents at v = 0."""
+        J, speeds, (J_t, s_t, slip) = step.coupled.R[: self.joints.n], np.abs(before.v), rest
+        rates, sizes, impact = self.rates(step, before, active, s_t, slip, blows)
+        b, size = np.append(J @ before.v + J_t, rates), np.append(abs(J) @ speeds + np.abs(J_t), sizes)
+        rough = active & self.stiction.rough
+        return Problem(b, size, active, rough, self.stiction.mu, np.max(speeds)), impact
+
+    def rates(
+        self, step: Any, before: Before, active: Any, s_t: Array, slip: Array, blows: Blows
+    ) -> tuple[Array, Array, bool]:
+        """Rates of normals and tangents with what restitution adds, sizes of terms; is there an impact?"""
+        e, v, u, rough = self.equations, before.v, before.u, active & self.stiction.rough
+        speeds, b = np.abs(v), [e.G @ v - s_t, self.T @ v + slip]
         sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
         if rough.any():
             b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
         largest = step.saddle.abs_G.max(axis=1).toarray().ravel() if len(s_t) else s_t
-        slow = np.abs(b[0] - self.u) + ROUNDING * largest * np.max(np.abs(self.v))
-        impact = bool(rough.any() and np.any(active & (self.u < -slow)))
-        added = np.concatenate([e.restitution * self.u, impact * self.tangent_restitution * sliding])
+        slow = np.abs(b[0] - u) + ROUNDING * largest * np.max(np.abs(self.v))
+        impact = bool(rough.any() and np.any(active & (u < -slow)))
+        bounces = impact and not blows.last
+        tangents = bounces * self.tangent_restitution * before.sliding
+        added = np.concatenate([blows.rebound(u, e.restitution), tangents])
         return np.concatenate(b) + added, np.concatenate(sizes) + np.abs(added), impact
 
     def why(self, code: int) -> str:

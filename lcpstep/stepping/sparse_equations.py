@@ -138,6 +138,12 @@ class Step:
         average = self.theta * F_next + (1.0 - self.theta) * F
         return self.h * (average - e.K @ q) - self.B @ v
 
+    def without_contact(self, r: Array) -> Array:
+        """Change of the velocity, A^-1 r."""
+        none = np.zeros(self.saddle.m, dtype=bool)
+        solve = self.saddle.factor(none, self.saddle.proximal[0])
+        return solve(np.concatenate([r, np.zeros(self.saddle.m)]))[: self.saddle.n]
+
     def at_rest(self, v: Array, r: Array, p: Array) -> Array:
         """The velocities, zero where contact forces hold them there up to rounding."""
         pressed = self.saddle.abs_G_T @ p

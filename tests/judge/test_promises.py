@@ -126,11 +126,11 @@ def test_energy_that_moreaus_law_gives_at_different_restitutions_is_no_anomaly()
         (-2.3, 0.594, 20.5, 19.7)), constant=(0.25, -0.298, -0.00833, -1.06), general=True,
     )  # fmt: skip
     r = run(d, "moreau")
-    given = given_by_the_law(
-        d, r
-    )  # a contact leaves the obstacle, and is pressed back by the blow on another
-    assert 1e-3 < given < 2e-3
-    assert abs(gain(d, r)) < 1e-12 * given
+    # a contact leaves the obstacle as slowly as forces make it, and is pressed back by the blow on another; of those
+    # that leave faster the law had given 1.3e-3 here
+    given = given_by_the_law(d, r)
+    assert 0.0 < given < 1e-5
+    assert abs(gain(d, r)) < 1e-15
     assert "energy gained" not in kinds(check(d, r))
     one = replace(d, restitution=0.5)
     assert given_by_the_law(one, run(one, "moreau")) == 0.0

@@ -96,8 +96,15 @@ def test_every_step_obeys_the_impact_law_on_its_active_contacts(scene, h, theta)
     assert np.count_nonzero(p) > 1
     assert np.all(p[(active > 0) & clear] == 0.0)
     on = (active <= 0) & clear
-    assert np.all(w[on] >= -rounding)
-    assert np.all(np.minimum(p, np.abs(w))[on] <= rounding)
+    # Where some separate while others strike, blows may follow one another: they leave no approach
+    mixed = np.any(on & (u[:-1] > 0.0), axis=1) & np.any(on & (u[:-1] < 0.0), axis=1)
+    at_once, later = on & ~mixed[:, None], on & mixed[:, None]
+    assert np.all(w[at_once] >= -rounding)
+    assert np.all(np.minimum(p, np.abs(w))[at_once] <= rounding)
+    free = np.linalg.solve(
+        scene.system.M, (forces(scene, m.t) - m.v @ scene.system.C - m.q @ scene.system.K).T
+    )
+    assert np.all(u[1:][later] >= -2.0 * h * np.max(np.abs(free.T @ c.G.T)))
 
 
 @pytest.mark.parametrize(("scene", "h"), SCENES)

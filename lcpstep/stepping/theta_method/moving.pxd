@@ -6,6 +6,8 @@ from lcpstep.stepping.constraints.joint_rows cimport Elimination
 
 cdef Py_ssize_t VECTORS, SQUARES
 
+cdef class Rows
+
 
 cdef class State:
     cdef readonly object arrays
@@ -20,6 +22,16 @@ cdef class State:
     cdef Indices pivots
 
 
+cdef class Blows:
+    cdef object kept
+    cdef bint several, last
+    cdef double least, fastest, slow
+    cdef Py_ssize_t taken, n_a
+    cdef Indices ids
+    cdef void begin(self, State s, Rows rows) noexcept nogil
+    cdef Doubles v, u, sliding, own_v, own_u, own_sliding, p
+
+
 cdef class Rows:
     cdef readonly object arrays
     cdef object numbers, looked_at, repair
@@ -30,6 +42,7 @@ cdef class Rows:
     cdef Py_ssize_t n_f
     cdef readonly bint projected, turning, in_turn
     cdef Elimination elimination
+    cdef readonly Blows blows
     cdef Doubles H, T, J, J_start, D, H_t, T_t, J_t, p, sliding, at_rest, tangent_restitution
     cdef Indices failed, near
     cdef Doubles gaps, joint_gaps, push, M, Y, S

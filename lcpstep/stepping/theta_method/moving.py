@@ -70,6 +70,33 @@ class State:
         self.J = after(self.A, n_q * n_q)
 
 
+class Blows:
+    """The blow at hand of a step, and those that have gone before it within the step: see `blows`.
+
+    v, u, sliding           velocity, gap and sliding velocities before it: those of the step, or own_v, ...
+    least                   contacts no faster than this do not rebound
+    several                 blows follow one another in the step at hand
+    taken, last             how many have been struck; no other is to follow
+    fastest                 approach in any of them
+    ids : (n_c,), n_a       all active contacts
+    slow                    as fast the forces of the step could make any of them: faster ones strike, or separate
+    p : (n,)                impulses of all rows so far
+    """
+
+    def __init__(self, n_q: int, n_c: int, n_t: int, n: int) -> None:
+        self.several, self.last, self.least = False, False, -1.0
+        self.taken, self.n_a, self.fastest, self.slow = 0, 0, 0.0, 0.0
+        self.kept = np.zeros(n_q + n_c + n_t + n), np.zeros(n_c, dtype=np.intp)
+        self.ids, self.own_v = indices(self.kept[1]), doubles(self.kept[0])
+        self.own_u, self.own_sliding = after(self.own_v, n_q), after(self.own_v, n_q + n_c)
+        self.p = after(self.own_sliding, n_t)
+        self.v, self.u, self.sliding = self.own_v, self.own_u, self.own_sliding
+
+    def begin(self, s: State, rows: Rows) -> None:
+        """Before the first blow of a step is what the forces make of its start."""
+        self.v, self.u, self.sliding, self.taken = s.v_free, s.u, rows.sliding, 0
+
+
 class Rows:
     """Joints and tangents of a scene, and the rows of a step: all normals first, then tangents, then joints.
 
@@ -88,6 +115,7 @@ class Rows:
     failed : (n_j,)        1 for joints that contradict others
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
+    blows                  that follow one another in a step
     near, gaps, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, (n_c,) and
                            (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q); H M^-1 H^T, (n, n); multipliers, (n,)
 
@@ -128,7 +156,7 @@ class Rows:
         self.H_t = after(self.D, n_j * n_q)
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
-        self.elimination = Elimination(n_j, n_c, n_q)
+        self.elimination, self.blows = Elimination(n_j, n_c, n_q), Blows(n_q, n_c, n_t, n)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)

@@ -105,7 +105,8 @@ def met(
     gap = g + 0.5 * plan.h * u
     drift = (RESTING + RESOLUTION * k) * (abs(G) * (abs(q) + plan.h * (abs(plan.X[0]) * c.p[0])))
     if gap <= plan.slack or (closed > 0 and gap <= drift):
-        p = max(0.0, -(G * v + g_t + m.restitution[0] * u) / plan.W[0])
+        r = m.restitution[0] if abs(u) > c.blows.least else 0.0
+        p = max(0.0, -(G * v + g_t + r * u) / plan.W[0])
         v += plan.X[0] * p
         s.problems += 1
     kind = kind_of(p, closed)

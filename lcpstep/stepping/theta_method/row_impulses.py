@@ -36,35 +36,43 @@ NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
 def impulses(
-    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, external: bool, solved: bool
+    m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool, external: bool, solved: bool
 ) -> int:
-    """Impulses of the rows that take part, for the velocity v_free and the position at hand."""
-    n_k, ids, rate = n_a + c.n_f + c.n_j, c.problem.ids, c.problem.rate
-    if c.n_j > 0:
-        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
-    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
-        respond(m.linear, plan, s, c, n_k)
-    impact = rates(m, s, c, n_a, True)
+    """Impulses of the rows that take part, for the velocities before the blow at hand and the position at hand."""
+    impact = pose(m, plan, s, c, n_a, rebounds)
+    n_k, rate, ids = n_a + c.n_f + c.n_j, c.problem.rate, c.problem.ids
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
-    without_joints(plan, s, c, n_a + c.n_f, n_k)
-    if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
-        n_k = n_a + c.n_f + c.n_j
-        impact = rates(m, s, c, n_a, True)
-        without_joints(plan, s, c, n_a + c.n_f, n_k)
     if n_a > 0:
         if external and not solved:
             return NEED_LCP
         s.problems += 1
         if not solved and not solve(m, s, c, n_a, c.n_f, impact):
-            impact = rates(m, s, c, n_a, False)
-            without_joints(plan, s, c, n_a + c.n_f, n_k)
+            impact = pose(m, plan, s, c, n_a, False)
             if not solve(m, s, c, n_a, c.n_f, impact):
                 return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + c.n_f, n_k, c.p, c.n)
     return FINISHED
+
+
+def prepare(m: Model, plan: Plan, s: State, c: Rows, n_k: int, t_next: float) -> None:
+    """What impulses of the n_k rows that take part do, at the position at hand."""
+    if c.n_j > 0:
+        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
+    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
+        respond(m.linear, plan, s, c, n_k)
+
+
+def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
+    """The problem of the rows that take part, joints eliminated; whether it is an impact."""
+    impact = rates(m, s, c, n_a, rebounds)
+    without_joints(plan, s, c, n_a + c.n_f, n_a + c.n_f + c.n_j)
+    if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
+        impact = rates(m, s, c, n_a, rebounds)
+        without_joints(plan, s, c, n_a + c.n_f, n_a + c.n_f + c.n_j)
+    return impact
 
 
 def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
@@ -76,7 +84,7 @@ def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
     eliminate(c.elimination, plan.W, c.n, c.H, plan.X, s.n_q, ids, n, n_k, R, rate)
     if c.n_j > 0:
         for k in range(n):
-            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, s.v_free, ids[k], s.n_q):
+            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, c.blows.v, ids[k], s.n_q):
                 rate[k] = 0.0
 
 
@@ -112,19 +120,23 @@ def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     """
     ids, rate, n_f, impact = c.problem.ids, c.problem.rate, c.n_f, False
     for k in range(n_a + n_f + c.n_j):
-        rate[k] = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
+        rate[k] = product(c.H, c.blows.v, ids[k], s.n_q) + c.H_t[ids[k]]
     if n_f > 0 or c.in_turn:
-        round_off(c, s.v_free, n_a + n_f, s.n_q)
+        round_off(c, c.blows.v, n_a + n_f, s.n_q)
         impact = strikes(s, c, n_a)
     if not rebounds:
         for k in range(n_a):
-            rate[k] += ROUNDING * size_of_rate(c, s.v_free, ids[k], s.n_q)
+            rate[k] += ROUNDING * size_of_rate(c, c.blows.v, ids[k], s.n_q)
     elif not c.in_turn:
         for k in range(n_a):
-            rate[k] += m.restitution[ids[k]] * s.u[ids[k]]
+            u = c.blows.u[ids[k]]
+            if c.blows.taken > 0 and -c.blows.slow <= u <= 0.0:
+                rate[k] = 0.0  # what forces move is the next step's: this blow may not close it faster
+            else:
+                rate[k] += (m.restitution[ids[k]] if abs(u) > c.blows.least else 0.0) * u
         for f in range(n_f if impact else 0):
             i = ids[c.problem.carrier[f]]
-            rate[n_a + f] += c.tangent_restitution[i] * c.sliding[i]
+            rate[n_a + f] += c.tangent_restitution[i] * c.blows.sliding[i]
     return impact
 
 
@@ -132,6 +144,8 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
     """Impulses of the contacts from their rates; False where there are none."""
     if impact and c.in_turn:
         c.coefficients.use(c.problem.mu)
+        for k in range(n_a):
+            c.problem.slow[k] = max(c.problem.slow[k], c.blows.least)
         return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
     if impact and c.coefficients.two:
         c.coefficients.use(c.problem.mu)
@@ -162,18 +176,16 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
         s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
 
 
-def take_part(ids: Indices, carrier: Indices, rough: Indices, n_a: int, n_c: int, n_t: int, n_j: int) -> int:
-    """List after the normals of active contacts the tangents of the n_f frictional ones, and all joints; n_f."""
-    n_f = 0
-    if n_t > 0:
-        for k in range(n_a):
-            if rough[ids[k]] == 1:
-                carrier[n_f] = k
-                ids[n_a + n_f] = n_c + ids[k]
-                n_f += 1
-    for j in range(n_j):
-        ids[n_a + n_f + j] = n_c + n_t + j
-    return n_f
+def take_part(c: Rows, n_a: int) -> None:
+    """List after the normals of active contacts the tangents of the n_f frictional ones, and all joints."""
+    n_f, ids = 0, c.problem.ids
+    for k in range(n_a if c.n_t > 0 else 0):
+        if c.coefficients.rough[ids[k]] == 1:
+            c.problem.carrier[n_f], ids[n_a + n_f] = k, c.n_c + ids[k]
+            n_f += 1
+    for j in range(c.n_j):
+        ids[n_a + n_f + j] = c.n_c + c.n_t + j
+    c.n_f = n_f
 
 
 def round_off(c: Rows, v: Doubles, n_k: int, n_q: int) -> None:
@@ -205,13 +217,16 @@ def usable(W: Doubles, ids: Indices, n_k: int, n: int) -> bool:
 
 def strikes(s: State, c: Rows, n_a: int) -> bool:
     """Whether a contact closes faster than the forces of one step could move it; rates are without restitution."""
-    size_v, found = largest(s.v, 0.0, s.n_q), False
+    size_v, ids, found = largest(s.v, 0.0, s.n_q), c.problem.ids, False
     for k in range(n_a):
-        i = c.problem.ids[k]
-        size = largest(after(c.H, i * s.n_q), 0.0, s.n_q)
-        c.problem.slow[k] = abs(c.problem.rate[k] - s.u[i]) + ROUNDING * size * size_v
-        found = found or s.u[i] < -c.problem.slow[k]
+        c.problem.slow[k] = forced(s, c, ids[k], c.problem.rate[k], size_v)
+        found = found or c.blows.u[ids[k]] < -c.problem.slow[k]
     return found
+
+
+def forced(s: State, c: Rows, i: int, rate: float, size_v: float) -> float:
+    """How far the forces of a step move the gap velocity of contact i, to `rate`, and the rounding of it."""
+    return abs(rate - c.blows.u[i]) + ROUNDING * largest(after(c.H, i * s.n_q), 0.0, s.n_q) * size_v
 
 
 def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:

@@ -35,6 +35,7 @@ class Steps(Stepwise):
         super().__init__()
         self.m, self.plan, self.s, self.rows, self.record, self.external = m, plan, s, rows, record, external
         self.solved = False
+        self.rows.blows.begin(self.s, self.rows)
         single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
         self.single = single and rows.n == 1 and not rows.projected
 

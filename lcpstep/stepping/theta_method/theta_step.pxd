@@ -10,13 +10,13 @@ cdef double RESOLUTION, RESTING
 cdef Py_ssize_t take_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, bint external, bint solved
 ) noexcept nogil
-cdef Py_ssize_t predict_active(Model m, Plan plan, State s, Rows c) noexcept nogil
+cdef void predict_active(Model m, Plan plan, State s, Rows c) noexcept nogil
 cdef double drifted(Model m, Plan plan, State s, Rows c, Py_ssize_t i) noexcept nogil
 @cython.locals(entered=bint)
-cdef Py_ssize_t closes_again(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next) noexcept nogil
+cdef bint closes_again(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil
 @cython.locals(hold=bint)
 cdef Py_ssize_t step(
-    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t, double t_next, bint external, bint solved
+    Model m, Plan plan, State s, Rows c, double t, double t_next, bint external, bint solved
 ) noexcept nogil
 cdef void position(Plan plan, State s) noexcept nogil
 cdef void predicted_rates(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil

@@ -3,7 +3,8 @@
     v_free  velocity without contact (a theta-method: linear systems by constant matrices, others by Newton)
     active  contacts whose predicted gap g + (h/2) u is not positive, but for what rounding may have opened
             closed ones by
-    p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t
+    p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t;  blow after blow
+            where some of these separate while others strike, without those that separate: see `blows`
             law of friction and impact on their tangents, see `kernels.coulomb`
             G_J v+ + g_t = 0  on joints, see `constraints.joint_rows`
     v+      v_free + A^-1 (G^T p_N + T^T p_T + D_J^T p_J),        D_J = theta G_J(q+) + (1 - theta) G_J(q)
@@ -41,6 +42,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, finite, product
     from lcpstep.pointers import abs, after, whole
     from lcpstep.stepping.constraints.joint_rows import joints_hold
+    from lcpstep.stepping.theta_method.blows import one_after_another, separates
     from lcpstep.stepping.theta_method.implicit import linearise
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
@@ -51,6 +53,7 @@ if not cython.compiled:
         apply_once,
         impulses,
         note_sticking,
+        prepare,
         take_part,
     )
 
@@ -70,14 +73,11 @@ def take_step(
 
     `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
     """
-    n_a = s.active if solved else predict_active(m, plan, s, c)
-    code = step(m, plan, s, c, n_a, t, t_next, external, solved)
-    while c.projected and code == FINISHED:
-        more = closes_again(m, plan, s, c, n_a, t_next)
-        if more == n_a:
-            break
-        n_a = more
-        code = step(m, plan, s, c, n_a, t, t_next, external, False)
+    if not solved:
+        predict_active(m, plan, s, c)
+    code = step(m, plan, s, c, t, t_next, external, solved)
+    while c.projected and code == FINISHED and closes_again(m, plan, s, c, t_next):
+        code = step(m, plan, s, c, t, t_next, external, False)
     if code != FINISHED:
         return code
     log_events(m, s, c, record, t_next)
@@ -86,8 +86,8 @@ def take_step(
     return project(m, plan, s, c, t_next) if c.projected else FINISHED
 
 
-def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> int:
-    """Contacts with g + (h/2) u <= 0, up to rounding, first of the rows that take part; their number."""
+def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> None:
+    """Contacts with g + (h/2) u <= 0, up to rounding, are active: first of the rows that take part."""
     n_a = 0
     for i in range(c.n_c):
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
@@ -95,7 +95,6 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> int:
             c.problem.ids[n_a] = i
             n_a += 1
     s.active = n_a
-    return n_a
 
 
 def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int) -> float:
@@ -113,14 +112,14 @@ def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int) -> float:
     return (RESTING + RESOLUTION * s.steps) * size
 
 
-def closes_again(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float) -> int:
-    """Make those contacts active that were left out, were closed before, and are entered; how many are active.
+def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool:
+    """Make those contacts active that were left out, were closed before, and are entered; were there any?
 
     A projected gap is zero, not below, so that the prediction g + (h/2) u alone would open what rests.
     """
     if c.n_c > 0:
         gaps(m, t_next, s.next_q, s.next_v, c.gaps)
-    more = n_a
+    n_a = more = s.active
     for i in range(c.n_c):
         entered = s.closed[i] > 0 and c.gaps[i] < -plan.slack
         for k in range(n_a):
@@ -129,16 +128,16 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: floa
             c.problem.ids[more] = i
             more += 1
     s.active = more
-    return more
+    return more > n_a
 
 
 def step(
-    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t: float, t_next: float, external: bool, solved: bool
+    m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, external: bool, solved: bool
 ) -> int:
-    """One step with n_a active contacts into next_q, next_v, and the impulses."""
-    c.n_f = 0
+    """One step with the active contacts into next_q, next_v, and the impulses."""
+    n_a, c.n_f = s.active, 0
     if c.n > c.n_c:
-        c.n_f = take_part(c.problem.ids, c.problem.carrier, c.coefficients.rough, n_a, c.n_c, c.n_t, c.n_j)
+        take_part(c, n_a)
     if n_a > 0:
         predicted_rates(m, plan, s, c, t_next)
     if c.n_f > 0 and not tangent_rates(s, c, t, t_next):
@@ -160,10 +159,17 @@ def step(
         if not finite(s.v_free, s.n_q):
             return NOT_FINITE
         if n_a + c.n_j > 0:
-            code = impulses(m, plan, s, c, n_a, t_next, external, solved)
+            if not solved:
+                c.blows.several = n_a > 1 and not c.in_turn and separates(plan, s, c, c.blows, n_a)
+            if c.blows.several:
+                code = one_after_another(m, plan, s, c, c.blows, t_next, external, solved)
+            else:
+                if c.n_j > 0 or not plan.constant:
+                    prepare(m, plan, s, c, n_a + c.n_f + c.n_j, t_next)
+                code = impulses(m, plan, s, c, n_a, True, external, solved)
             if code != FINISHED:
                 return code
-            solved = False
+            solved, n_a = False, s.active
         n_k = n_a + c.n_f + c.n_j
         if c.n_f == 0 and m.linear and not c.turning:
             apply_once(plan, s, c, n_k)

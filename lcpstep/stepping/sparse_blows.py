@@ -1,0 +1,63 @@
+"""Which contacts take part in the blows of a step, on whole vectors: all at once, or one blow after another.
+
+The law and its reasons are those of `theta_method.blows`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lcpstep.stepping.steps import LEFT, RESOLUTION, TURNS
+
+Array = NDArray[np.float64]
+ROUNDING = 1e-13  # of the terms of a rate: `theta_method.row_impulses`
+
+
+def opens_and_closes(u: Array, slow: float) -> bool:
+    """Whether one of these gaps opens faster than `slow`, and another closes as fast."""
+    return bool(np.any(u > slow) and np.any(u < -slow))
+
+
+def forced(step: Any, u: Array, rate: Array, v: Array, v_free: Array, q: Array) -> Array:
+    """How far the forces of a step move each gap velocity from u to `rate`, its rounding, and what moves nothing."""
+    abs_G, speed = step.saddle.abs_G, max(np.max(np.abs(v)), np.max(np.abs(v_free)))
+    largest = abs_G.max(axis=1).toarray().ravel()
+    return np.abs(rate - u) + ROUNDING * largest * speed + RESOLUTION / step.h * (abs_G @ np.abs(q))
+
+
+class Blows:
+    """The blows of one step: `chosen` has the contacts of the next one, `last` is set where that is to be plastic.
+
+    Parameters
+    ----------
+    active : (n_c,) of bool   contacts that may bear
+    slow : speed beyond which they strike, or separate; negative where all take part at once
+    """
+
+    def __init__(self, active: Any, slow: float) -> None:
+        self.active, self.slow, self.several = active, slow, slow >= 0.0
+        self.taken, self.fastest, self.last, self.chosen = 0, 0.0, False, active
+
+    def follows(self, u: Array) -> bool:
+        """Whether there is another blow, at these gap velocities."""
+        self.taken += 1
+        if not self.several:
+            return self.taken == 1
+        fastest = float(np.max(-u[self.active]))
+        if self.last or fastest <= self.slow or self.taken > TURNS * np.count_nonzero(self.active):
+            return False
+        self.fastest = max(self.fastest, fastest)
+        self.last = fastest <= LEFT * self.fastest
+        self.chosen = self.active & (self.last | (u <= self.slow))
+        return True
+
+    def rebound(self, u: Array, restitution: Array) -> Array:
+        """What is added to the rates: by restitution, and of those at rest, which no blow may close faster."""
+        if self.taken <= 1:
+            return restitution * u
+        if self.last:
+            return np.zeros(len(u))
+        return np.where((u > 0.0) | (u < -self.slow), restitution * u, -u)

@@ -1,0 +1,95 @@
+"""Blows that follow one another within a step or two: what one makes approach again is struck anew, at any h."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, Moreau, energy, simulate
+from lcpstep.stepping import sparse_coupled
+
+MASSES, RESTITUTION, SPEED, NEAR = np.array([0.3, 2.0, 1.0, 5.0]), np.array([0.8, 0.6, 0.7]), 1.5, 1e-8
+
+
+def after_all_blows(masses=MASSES, restitution=RESTITUTION, speed=SPEED, near=NEAR):
+    """Velocities of beads that the first one has run into, from one pair that meets to the next, and how many met."""
+    v, gap, blows = np.zeros(len(masses)), np.full(len(masses) - 1, near), 0
+    v[0], gap[0] = speed, 0.0
+    while np.any(np.diff(v) < -1e-14):
+        closing = np.diff(v)
+        left = np.divide(gap, -closing, out=np.full(len(gap), np.inf), where=closing < 0.0)
+        k = int(np.argmin(left))
+        gap += closing * left[k]
+        gap[k] = 0.0
+        p = -(1.0 + restitution[k]) * closing[k] / (1.0 / masses[k] + 1.0 / masses[k + 1])
+        v[k : k + 2] += (-p / masses[k], p / masses[k + 1])
+        blows += 1
+    return v, blows
+
+
+def beads(way=""):
+    """These beads, the first 0.1 m before the others; `way` of asking for the same motion."""
+    n = len(MASSES)
+    M, G, q0, v0, extra = np.diag(MASSES), np.diff(np.eye(n), axis=0), np.zeros(n), np.zeros(n), {}
+    offset = np.full(n - 1, NEAR)
+    offset[0], v0[0] = 0.1, SPEED
+    friction = None
+    if "friction" in way:  # each may move to the side too, and none does
+        M, q0, v0 = np.kron(np.eye(2), M), np.zeros(2 * n), np.append(v0, np.zeros(n))
+        G, tangent = np.kron([[1.0, 0.0]], G), np.kron([[0.0, 1.0]], G)
+        friction = Coulomb(0.4, sparse.csr_array(tangent) if "sparse" in way else tangent)
+    if "joint" in way:  # the third one is made of two
+        M, q0, v0 = np.diag([0.3, 2.0, 0.4, 5.0, 0.6]), np.zeros(5), np.append(v0, 0.0)
+        G, extra = np.column_stack([G, np.zeros(3)]), {"joints": LinearJoints([[0.0, 0.0, 1.0, 0.0, -1.0]])}
+    if "sparse" in way:
+        M, G = sparse.csr_array(M), sparse.csr_array(G)
+    contacts = LinearContacts(G, offset, RESTITUTION, friction=friction)
+    return Scene(LinearSystem(M), q0, v0, (0.0, 0.4), contacts, **extra)
+
+
+def test_the_beads_meet_more_often_than_once_each():
+    assert after_all_blows()[1] > len(RESTITUTION) + 1
+
+
+@pytest.mark.parametrize("h", [1e-2, 1.3e-3])
+@pytest.mark.parametrize("way", ["", "friction", "joint", "sparse", "sparse friction"])
+def test_beads_that_nearly_touch_leave_as_after_one_blow_after_another(way, h, monkeypatch):
+    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+    run = simulate(beads(way), Moreau(h))
+    expected, _ = after_all_blows()
+    np.testing.assert_allclose(run.v[-1][: len(MASSES)], expected, rtol=0, atol=1e-12)
+    assert np.min(np.diff(np.eye(len(MASSES)), axis=0) @ run.q[:, : len(MASSES)].T) > -0.1 - 3.0 * h * SPEED
+    assert len(energy(run).created) == 0
+
+
+@pytest.mark.parametrize(
+    "method", [Moreau(1e-3, 1.0), Moreau(1e-3, lcp="qp"), Moreau(0.05, tolerance=1e-6)], ids=str
+)
+def test_every_way_of_stepping_has_the_same_blows(method):
+    expected, _ = after_all_blows()
+    np.testing.assert_allclose(simulate(beads(), method).v[-1], expected, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("projected", [False, True])
+def test_beads_collapse_within_a_step_as_they_do_in_time(projected):
+    scene = scenes.inelastic_collapse()
+    end = simulate(scene, EventDriven()).v[-1]
+    run = simulate(scene, Moreau(np.ptp(scene.t_span) / 1000, projected=projected))
+    np.testing.assert_allclose(run.v[-1], end, rtol=0, atol=1e-12)
+
+
+def test_a_pile_of_all_masses_comes_to_rest_where_it_lies():
+    n, rng = 12, np.random.default_rng(5)
+    M = 10.0 ** rng.uniform(-1.0, 1.0, n)
+    G = np.vstack([np.eye(n)[0], np.diff(np.eye(n), axis=0)])
+    scene = Scene(
+        LinearSystem(np.diag(M), force=-9.81 * M), 0.05 * np.arange(1, n + 1), np.zeros(n), (0.0, 2.0),
+        LinearContacts(G, restitution=0.4),
+    )  # fmt: skip
+    run = simulate(scene, Moreau(2e-3))
+    assert np.max(np.abs(run.v[-1])) < 1e-12
+    assert np.min(run.q @ G.T) > -20.0 * 2e-3
+    E = (0.5 * run.v**2 + 9.81 * run.q) @ M
+    gain = 0.6 / (8.0 * 1.4) * np.sum(M) * (9.81 * 2e-3) ** 2  # of a step, at most: docs/large-systems.md
+    assert np.max(np.diff(E)) < gain
+    assert run.counts.lcp_calls < 20 * run.counts.steps
