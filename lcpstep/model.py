@@ -123,18 +123,12 @@ def coefficients(scene: Scene) -> Coefficients:
     """The coefficients of friction of a scene's contacts, zero where it has none."""
     friction = None if scene.contacts is None else scene.contacts.friction
     if friction is None:
-        return _smooth(scene.n_q, scene.n_c)
+        return Coefficients(np.zeros(scene.n_c), None, np.array(scene.p), scene.n_q, scene.n_c, None)
     mu, called_back = friction.mu, None
     if callable(mu):
         made, called_back = c_functions(scene, friction={"mu": mu})
         mu = made["friction"]["mu"]
     return Coefficients(mu, friction.mu_s, np.array(scene.p), scene.n_q, scene.n_c, called_back)
-
-
-@functools.cache
-def _smooth(n_q: int, n_c: int) -> Coefficients:
-    """Coefficients that are zero, and stay it."""
-    return Coefficients(np.zeros(n_c), None, np.zeros(0), n_q, n_c, None)
 
 
 def _models(scene: Scene, own: dict[str, Any], **constraints: dict[str, Any]) -> list[kernels.Model]:

@@ -32,7 +32,7 @@ def glide(
     A step that makes a number infinite is left to `theta_step`, which says so.
     """
     before = -1
-    while before < s.steps < last:
+    while before < s.steps < last and finite(s.g, 1) and finite(s.u, 1):
         before = s.steps
         if s.closed[0] == 0:
             coast(m, plan, s, record, t0, first, last)
@@ -74,7 +74,7 @@ def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, fi
     h, theta = plan.h, plan.theta
     while s.steps < last and not record.full(EVENTS):
         q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, record.event
-        if s.closed[0] == 0 and s.g[0] + 0.5 * h * s.u[0] > plan.slack:
+        if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= plan.slack:
             break
         t = t0 + h * (k + 1 - first)
         external_force(m, t, s.q, s.v, s.next_force)
