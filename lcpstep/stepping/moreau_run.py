@@ -27,7 +27,7 @@ from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Rows, State
 from lcpstep.stepping.theta_method.plan import Plan
-from lcpstep.stepping.theta_method.row_impulses import constant_rows
+from lcpstep.stepping.theta_method.responses import constant_rows
 from lcpstep.trajectory import Counts, Status
 
 if TYPE_CHECKING:

@@ -27,13 +27,8 @@ if not cython.compiled:
     from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.theta_method.moving import Blows, Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
-    from lcpstep.stepping.theta_method.row_impulses import (
-        forced,
-        impulses,
-        pose,
-        prepare,
-        take_part,
-    )
+    from lcpstep.stepping.theta_method.responses import prepare
+    from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
 
 
 def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:
@@ -68,9 +63,9 @@ def one_after_another(
 ) -> int:
     """Blow after blow until nothing approaches; then all active contacts take part again, with all their impulses."""
     if not solved:
-        prepare(m, plan, s, c, s.active + c.n_f + c.n_j, t_next)
+        prepare(m, plan, s, c, s.active, t_next)
     while solved or choose(s, c, b):
-        code = impulses(m, plan, s, c, s.active, not b.last, external, solved)
+        code = impulses(m, plan, s, c, s.active, t_next, not b.last, external, solved)
         if code == NEED_LCP:
             return code
         solved = False
@@ -81,7 +76,7 @@ def one_after_another(
             b.p[i] += c.p[i]
         after_blow(plan, s, c, b)
     all_of_them(s, c, b)
-    pose(m, plan, s, c, s.active, True)
+    pose(m, plan, s, c, s.active, t_next, True)
     copy(c.p, b.p, c.n)
     for k in range(s.active + c.n_f):
         c.problem.impulse[k] = c.p[c.problem.ids[k]]

@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import mass, total_force
     from lcpstep.kernels.linear import factorise, positive_definite, solve
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import add, copy, largest
+    from lcpstep.kernels.vectors import add, copy, largest, product
     from lcpstep.pointers import Doubles, abs, max
     from lcpstep.stepping.theta_method.moving import State
     from lcpstep.stepping.theta_method.plan import Plan
@@ -94,3 +94,13 @@ def given_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
     add(s.A, -ht, s.J, n * n)
     m.force_q.fill(t_next, s.try_q, s.next_v, s.J)
     add(s.A, -ht * ht, s.J, n * n)
+
+
+def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -> None:
+    """Out <- A^-1 row."""
+    if linear:
+        for i in range(s.n_q):
+            out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
+    else:
+        copy(out, row, s.n_q)
+        solve(s.A, s.pivots, out, s.n_q)

@@ -34,7 +34,7 @@ cdef class Blows:
 
 cdef class Rows:
     cdef readonly object arrays
-    cdef object numbers, looked_at, repair
+    cdef object numbers, looked_at, repair, on_joints
     cdef readonly Model joints, tangents
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
@@ -46,3 +46,4 @@ cdef class Rows:
     cdef Doubles H, T, J, J_start, D, H_t, T_t, J_t, p, sliding, at_rest, tangent_restitution
     cdef Indices failed, near
     cdef Doubles gaps, joint_gaps, push, M, Y, S
+    cdef Doubles G, J_there, G_t, J_t_there, S_there

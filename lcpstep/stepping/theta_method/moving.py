@@ -119,6 +119,8 @@ class Rows:
     near, gaps, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, (n_c,) and
                            (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q); H M^-1 H^T, (n, n); multipliers, (n,)
 
+    G : (n_c, n_q), J_there : (n_j, n_q), G_t, J_t_there, S_there    rows on the joints, see `turned_rows`
+
     Parameters
     ----------
     joints, tangents : Model;  n_c, n_t : int;  coefficients : Coefficients;  tangent_restitution : (n_c,)
@@ -166,3 +168,9 @@ class Rows:
         self.M = after(self.push, n)
         self.Y = after(self.M, n_q * n_q)
         self.S = after(self.Y, n * n_q)
+        self.on_joints = np.zeros((n_c + n_j) * (n_q + 1) + n_j * n_j if self.turning else 0)
+        self.G = doubles(self.on_joints)
+        self.J_there = after(self.G, n_c * n_q)
+        self.G_t = after(self.J_there, n_j * n_q)
+        self.J_t_there = after(self.G_t, n_c)
+        self.S_there = after(self.J_t_there, n_j)

@@ -25,7 +25,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import abs, after, inf, max
     from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.constraints.joint_rows import arrived, distribute, eliminate
+    from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
 
@@ -42,25 +42,27 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
             gaps(m, t, s.next_q, s.next_v, c.gaps)
         if c.n_j > 0:
             gaps(c.joints, t, s.next_q, s.next_v, c.joint_gaps)
-        worst = 0.0
+        off = worst = 0.0
+        for i in range(c.n_j):
+            off = max(off, abs(c.joint_gaps[i]))
         for i in range(c.n_c):
             worst = max(worst, -c.gaps[i])
-        for i in range(c.n_j):
-            worst = max(worst, abs(c.joint_gaps[i]))
+        worst = max(worst, off)
         if arrived(worst, before, plan.slack, c.H, c.n, s.next_q, s.n_q):
             return FINISHED
         if not worst < inf:
             return PROJECTION_FAILED
         before = worst
-        if not correct(m, s, c, t):
+        if not correct(m, s, c, t, c.turning and off > plan.slack):
             return LCP_FAILED
     return PROJECTION_FAILED
 
 
-def correct(m: Model, s: State, c: Rows, t: float) -> bool:
+def correct(m: Model, s: State, c: Rows, t: float, astray: bool) -> bool:
     """One step of Newton's method; False where the linearised gaps allow no position.
 
     The gap of a contact whose normal the joints hold is that of a position on the joints: no change could mend it.
+    Astray from joints that turn nobody knows which contacts they hold: those that they nearly hold wait.
     """
     n_a = 0
     # A contact once in danger stays in the problem, so that none is pushed through another.
@@ -81,11 +83,14 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
     n_k = n_a + c.n_j
     for k in range(n_k):
         i = c.problem.ids[k]
-        c.problem.rate[k] = c.gaps[i] if k < n_a else c.joint_gaps[k - n_a]
         response(m, c.M, s.try_q, after(c.H, i * s.n_q), after(c.Y, i * s.n_q))
     mobilities(c.H, c.Y, c.problem.ids, n_k, c.S, c.n, s.n_q)
+    without_joints(s, c, n_a)
+    if astray and c.elimination.swept:
+        n_a = leave_out_nearly_held(c, n_a)
+        n_k = n_a + c.n_j
+        without_joints(s, c, n_a)
     R, rate = c.problem.mobility, c.problem.rate
-    eliminate(c.elimination, c.S, c.n, c.H, c.Y, s.n_q, c.problem.ids, n_a, n_k, R, rate)
     for k in range(n_a):
         if not R[k * n_a + k] > 0.0:
             rate[k] = 0.0
@@ -97,3 +102,24 @@ def correct(m: Model, s: State, c: Rows, t: float) -> bool:
         for j in range(s.n_q):
             s.next_q[j] += c.Y[i * s.n_q + j] * c.push[i]
     return True
+
+
+def without_joints(s: State, c: Rows, n_a: int) -> None:
+    """The problem of n_a contacts alone; joints follow them."""
+    R, rate, ids, n_k = c.problem.mobility, c.problem.rate, c.problem.ids, n_a + c.n_j
+    for k in range(n_k):
+        rate[k] = c.gaps[ids[k]] if k < n_a else c.joint_gaps[k - n_a]
+    eliminate(c.elimination, c.S, c.n, c.H, c.Y, s.n_q, ids, n_a, n_k, R, rate)
+
+
+def leave_out_nearly_held(c: Rows, n_a: int) -> int:
+    """Leave out contacts of whose rows joints have left next to nothing; how many are left."""
+    ids, n = c.problem.ids, 0
+    for k in range(n_a):
+        i = ids[k]
+        if c.problem.mobility[k * n_a + k] > NEARLY * c.S[i * c.n + i]:
+            ids[n] = i
+            n += 1
+    for j in range(c.n_j):
+        ids[n + j] = ids[n_a + j]
+    return n

@@ -8,15 +8,14 @@ cdef double UNTOLD, CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(
-    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, bint rebounds, bint external, bint solved
+    Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next, bint rebounds, bint external, bint solved
 ) noexcept nogil
 @cython.locals(impact=bint)
-cdef bint pose(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, bint rebounds) noexcept nogil
-cdef void prepare(Model m, Plan plan, State s, Rows c, Py_ssize_t n_k, double t_next) noexcept nogil
+cdef bint pose(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next, bint rebounds) noexcept nogil
 cdef bint leave_out_what_bears_nothing(Rows c, Py_ssize_t n_a) noexcept nogil
 cdef bint loads_nothing(State s, Rows c, Py_ssize_t n_a) noexcept nogil
 cdef double size_of_rate(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
-cdef void without_joints(Plan plan, State s, Rows c, Py_ssize_t n, Py_ssize_t n_k) noexcept nogil
+cdef void without_joints(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_a) noexcept nogil
 @cython.locals(impact=bint)
 cdef bint rates(Model m, State s, Rows c, Py_ssize_t n_a, bint rebounds) noexcept nogil
 @cython.locals(found=bint)
@@ -28,9 +27,5 @@ cdef bint usable(double* W, Py_ssize_t* ids, Py_ssize_t n_k, Py_ssize_t n) noexc
 @cython.locals(found=bint)
 cdef bint strikes(State s, Rows c, Py_ssize_t n_a) noexcept nogil
 cdef double forced(State s, Rows c, Py_ssize_t i, double rate, double size_v) noexcept nogil
-cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
-cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
-cdef void compliance(bint linear, Plan plan, State s, double* row, double* out) noexcept nogil
-cpdef constant_rows(Model m, Plan plan, State s, Rows c, double t)
 cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void apply_once(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil

@@ -13,19 +13,17 @@ from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, 
 
 if not cython.compiled:
     from lcpstep.kernels.coulomb import motion_of, solve_contacts
-    from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.energetic import strike_in_turn
-    from lcpstep.kernels.linear import solve as solve_equations
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.repose import AT_REST
     from lcpstep.kernels.stiction import rest_where_possible, solve_steps
-    from lcpstep.kernels.vectors import copy, finite, largest, product
+    from lcpstep.kernels.vectors import finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
-    from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
-    from lcpstep.stepping.theta_method.implicit import REFRESH
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.responses import respond
+    from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
 CONVERGED = 1e-12  # change of the velocity, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
@@ -36,10 +34,11 @@ NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
 def impulses(
-    m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool, external: bool, solved: bool
-) -> int:
+    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool, external: bool,
+    solved: bool,
+) -> int:  # fmt: skip
     """Impulses of the rows that take part, for the velocities before the blow at hand and the position at hand."""
-    impact = pose(m, plan, s, c, n_a, rebounds)
+    impact = pose(m, plan, s, c, n_a, t_next, rebounds)
     n_k, rate, ids = n_a + c.n_f + c.n_j, c.problem.rate, c.problem.ids
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
@@ -48,7 +47,7 @@ def impulses(
             return NEED_LCP
         s.problems += 1
         if not solved and not solve(m, s, c, n_a, c.n_f, impact):
-            impact = pose(m, plan, s, c, n_a, False)
+            impact = pose(m, plan, s, c, n_a, t_next, False)
             if not solve(m, s, c, n_a, c.n_f, impact):
                 return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
@@ -57,31 +56,30 @@ def impulses(
     return FINISHED
 
 
-def prepare(m: Model, plan: Plan, s: State, c: Rows, n_k: int, t_next: float) -> None:
-    """What impulses of the n_k rows that take part do, at the position at hand."""
-    if c.n_j > 0:
-        gap_rates(c.joints, t_next, s.next_q, s.next_v, c.J, c.J_t)
-    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
-        respond(m.linear, plan, s, c, n_k)
-
-
-def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
+def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> bool:
     """The problem of the rows that take part, joints eliminated; whether it is an impact."""
     impact = rates(m, s, c, n_a, rebounds)
-    without_joints(plan, s, c, n_a + c.n_f, n_a + c.n_f + c.n_j)
+    without_joints(m.linear, plan, s, c, n_a)
+    if c.turning and put_rows_on_joints(c.elimination, m, plan, s, c, n_a, n_a + c.n_f, t_next):
+        respond(m.linear, plan, s, c, n_a + c.n_f + c.n_j)
+        impact = rates(m, s, c, n_a, rebounds)
+        without_joints(m.linear, plan, s, c, n_a)
     if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
         impact = rates(m, s, c, n_a, rebounds)
-        without_joints(plan, s, c, n_a + c.n_f, n_a + c.n_f + c.n_j)
+        without_joints(m.linear, plan, s, c, n_a)
     return impact
 
 
-def without_joints(plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
-    """The problem of the first n rows that take part alone; joints follow them.
+def without_joints(linear: bool, plan: Plan, s: State, c: Rows, n_a: int) -> None:
+    """The problem of contacts and tangents that take part alone, without the joints that follow them.
 
     A row that says what joints say has nothing left but the rounding of its rate, which no impulse could change.
     """
+    n, n_k = n_a + c.n_f, n_a + c.n_f + c.n_j
     R, rate, ids = c.problem.mobility, c.problem.rate, c.problem.ids
     eliminate(c.elimination, plan.W, c.n, c.H, plan.X, s.n_q, ids, n, n_k, R, rate)
+    if c.turning and c.elimination.swept:
+        sweep_out_turned(c.elimination, linear, plan, s, c, n, n_k)
     if c.n_j > 0:
         for k in range(n):
             if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, c.blows.v, ids[k], s.n_q):
@@ -227,44 +225,6 @@ def strikes(s: State, c: Rows, n_a: int) -> bool:
 def forced(s: State, c: Rows, i: int, rate: float, size_v: float) -> float:
     """How far the forces of a step move the gap velocity of contact i, to `rate`, and the rounding of it."""
     return abs(rate - c.blows.u[i]) + ROUNDING * largest(after(c.H, i * s.n_q), 0.0, s.n_q) * size_v
-
-
-def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
-    """A^-1 times the directions of the rows that take part, and their mobilities."""
-    n, first_joint = s.n_q, c.n_c + c.n_t
-    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
-    for k in range(n_k):
-        i = c.problem.ids[k]
-        row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
-        compliance(linear, plan, s, row, after(plan.X, i * n))
-    mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
-
-
-def average(J: Doubles, J_start: Doubles, theta: float, D: Doubles, size: int) -> None:
-    """Directions of the joints' forces."""
-    for i in range(size):
-        D[i] = theta * J[i] + (1.0 - theta) * J_start[i]
-
-
-def compliance(linear: bool, plan: Plan, s: State, row: Doubles, out: Doubles) -> None:
-    """Out <- A^-1 row."""
-    if linear:
-        for i in range(s.n_q):
-            out[i] = product(plan.A_f, row, i, s.n_q) / plan.h
-    else:
-        copy(out, row, s.n_q)
-        solve_equations(s.A, s.pivots, out, s.n_q)
-
-
-def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
-    """X and W of a linear scene in which no row ever changes, called from Python."""
-    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
-    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
-    gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)
-    for i in range(c.n):
-        compliance(True, plan, s, after(c.H, i * s.n_q), after(plan.X, i * s.n_q))
-        c.problem.ids[i] = i
-    mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
 
 
 def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:

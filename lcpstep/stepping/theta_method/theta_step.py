@@ -13,6 +13,8 @@
 For moving obstacles g_t is taken at the end of the step in u+ and at its start in u, so that relative and absolute
 coordinates obey the same law. The joints' rows are taken at the end of the step, which is iterated for; their force
 acts along the average of its two ends, which makes the step of second order for theta = 1/2 where nothing strikes.
+Rows of contacts are of the position that the velocity at the start leads to, but at the end of the step beside joints
+that turn: a normal that is always one of theirs must be theirs in the step (`turned_rows`).
 Restitution on the tangent belongs to impacts: it is left out in steps in which no contact closes faster than the
 forces of one step could move it, so that what slides comes to rest.
 
@@ -48,12 +50,12 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
     from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.repair import project
+    from lcpstep.stepping.theta_method.responses import prepare
     from lcpstep.stepping.theta_method.row_impulses import (
         apply,
         apply_once,
         impulses,
         note_sticking,
-        prepare,
         take_part,
     )
 
@@ -165,8 +167,8 @@ def step(
                 code = one_after_another(m, plan, s, c, c.blows, t_next, external, solved)
             else:
                 if c.n_j > 0 or not plan.constant:
-                    prepare(m, plan, s, c, n_a + c.n_f + c.n_j, t_next)
-                code = impulses(m, plan, s, c, n_a, True, external, solved)
+                    prepare(m, plan, s, c, n_a, t_next)
+                code = impulses(m, plan, s, c, n_a, t_next, True, external, solved)
             if code != FINISHED:
                 return code
             solved, n_a = False, s.active

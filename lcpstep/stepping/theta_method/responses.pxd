@@ -1,0 +1,11 @@
+from lcpstep.kernels.model cimport Model
+from lcpstep.stepping.theta_method.moving cimport Rows, State
+from lcpstep.stepping.theta_method.plan cimport Plan
+
+cdef Py_ssize_t FOLLOWED
+
+cdef void prepare(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next) noexcept nogil
+cdef void rows_at_the_end(Model m, State s, Rows c, Py_ssize_t n_a, double t) noexcept nogil
+cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
+cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
+cpdef constant_rows(Model m, Plan plan, State s, Rows c, double t)

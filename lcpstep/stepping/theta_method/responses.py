@@ -1,0 +1,69 @@
+"""What impulses of the rows of a step do: A^-1 times the rows' directions, and the mobilities between rows.
+
+Rows of joints are taken at the end of the step, as far as it is known, and so are rows of contacts beside joints that
+turn; the joints' forces act along the mean of both ends. Law and source: `theta_step`.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.model import Model
+    from lcpstep.pointers import Doubles, after
+    from lcpstep.stepping.constraints.directions import mobilities
+    from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
+    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.plan import Plan
+
+FOLLOWED = 12  # iterations, by which contacts' rows are at the end of the step as far as they ever are
+
+
+def prepare(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float) -> None:
+    """What impulses of the rows that take part do, at the position at hand."""
+    if c.n_j > 0:
+        rows_at_the_end(m, s, c, n_a, t_next)
+    if not plan.constant and (s.iteration % REFRESH == 0 or c.turning):
+        respond(m.linear, plan, s, c, n_a + c.n_f + c.n_j)
+
+
+def rows_at_the_end(m: Model, s: State, c: Rows, n_a: int, t: float) -> None:
+    """Rows of joints at the end of the step, as far as it is known; where these turn, also those of contacts.
+
+    Where a normal is always a combination of the joints' it is none of theirs at another place.
+    """
+    gap_rates(c.joints, t, s.next_q, s.next_v, c.J, c.J_t)
+    if n_a > 0 and c.turning and s.iteration < FOLLOWED:
+        if not m.flat:
+            gap_rates(m, t, s.next_q, s.next_v, c.H, c.H_t)
+        if c.n_f > 0 and not c.tangents.flat:
+            gap_rates(c.tangents, t, s.next_q, s.next_v, c.T, c.T_t)
+
+
+def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
+    """A^-1 times the directions of the rows that take part, and their mobilities."""
+    n, first_joint = s.n_q, c.n_c + c.n_t
+    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
+    for k in range(n_k):
+        i = c.problem.ids[k]
+        row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
+        compliance(linear, plan, s, row, after(plan.X, i * n))
+    mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
+
+
+def average(J: Doubles, J_start: Doubles, theta: float, D: Doubles, size: int) -> None:
+    """Directions of the joints' forces."""
+    for i in range(size):
+        D[i] = theta * J[i] + (1.0 - theta) * J_start[i]
+
+
+def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
+    """X and W of a linear scene in which no row ever changes, called from Python."""
+    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
+    gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
+    gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)
+    for i in range(c.n):
+        compliance(True, plan, s, after(c.H, i * s.n_q), after(plan.X, i * s.n_q))
+        c.problem.ids[i] = i
+    mobilities(c.H, plan.X, c.problem.ids, c.n, plan.W, c.n, s.n_q)
