@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.jointed import answer_force
+    from lcpstep.stepping.pieces.jointed import answer_force, rate_left
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -215,7 +215,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         if w.status[c] == CLOSED:
             w.chosen[n_k] = c
             w.z[n_k] = 0.5 * tau * w.force_now[c]
-            w.b[n_k] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            w.b[n_k] = rate_left(plan, w, c) if w.joined else product(w.G, w.v, c, w.n_q) + w.gap_t[c]
             n_k += 1
     if n_k == 0:
         return True
@@ -236,7 +236,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
     for k in range(n_k):
         c = w.chosen[k]
         if w.p[c] == 0.0 and tau > 0.0:
-            u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            u = rate_left(plan, w, c) if w.joined else product(w.G, w.v, c, w.n_q) + w.gap_t[c]
             if u > ROUNDING * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]

@@ -18,12 +18,16 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import LEAD, TIME, Record
-    from lcpstep.kernels.vectors import add, clear, copy, distance, largest
+    from lcpstep.kernels.vectors import add, clear, copy, distance, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
-    from lcpstep.stepping.pieces.joints import put, take, turn
-    from lcpstep.stepping.pieces.state import Work
+    from lcpstep.stepping.pieces.joints import bend, put, take, turn
+    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.state import Plan, Work
 
+NEARLY = 0.03  # of a row: what joints leave of it
+DIFFERENCED = 1e-6  # of the terms of a gap's acceleration: what differences of its velocity may make
+UNTOLD = 1e-9  # of the terms of its velocity: what is left of it where joints leave nothing of its row
 ASTRAY = 1e6  # times what counts as closed: where a closed contact is not held
 
 # --- at one state ---------------------------------------------------------------------------------------------
@@ -74,6 +78,50 @@ def turn_onto_joints(w: Work, v: Doubles) -> None:
     """A velocity onto the rates of the joints at the state last taken."""
     if not turn(w.joints, v):
         w.joints.failed = JOINTS_FAILED
+
+
+def turn_accelerations(w: Work, t: float) -> None:
+    """Accelerations of gaps that joints which turn nearly hold, by what these leave of their rows.
+
+    Forces of joints are those of the velocity that a step comes with, from before it is put back onto the joints; a
+    gap's own acceleration would show the difference, and no force could answer it. What the joints hold altogether
+    has none.
+    """
+    if not nearly_held(w):
+        return
+    bend(w.joints, t, w.low, w.high, w.q, w.v)
+    for c in range(w.n_c):
+        left = left_of(w, c)
+        if left <= NEARLY:
+            terms = abs(w.bias[c])
+            w.alpha[c] = product(w.joints.P, w.free, c, w.n_q) + w.bias[c]
+            for k in range(w.n_j):
+                term = w.joints.share[c * w.n_j + k] * w.joints.curvature[k]
+                w.alpha[c] += term
+                terms += abs(term)
+            if left == 0.0 and abs(w.alpha[c]) <= DIFFERENCED * terms:
+                w.alpha[c] = 0.0
+
+
+def rate_left(plan: Plan, w: Work, c: int) -> float:
+    """The velocity of a gap with the joints; of one that they hold altogether none but what contradicts them."""
+    u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+    held = not w.joints.rows.flat and left_of(w, c) == 0.0
+    return 0.0 if held and abs(u) <= UNTOLD * speed_terms(plan, w, c) else u
+
+
+def nearly_held(w: Work) -> bool:
+    """Whether joints that turn leave next to nothing of some contact's row."""
+    some = False
+    for c in range(0 if w.joints.rows.flat else w.n_c):
+        some = some or left_of(w, c) <= NEARLY
+    return some
+
+
+def left_of(w: Work, c: int) -> float:
+    """What joints leave of a contact's row, relative to it."""
+    size = largest(after(w.G, c * w.n_q), 0.0, w.n_q)
+    return largest(after(w.joints.P, c * w.n_q), 0.0, w.n_q) / size if size > 0.0 else 0.0
 
 
 # --- a piece of motion ----------------------------------------------------------------------------------------

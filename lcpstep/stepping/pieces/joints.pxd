@@ -23,6 +23,7 @@ cdef void take(Joints j, double* M, double t, double* q, double* v) noexcept nog
 cdef void accelerate(
     Joints j, double* M, double t, double low, double high, double* q, double* v, double* a
 ) noexcept nogil
+cdef void bend(Joints j, double t, double low, double high, double* q, double* v) noexcept nogil
 cdef void answer(Joints j, double* x, double* rate, double* out) noexcept nogil
 cdef void follow(Joints j, double* multipliers, double* x) noexcept nogil
 cdef void reduce(Joints j, double* M, Py_ssize_t c, double* row, double* x) noexcept nogil

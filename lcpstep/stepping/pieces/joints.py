@@ -20,6 +20,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import clear, largest, product
     from lcpstep.pointers import Doubles, abs, after, inf, max
+    from lcpstep.stepping.constraints.directions import forget_rounding
     from lcpstep.stepping.constraints.joint_rows import (
         CONTRADICTION,
         Elimination,
@@ -100,8 +101,13 @@ def accelerate(
 ) -> None:
     """The acceleration with the forces of the joints, a being that without; t lies in a smooth interval."""
     take(j, M, t, q, v)
-    bias(j.rows, t, low, high, q, v, j.shifted, j.J_try, j.stretch, j.curvature)
+    bend(j, t, low, high, q, v)
     answer(j, a, j.curvature, j.free)
+
+
+def bend(j: Joints, t: float, low: float, high: float, q: Doubles, v: Doubles) -> None:
+    """What the joints turn by, into `curvature`; t lies in a smooth interval."""
+    bias(j.rows, t, low, high, q, v, j.shifted, j.J_try, j.stretch, j.curvature)
 
 
 def answer(j: Joints, x: Doubles, rate: Doubles, out: Doubles) -> None:
@@ -130,6 +136,8 @@ def reduce(j: Joints, M: Doubles, c: int, row: Doubles, x: Doubles) -> None:
         j.elimination.y[k] = -product(j.J, x, k, n_q)
     solve_joints(j.elimination, share)
     leave(j.elimination, row, j.J, share, 1.0, n_q, P)
+    if not j.rows.flat:
+        forget_rounding(P, row, n_q)
     response(j.system, M, j.shifted, P, x)
 
 

@@ -27,7 +27,13 @@ if not cython.compiled:
         SAME_TIME,
     )
     from lcpstep.stepping.pieces.contact_forces import hold, land
-    from lcpstep.stepping.pieces.jointed import load_joints, put_on_joints, share_out, stay_at_base
+    from lcpstep.stepping.pieces.jointed import (
+        load_joints,
+        put_on_joints,
+        share_out,
+        stay_at_base,
+        turn_accelerations,
+    )
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
@@ -69,6 +75,8 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
         if not refactor(m, w, t):
             return False
         respond(m, w)
+        if w.joined:
+            turn_accelerations(w, within(plan, w, t))
     if not hold(m, plan, w, record, place, t):
         return False
     if plan.constant:

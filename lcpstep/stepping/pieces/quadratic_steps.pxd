@@ -16,6 +16,7 @@ cdef class QuadraticSteps(Steps):
 
 
 cdef (Py_ssize_t, double) closing(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
+cdef bint stays(Model m, Plan plan, Work w, Py_ssize_t c, double t, double rest) noexcept nogil
 cdef bint take_in_turn(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
 cdef Py_ssize_t room(Plan plan, Work w, Record record) noexcept nogil
 @cython.locals(wanted=bint)

@@ -15,11 +15,11 @@ if not cython.compiled:
     from lcpstep.pointers import min
     from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
     from lcpstep.stepping.pieces.event import event
-    from lcpstep.stepping.pieces.jointed import turn_with_joints
+    from lcpstep.stepping.pieces.jointed import left_of, stay_at_base, turn_with_joints
     from lcpstep.stepping.pieces.loop import Steps, is_finite
-    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
+    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, look, move, polish
     from lcpstep.stepping.pieces.race import race
-    from lcpstep.stepping.pieces.smooth import renew_forces
+    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE, mobility, renew_forces
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle
     from lcpstep.stepping.pieces.times import at_corner, within
@@ -78,6 +78,8 @@ class QuadraticSteps(Steps):
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
     """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go."""
     c, tau = first_contact(plan, w, rest, t + w.end)
+    while c != NOBODY and w.joined and stays(m, plan, w, c, t + w.sigma, rest):
+        c, tau = first_contact(plan, w, rest, t + w.end)
     if c != NOBODY and not plan.plain:
         c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
     if c != NOBODY and at_corner(plan, w, t + w.sigma + tau):
@@ -85,6 +87,25 @@ def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, 
     if c == NOBODY and tau < rest:
         idle(w)
     return c, tau
+
+
+def stays(m: Model, plan: Plan, w: Work, c: int, t: float, rest: float) -> bool:
+    """Whether an open contact, which seems to close, has a gap that joints which turn hold; it is steady then.
+
+    Its quadratic is of positions that are off the joints. Where these hold the normal at one place alone, the gap at
+    the end of the piece tells.
+    """
+    if w.joints.rows.flat:
+        return False
+    stay_at_base(w, t)
+    mobility(m, w, c)
+    if left_of(w, c) > 0.0:
+        return False
+    look(m, plan, w, t, rest)
+    if w.gap_try[c] < -ON_THE_SURFACE * plan.slack:
+        return False
+    w.rate[c] = w.half[c] = 0.0
+    return True
 
 
 def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:

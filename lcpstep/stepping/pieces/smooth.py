@@ -25,6 +25,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.jointed import (
         meet_both,
         meet_joints,
+        nearly_held,
         put_on_joints,
         reach_joints,
         settle_velocity,
@@ -193,6 +194,9 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
         if not plan.constant:
             gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
             respond(m, w)
+            if w.joined and nearly_held(w):  # at another place than the joints' rows
+                take_joints(w.joints, w.M, t, w.q, w.v)
+                respond(m, w)
         newton_step(w, w.q)
     if w.joined:
         meet_both(m, w, t, plan.slack)
