@@ -1,6 +1,6 @@
 from lcpstep.events.friction.state cimport Rubbing
 
-cdef double SAME, DEPENDENT, TOLD
+cdef double SAME, DEPENDENT, TOLD, TURNED
 
 cdef void leave_joints(Rubbing s) noexcept nogil
 cdef void sweep(Rubbing s, Py_ssize_t j) noexcept nogil

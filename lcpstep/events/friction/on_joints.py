@@ -19,7 +19,9 @@ if not cython.compiled:
 
 # Of a row's mobility: what is left of one that is a joint's own; more where rows turn
 SAME, DEPENDENT = 1e-22, 1e-12
-TOLD = 1e-9  # of the terms of an acceleration: what a row that has nothing left may show of one
+# Of the terms of an acceleration: what a row that has nothing left may show of one; more where steps bring velocities
+# that are off the joints, and rows turn
+TOLD, TURNED = 1e-9, 1e-6
 
 
 def leave_joints(s: Rubbing) -> None:
@@ -81,4 +83,4 @@ def acceleration_on_joints(s: Rubbing, i: int) -> float:
     for k in range(s.n_q):
         alpha += s.R[i * s.n_q + k] * s.a[k]
         size += abs(s.R[i * s.n_q + k] * s.a[k])
-    return alpha if abs(alpha) > TOLD * size else 0.0
+    return alpha if abs(alpha) > (TOLD if s.constant else TURNED) * size else 0.0
