@@ -37,7 +37,7 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(moreau_run, "Plan", plain.plan.Plan)
         monkeypatch.setattr(moreau_run, "places", plain.extent.places)
         monkeypatch.setattr(moreau_run, "is_stiff", plain.extent.is_stiff)
-        monkeypatch.setattr(moreau_run, "constant_rows", plain.row_impulses.constant_rows)
+        monkeypatch.setattr(moreau_run, "constant_rows", plain.responses.constant_rows)
 
     return start
 
