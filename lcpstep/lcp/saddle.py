@@ -30,7 +30,7 @@ from lcpstep.lcp.status import TOLERANCE
 
 PENALTY = (1e-11, 1e-9)  # d where x is found first: its rounding and its error fall alike in a refinement
 ROUNDING = 4 * 2.2e-16  # of the terms that x is what they leave
-NOTHING = 1e-32  # of the largest terms
+NOTHING = 1e-20  # of the largest terms: as small as what proximal steps leave of a z that is zero
 REFINED = 4e-16  # relative residual below which another refinement is idle
 
 

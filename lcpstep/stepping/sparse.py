@@ -30,13 +30,14 @@ from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, LEFT, RESOLUTION, RESTING, largest
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, largest
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
+LEFT_OVER = 1e-4  # of the largest rate in a step: the digits of what its first blows leave of others are of that
 BUFFER = 1 << 20  # numbers in the buffer of kept states
 LOOKS = 50  # steps between two reports of progress
 SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may ask for its own solver
@@ -176,14 +177,15 @@ class SparseRun(StepRun):
         return most if opens_and_closes(self.u[active], most) else -1.0
 
     def contact(self, step: Step, r: Array, blows: Blows, v: Array, s_t: Array, rebound: Array) -> Point:
-        """Change of the velocity v and impulses: those of the step before are tried first."""
+        """Change of the velocity v and impulses: those of the step before are tried first, in its first blow."""
         e, saddle = self.equations, step.saddle
         active, size = blows.chosen, saddle.abs_G @ np.abs(v) + np.abs(s_t) + np.abs(rebound)
         self.problems += bool(active.any())
+        c, likely, guess = e.G @ v - s_t + rebound, (self.p > 0.0) | ~self.active, self.p
         if blows.taken > 1:
-            size = np.maximum(size, LEFT * np.max(size))
-        problem = Problem(r, e.G @ v - s_t + rebound, size, active)
-        return saddle.solve(problem, (self.p > 0.0) | ~self.active, self.p)
+            size = np.maximum(size, LEFT_OVER * np.max(size))
+            likely, guess = likely | (c < 0.0), np.zeros(len(c))
+        return saddle.solve(Problem(r, c, size, active), likely, guess)
 
     def log(self, t: float, u: Array) -> bool:
         """Note impacts, the beginning of lasting contact, and its end; whether there was any."""
