@@ -37,9 +37,7 @@ if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
-LEFT_OVER = (
-    1e-4  # of the largest rate in a step: the digits of what its first blows leave of others are of that
-)
+LEFT_OVER = 1e-4  # of the largest rate in a step: what its first blows have left has the digits of that
 BUFFER = 1 << 20  # numbers in the buffer of kept states
 LOOKS = 50  # steps between two reports of progress
 SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may ask for its own solver
