@@ -1,4 +1,5 @@
 cimport cython
+from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.model cimport Model
 from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.hidden_switches cimport Switches
@@ -7,7 +8,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 from lcpstep.stepping.theta_method.theta_loop cimport Steps
 
-cdef Py_ssize_t LEVELS, FINISHED, BUFFER_FULL
+cdef Py_ssize_t LEVELS, OWN, FINISHED, BUFFER_FULL
 cdef double LATE
 
 
@@ -19,8 +20,9 @@ cdef class Attempts(Control):
     cdef Rows rows
     cdef Switches switches
     cdef object kept
-    cdef bint struck
-    cdef double share
+    cdef Clock clock
+    cdef bint struck, at_corner, even, blow
+    cdef double share, ends
     cdef Doubles times
     cdef Py_ssize_t steps_before
     cdef Doubles begin, one_q, one_v, part_q, part_v, between_q, between_v, part_g, part_u
@@ -29,6 +31,9 @@ cdef class Attempts(Control):
     cdef void place_saved(self)
     cdef Py_ssize_t halves(self, double t, double h, double slow) noexcept nogil
     cdef Py_ssize_t part(self, int part, double start, double h, double slow) noexcept nogil
+    cdef double ahead(self) noexcept nogil
+    cdef void look_ahead(self, double t) noexcept nogil
+    cdef int level_of(self, int part) noexcept nogil
     cdef void place(self, int level, double h) noexcept nogil
     cdef void before(self, double slow) noexcept nogil
     @cython.locals(struck=bint, thrown=bint, closes=bint)

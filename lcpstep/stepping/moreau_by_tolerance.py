@@ -14,6 +14,12 @@ and what releases and friction hide (`hidden_switches`).
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
 step before an impact is halved until it is short, which costs the logarithm of its length. A contact that closes
 slower than the tolerance resolves is closed without rebound, so that chattering ends.
+
+A step ends at a corner of the scene, on its near side, and the next one begins on its far side, where forces and
+obstacles' velocities are other ones. What rests on an obstacle is taken along without rebound, or left behind, as by
+the event-driven integrator without friction: u in the law of the blow is that before the corner. What does not rest
+has the new one.
+Steps up to a corner, and from it to the next multiple, are of sizes of their own.
 """
 
 from __future__ import annotations
@@ -31,11 +37,15 @@ from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
+    from lcpstep.kernels.clock import Clock
     from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
     from lcpstep.pointers import abs, after, inf, max, min
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
-    from lcpstep.stepping.theta_method.theta_loop import Steps
+    from lcpstep.stepping.theta_method.responses import refit
+    from lcpstep.stepping.theta_method.theta_loop import Steps, look
+
+OWN = LEVELS + 2  # place of the matrices of a step that is as long as none; those of its halves come next
 
 
 class Attempts(Control):
@@ -52,30 +62,38 @@ class Attempts(Control):
     share                       of the error allowed, in those that a step with an event may make; at least 1
     switches                    contacts that open, and friction
     A_q, A_v, A_f, X, W         of every level, where the system is linear
+    clock                       knows the corners: the next one is at its `high`
+    ends                        time at which the step at hand ends; that of a corner where it ends there
+    at_corner, even             whether it does, and whether it is as long as those of its level
+    blow                        whether an obstacle, whose velocity has jumped, strikes what rests on it at its start
 
     Parameters
     ----------
     way : Steps
     make     the matrices of steps of a size
+    clock : Clock
     span, h, tolerance, order    see `Control`
     """
 
     def __init__(
-        self, way: Steps, make: Callable[[float], dict[str, Any]], span: tuple[float, float], h: float,
-        tolerance: float, order: int,
+        self, way: Steps, make: Callable[[float], dict[str, Any]], clock: Clock, span: tuple[float, float],
+        h: float, tolerance: float, order: int,
     ) -> None:  # fmt: skip
         super().__init__(way.record, make, span, h, tolerance, order)
         m, plan, s, rows = way.m, way.plan, way.s, way.rows
         self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
         self.times, self.record.n_times = self.record.times, 0
         self.switches, self.struck, self.share = Switches(s.n_c, rows.n_c + rows.n_t), False, 1.0
-        places = LEVELS + 2 if m.linear else 1
+        places = OWN + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
         self.own_made[:] = not m.linear
         self.A_q, self.A_v = doubles(self.matrices["A_q"]), doubles(self.matrices["A_v"])
         self.A_f, self.X = doubles(self.matrices["A_f"]), doubles(self.matrices["X"])
         self.W = doubles(self.matrices["W"])
         self.place_saved()
+        self.clock, self.ends = clock, span[1]
+        self.at_corner, self.even, self.blow = False, True, False
+        self.look_ahead(span[0])
         self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
 
     def place_saved(self) -> None:
@@ -91,7 +109,7 @@ class Attempts(Control):
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""
         n = self.s.n_q
-        slow, h, t = self.resolved(self.size_v), self.step_size(self.level), self.now()
+        slow, h, t = self.resolved(self.size_v), self.ahead(), self.now()
         self.struck, self.share = False, max(1.0, h / (self.span * LEAST_SHARE))
         self.switches.begin(self.s, slow)
         code = self.part(0, t, h, slow)
@@ -128,7 +146,9 @@ class Attempts(Control):
         """The step (part 0), or a half of it, taken from `start`; errors at its contacts."""
         row, event = self.record.row, self.record.event
         self.before(slow)
-        self.place(self.level if part == 0 else self.level + 1, h)
+        self.place(self.level_of(part), h)
+        if self.m.linear and not self.even and part < 2:
+            refit(self.m, self.plan, self.s, self.rows, start)
         k = self.s.steps
         code = self.way.take(start, k, k + 1)
         if code != FINISHED:
@@ -136,12 +156,53 @@ class Attempts(Control):
         self.after_part(h, slow)
         self.switches.note(part, self.plan, self.s, self.rows, self.part_u, slow)
         end = start + h
-        if part == 2 and end != self.goal():
-            stamp(self.record, row, event, end, self.goal())
-            end = self.goal()
+        if part == 2 and end != self.ends:
+            stamp(self.record, row, event, end, self.ends)
+            end = self.ends
         if part > 0:
             self.keep_times(start, end)
         return FINISHED
+
+    def ahead(self) -> float:
+        """Length of the step at hand: to the next multiple, or to a corner before it, whose near side it ends on."""
+        self.ends = self.goal()
+        self.at_corner = self.clock.high < inf and self.clock.inside(self.clock.high) < self.ends
+        self.even = not self.at_corner and self.into == 0.0
+        if self.even:
+            return self.step_size(self.level)
+        if not self.at_corner:
+            return self.ends - self.now()
+        self.ends = self.clock.high
+        near = self.clock.inside(self.ends)
+        self.cut = self.ends + (self.ends - near) - self.base()  # where the run goes on
+        return near - self.now()
+
+    def look_ahead(self, t: float) -> None:
+        """Find the next corner after a time."""
+        self.clock.find_corners(t)
+        while self.clock.high < inf and self.clock.inside(self.clock.high) <= t:
+            self.clock.find_corners(self.clock.high)
+
+    def accept(self) -> None:
+        """The step stands; after a corner, forces and gap velocities are those of its far side."""
+        self.blow = False
+        if not self.at_corner:
+            return
+        slow = self.resolved(self.size_v)
+        self.look_ahead(self.clock.high + (self.clock.high - self.clock.inside(self.clock.high)))
+        copy(self.part_u, self.s.u, self.s.n_c)
+        look(self.m, self.s, self.rows, self.clock.inside(self.clock.low))
+        for i in range(self.s.n_c):
+            before = self.part_u[i]
+            if self.s.closed[i] > 0 and abs(before) <= slow and self.s.u[i] <= before + slow:
+                if self.s.u[i] < before - slow:  # however far rounding has opened it
+                    self.blow, self.s.g[i] = True, min(0.0, self.s.g[i])
+                self.s.u[i] = before
+
+    def level_of(self, part: int) -> int:
+        """Place of the matrices of a part."""
+        first = self.level if self.even else OWN
+        return first if part == 0 else first + 1
 
     def place(self, level: int, h: float) -> None:
         """What a step of a level multiplies with."""
@@ -160,7 +221,7 @@ class Attempts(Control):
 
     def after_part(self, h: float, slow: float) -> None:
         """Errors of a part at its contacts."""
-        deeper, struck = 0.0, False
+        deeper, struck = 0.0, self.blow
         v, v_before = self.s.v, self.part_v
         forced = distance(self.s.v_free, v_before, self.s.n_q)
         thrown = distance(v, v_before, self.s.n_q) > slow + forced

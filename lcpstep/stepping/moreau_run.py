@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
 from lcpstep.model import coefficients, models
@@ -65,7 +66,15 @@ class MoreauRun(StepRun):
             order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
             span, h = self.scene.t_span, self.method.h
             self.controlled_by(
-                Attempts(self.loop, lambda h: self.plan_for(h).matrices, span, h, tolerance, order)
+                Attempts(
+                    self.loop,
+                    lambda h: self.plan_for(h).matrices,
+                    Clock(span, self.scene.corners, self.scene.period),
+                    span,
+                    h,
+                    tolerance,
+                    order,
+                )
             )
         return Status.DONE
 

@@ -8,4 +8,5 @@ cdef void prepare(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_
 cdef void rows_at_the_end(Model m, State s, Rows c, Py_ssize_t n_a, double t) noexcept nogil
 cdef void respond(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void average(double* J, double* J_start, double theta, double* D, Py_ssize_t size) noexcept nogil
-cpdef constant_rows(Model m, Plan plan, State s, Rows c, double t)
+cdef void refit(Model m, Plan plan, State s, Rows c, double t) noexcept nogil
+cpdef void constant_rows(Model m, Plan plan, State s, Rows c, double t) noexcept nogil

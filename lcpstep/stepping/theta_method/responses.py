@@ -10,6 +10,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.linear import factorise, solve
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import Doubles, after
     from lcpstep.stepping.constraints.directions import mobilities
@@ -58,8 +59,31 @@ def average(J: Doubles, J_start: Doubles, theta: float, D: Doubles, size: int) -
         D[i] = theta * J[i] + (1.0 - theta) * J_start[i]
 
 
+def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
+    """The matrices of a linear scene for steps of the size that the plan now has; see `Plan`."""
+    n, x = s.n_q, plan.h * plan.theta
+    for i in range(n * n):
+        s.A[i] = m.M[i] + x * m.C[i] + x * x * m.K[i]
+    factorise(s.A, s.pivots, n)
+    for j in range(n):
+        for i in range(n):
+            s.R[i] = plan.h if i == j else 0.0
+        solve(s.A, s.pivots, s.R, n)
+        for i in range(n):
+            plan.A_f[i * n + j] = s.R[i]
+    for i in range(n):
+        for j in range(n):
+            stiff = damped = 0.0
+            for k in range(n):
+                stiff += plan.A_f[i * n + k] * m.K[k * n + j]
+                damped += plan.A_f[i * n + k] * m.C[k * n + j]
+            plan.A_q[i * n + j], plan.A_v[i * n + j] = stiff, damped + x * stiff
+    if plan.constant:
+        constant_rows(m, plan, s, c, t)
+
+
 def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
-    """X and W of a linear scene in which no row ever changes, called from Python."""
+    """X and W of a linear scene in which no row ever changes."""
     gap_rates(m, t, s.q, s.v, c.H, c.H_t)
     gap_rates(c.tangents, t, s.q, s.v, c.T, c.T_t)
     gap_rates(c.joints, t, s.q, s.v, c.J, c.J_t)

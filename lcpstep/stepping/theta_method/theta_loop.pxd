@@ -22,6 +22,7 @@ cdef class Steps(Stepwise):
 
 
 cdef void begin(Model m, State s, Rows c, Record record, double t, double side) noexcept nogil
+cdef void look(Model m, State s, Rows c, double t) noexcept nogil
 cdef Py_ssize_t end_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, Py_ssize_t events
 ) noexcept nogil

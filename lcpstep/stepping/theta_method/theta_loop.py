@@ -79,16 +79,21 @@ class Steps(Stepwise):
 
 def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
     """`Steps.begin` as a kernel."""
-    if m.linear:
-        external_force(m, side, s.q, s.v, s.force)
-    else:
-        total_force(m, side, s.q, s.v, s.force)
-    s.forces += 1
-    measure(m, s, c, side)
+    look(m, s, c, side)
     if record.n_times == 0:
         record.keep(t, 0.0, s.q, s.v, s.impulse)
     elif record.times[0] == t:
         record.keep_awaited(s.q, s.v, s.impulse)
+
+
+def look(m: Model, s: State, c: Rows, t: float) -> None:
+    """Forces, gaps and gap velocities of the current state, as a time has them."""
+    if m.linear:
+        external_force(m, t, s.q, s.v, s.force)
+    else:
+        total_force(m, t, s.q, s.v, s.force)
+    s.forces += 1
+    measure(m, s, c, t)
 
 
 def end_step(
