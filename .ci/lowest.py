@@ -13,14 +13,16 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 import start  # noqa: E402  (the file beside the project, which knows how to find a pip)
 
-EXTRAS = ("test", "solvers", "symbolic", "cluster", "proofs")  # all but mpi, which needs an MPI library
+EXTRAS = ("solvers", "symbolic", "cluster", "proofs")  # all but mpi, which needs an MPI library
+TOOLS = {"pytest", "pytest-xdist", "hypothesis", "mpmath"}  # of the extra `test`, what the tests here run by
 
 
 def lowest() -> list[str]:
-    """The dependencies of the package and of its extras, each once, with == in the place of >=."""
+    """The dependencies of the package and of its extras, and tools of tests, each once, with == in place of >=."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     named = project["optional-dependencies"]
-    bounds = [*project["dependencies"], *(bound for extra in EXTRAS for bound in named[extra])]
+    tools = [bound for bound in named["test"] if bound.partition(">=")[0] in TOOLS]
+    bounds = [*project["dependencies"], *tools, *(bound for extra in EXTRAS for bound in named[extra])]
     return sorted({pinned(bound) for bound in bounds})
 
 

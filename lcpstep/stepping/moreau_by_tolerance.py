@@ -17,8 +17,7 @@ slower than the tolerance resolves is closed without rebound, so that chattering
 
 A step ends at a corner of the scene, on its near side, and the next one begins on its far side, where forces and
 obstacles' velocities are other ones. What rests on an obstacle is taken along without rebound, or left behind, as by
-the event-driven integrator without friction: u in the law of the blow is that before the corner. What does not rest
-has the new one.
+the event-driven integrator: u in the law of the blow is that before the corner. What does not rest has the new one.
 Steps up to a corner, and from it to the next multiple, are of sizes of their own.
 """
 

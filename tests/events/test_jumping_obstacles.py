@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene, System
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 
 G, AT = 9.0, 0.3
@@ -92,3 +92,24 @@ def test_bodies_in_flight_meet_the_table_with_its_new_velocity(later, speed, met
     np.testing.assert_allclose(
         other.q[-1], m.q[-1], rtol=0, atol=2e-3 if isinstance(method, Moreau) else 1e-5
     )
+
+
+def rough(law):
+    """A body that rests on a rough table, which then rises at 0.4 m/s."""
+    friction = Coulomb(0.3, [[1.0, 0.0]], law=law)
+    return Scene(
+        LinearSystem(np.diag([2.0, 2.0]), force=[0.0, -2.0 * G]), [0.0, 0.0], [0.0, 0.0], (0.0, 0.35),
+        LinearContacts([[0.0, 1.0]], 0.0, 0.5, motion=table, friction=friction),
+        p=[0.4, 1.0], corners=[AT],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("law", ["moreau", "stronge"])
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(1e-2), Located(1e-2, order=4), Moreau(1e-2, tolerance=1e-6)]
+)
+def test_friction_changes_nothing_of_that(method, law):
+    m = simulate(rough(law), method)
+    assert m.status is Status.DONE
+    np.testing.assert_allclose(m.v[-1], [0.0, 0.4], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(m.q[-1], [0.0, 0.02], rtol=0, atol=1e-6)

@@ -129,19 +129,23 @@ def strike_with(
             if plastic and s.contacts.restitution[c] > 0.0:
                 kind = ACCUMULATION
             s.clock.log(record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
-        s.mode[c] = OPEN if u > s.terms[c] else SLIDES
+        s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
 
 
 def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
-    """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none."""
+    """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none.
+
+    An obstacle whose velocity jumps takes along what lies on it: u- = 0.
+    """
     own = s.in_turn or plastic
     for a in range(n_a):
         c = s.problem.ids[a]
-        fall = min(s.before[c], 0.0)
-        s.problem.rate[a] = s.before[c] if own else (1.0 + s.contacts.restitution[c]) * fall
+        r = 0.0 if s.thrown[c] == 1 else s.contacts.restitution[c]
+        s.problem.rate[a] = s.before[c] if own else (1.0 + r) * min(s.before[c], 0.0)
+        s.problem.slow[a] = inf if s.thrown[c] == 1 else 0.0
     for f in range(n_f):
         c = s.problem.ids[s.problem.carrier[f]]
-        share = 1.0 if own else 1.0 + s.tangential[c]
+        share = 1.0 if own or s.thrown[c] == 1 else 1.0 + s.tangential[c]
         s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
     if s.in_turn and not plastic:
         return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
@@ -162,8 +166,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     copy(s.instant, s.impulse, s.n_r)
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-        s.free[c] = 1
-        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+        s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
     s.coefficients.use(s.problem.mu)
     hold_joints(s)
     n_a, n_f = list_unknowns(s)
@@ -188,8 +191,8 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 def find_free(s: Rubbing) -> None:
     """Which closed contacts have no sliding velocity; the direction of the others.
 
-    What an impact keeps from sliding it leaves without speed but for rounding. Beside the hops of a chattering slower
-    sliding than the tolerance is no rest: to stop it would feed hops of that size without end.
+    What an impact keeps from sliding it leaves without speed but for rounding. Beside hops of a chattering slower
+    sliding than the tolerance is no rest: to stop it would feed them without end.
     """
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
@@ -293,5 +296,5 @@ def forget_terms(s: Rubbing) -> None:
     copy(s.instant, s.impulse, s.n_r)
     clear(s.terms, 2 * s.n_c)
     for c in range(s.n_c):
-        s.parting[c] = 0
+        s.parting[c] = s.thrown[c] = 0
     measure_velocities(s, after(s.y, s.n_q))

@@ -110,16 +110,19 @@ def begin(s: Rubbing) -> int:
 
 
 def turn_corner(s: Rubbing) -> int:
-    """Beyond a corner, where obstacles and belts may have jumped in speed, contacts strike and modes are sought."""
+    """Beyond a corner, where obstacles and belts may have jumped in speed, contacts strike and modes are sought.
+
+    As without friction: u- of a closed contact is that before the jump, and its obstacle takes the body along.
+    """
     s.clock.find_corners(s.clock.t0)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
+    forget_terms(s)
     for c in range(s.n_c):
         i = s.n_j + c
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
         if s.mode[c] != OPEN and abs(s.velocity[i]) > still(s, i):
-            s.mode[c] = OPEN
-    forget_terms(s)
+            s.mode[c], s.thrown[c] = OPEN, 1
     s.next = JUMP
     return DONE
 
