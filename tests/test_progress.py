@@ -122,7 +122,7 @@ def on_terminal(*words, seconds):
         ["simulate", "cam-follower", "--h", "1e-6", "--t-end", "20"],
         ["attractor", "cam-follower", "--method", "moreau", "--starts", "200", "--out", "{out}"],
         ["orbit", "cam-follower", "--rpm", "700", "--method", "moreau", "--h", "1e-6", "--out", "{out}"],
-        ["study", "chaotic-oscillator", "--t-end", "400"],
+        ["study", "cam-follower", "--out", "{out}"],
         ["lyapunov", "cam-follower", "--periods", "3000000"],
         ["corner", "cam-follower", "--out", "{out}"],
         ["corner", "cam-follower", "--chattering", "114", "200"],

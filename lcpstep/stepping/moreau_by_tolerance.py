@@ -225,13 +225,16 @@ class Attempts(Control):
         forced = distance(self.s.v_free, v_before, self.s.n_q)
         thrown = distance(v, v_before, self.s.n_q) > slow + forced
         for i in range(self.s.n_c):
-            gained = max(0.0, -self.s.g[i]) - max(0.0, -self.part_g[i])
+            g = self.s.g[i]
+            if self.rows.projected and self.s.closed[i] < 2:
+                g = self.rows.entered[i]  # as it was noticed; what has lasted is repaired for good
+            gained = max(0.0, -g) - max(0.0, -self.part_g[i])
             if self.rows.p[i] > 0.0:
                 # normals that are nearly parallel, or other units, make of a slow approach a jump of velocities
                 closes = abs(self.s.u[i] - self.part_u[i]) > slow or (thrown and self.s.closed[i] == 1)
                 struck = struck or closes
                 if not closes:
-                    gained = max(gained, self.s.g[i] - max(0.0, self.part_g[i]))
+                    gained = max(gained, g - max(0.0, self.part_g[i]))
             else:
                 gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
                 if gained > 0.0:

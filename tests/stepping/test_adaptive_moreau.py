@@ -254,3 +254,12 @@ def test_a_table_that_sinks_between_two_looks_leaves_what_lay_on_it(tolerance, b
     np.testing.assert_allclose(
         m.q[:, 0], -(1.0 - np.cos(np.sqrt(128.0) * since)) / 32.0, rtol=0, atol=tolerance
     )
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
+def test_a_projection_hides_no_depth(tolerance):
+    """A step that ends deep in the floor would be put back onto it, as if the impact had come on time."""
+    ball = scenes.bouncing_ball(t_end=1.0)
+    t = np.linspace(0.05, 0.95, 19)
+    m = simulate(ball, Moreau(0.1, tolerance=tolerance, projected=True), keep=t)
+    np.testing.assert_allclose(m.q, ball.exact(t)[0], rtol=0, atol=tolerance)

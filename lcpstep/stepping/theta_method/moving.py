@@ -116,8 +116,9 @@ class Rows:
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
     blows                  that follow one another in a step
-    near, gaps, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, (n_c,) and
-                           (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q); H M^-1 H^T, (n, n); multipliers, (n,)
+    near, gaps, entered, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, now
+                           and before it, (n_c,), and (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q);
+                           H M^-1 H^T, (n, n); multipliers, (n,)
 
     G : (n_c, n_q), J_there : (n_j, n_q), G_t, J_t_there, S_there    rows on the joints, see `turned_rows`
 
@@ -160,10 +161,10 @@ class Rows:
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
         self.elimination, self.blows = Elimination(n_j, n_c, n_q), Blows(n_q, n_c, n_t, n)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
-        self.repair = np.zeros(2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
+        self.repair = np.zeros(n_c + 2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)
-        self.gaps = doubles(self.repair)
-        self.joint_gaps = after(self.gaps, n_c)
+        self.gaps, self.entered = doubles(self.repair), after(doubles(self.repair), n_c)
+        self.joint_gaps = after(self.entered, n_c)
         self.push = after(self.joint_gaps, n_j)
         self.M = after(self.push, n)
         self.Y = after(self.M, n_q * n_q)

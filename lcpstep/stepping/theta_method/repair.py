@@ -23,6 +23,7 @@ if not cython.compiled:
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.dynamics import gap_rates, gaps
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after, inf, max
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
@@ -33,13 +34,15 @@ PROJECTIONS = 20  # of Newton
 
 
 def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
-    """Correct next_q at time t; says whether a position was found that satisfies all."""
+    """Correct next_q at time t, whose gaps are `entered`; says whether a position was found that satisfies all."""
     for i in range(c.n_c):
         c.near[i] = 0
     before = inf
     for _ in range(PROJECTIONS):
         if c.n_c > 0:
             gaps(m, t, s.next_q, s.next_v, c.gaps)
+        if before == inf:
+            copy(c.entered, c.gaps, c.n_c)
         if c.n_j > 0:
             gaps(c.joints, t, s.next_q, s.next_v, c.joint_gaps)
         off = worst = 0.0
