@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 import start  # noqa: E402  (the file beside the project, which knows how to find a pip)
 
-EXTRAS = ("solvers", "symbolic", "cluster", "proofs")  # all but mpi, which needs an MPI library
+EXTRAS = ("solvers", "symbolic", "cluster", "proofs", "explore", "fmu")  # not mpi, which needs an MPI library
 TOOLS = {"pytest", "pytest-xdist", "hypothesis", "mpmath"}  # of the extra `test`, what the tests here run by
 
 

@@ -18,7 +18,7 @@ from lagrangian import Joints, Scene
 from lcpstep.lcp.factor import factoriser
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
-from lcpstep.stepping.sparse_blows import Blows
+from lcpstep.stepping.sparse_blows import ROUNDING, Blows
 from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Point, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
 from lcpstep.stepping.sparse_stiction import Stiction
@@ -30,9 +30,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 FEW = 200  # coordinates up to which dense steps are fast enough, and know more
-CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next three: `row_impulses`
+CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next two: `row_impulses`
 CANCELLED = 0.1
-ROUNDING = 1e-13
 NO_APPROACH = 1e-11
 EPSILON = float(np.finfo(float).eps)
 
@@ -94,7 +93,7 @@ class CoupledRun(SparseRun):
         slow = self.slow(step, r, active, s_t)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
         J_start, _ = self.joints.at(t, self.q, self.v)
-        v = self.v
+        v, speed = self.v, np.max(np.abs(v_free))
         for _ in range(MAX_ITERATIONS):
             q = self.q + step.h * (step.theta * v + (1.0 - step.theta) * self.v)
             data, J_t = self.joints.at(t_next, q, v)
@@ -105,22 +104,22 @@ class CoupledRun(SparseRun):
             point, status = self.strike(step, Blows(active, slow), *known, modes, p)
             if status != Status.DONE:
                 return v, status
-            problem, impact = self.problem(step, active, *known, Blows(active, slow))
             modes, p = point.modes, point.p
             terms = np.abs(v_free) + point.size_x / step.coupled.diagonal
             v = v_free + point.x
-            v[np.abs(v) <= np.maximum(ROUNDING * terms, EPSILON * problem.speed)] = 0.0
+            v[np.abs(v) <= np.maximum(ROUNDING * terms, EPSILON * speed)] = 0.0
             scale = max(np.max(np.abs(v)), np.max(np.abs(self.v)), CANCELLED * np.max(terms))
             if not self.joints.turning or np.max(np.abs(v - before)) <= CONVERGED * scale:
                 break
         else:
             return v, Status.NEWTON_FAILED
-        most = max(np.max(np.abs(v)), problem.speed, np.max(np.abs(self.v)))
+        most = max(np.max(np.abs(v)), speed, np.max(np.abs(self.v)))
         left = np.abs(J @ v + J_t) - CONTRADICTION * (np.abs(J_t) + most * (abs(J) @ np.ones(len(v))))
         if np.any(
             left > (np.abs(data - J_start).max(initial=0.0) * most) ** 2
         ):  # what joints turn by is granted
             return v, Status.JOINTS_FAILED
+        problem, impact = self.problem(step, active, *known, Blows(active, slow))
         rebound = impact * self.tangent_restitution * sliding
         self.stiction.note(step.coupled, problem, point, self.T @ v + slip, rebound)
         self.modes, self.active = modes, active

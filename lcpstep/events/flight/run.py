@@ -34,10 +34,10 @@ def bounds(scene: Scene, m: Model, o: Any, method: Any) -> dict[str, float]:
 
     The scene is looked at once, unless its functions are compiled anew, or are in Python, which may see to changes.
     """
-    functions, told = KNOWN.get(scene, (None, {}))
-    if m.kept or functions != (m.frame.address, m.motion.address):
+    functions, (of, told) = (m.frame.address, m.motion.address), KNOWN.get(scene, (None, {}))
+    if m.kept or functions != of:
         told = bounds_of_motion(scene, m, o)
-        KNOWN[scene] = (m.frame.address, m.motion.address), told
+        KNOWN[scene] = functions, told
     return told | {"rtol": method.rtol, "atol": method.atol}
 
 
