@@ -34,7 +34,8 @@ def with_twins(f: FunctionType, twins: Mapping[FunctionType, Any], variant: str)
     copy = FunctionType(f.__code__, {**f.__globals__, **named}, f.__name__, f.__defaults__, closure)
     copy.__kwdefaults__ = f.__kwdefaults__
     fingerprint = hashlib.sha256(f"{dependencies(f)} {variant}".encode()).hexdigest()[:FINGERPRINT]
-    copy.__module__, copy.__qualname__ = f.__module__, f"{f.__qualname__}_{fingerprint}"
+    copy.__qualname__ = f"{f.__qualname__}_{fingerprint}"
+    copy.__module__ = __name__  # which numba imports with kept machine code: a file that was run is no module
     return copy
 
 

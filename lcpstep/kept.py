@@ -87,7 +87,7 @@ class OnDisk:
 
     def entry(self, signature: Any, codegen: Any) -> str:
         """Name of the file for these types of arguments."""
-        depends = (self.f.__module__, self.f.__qualname__, str(signature), codegen.magic_tuple())
+        depends = (self.f.__qualname__, str(signature), codegen.magic_tuple())
         digest = hashlib.sha256(f"{depends} {toolchain()}".encode()).hexdigest()[:DIGITS]
         name = "".join(c if c.isalnum() or c in "._" else "" for c in self.title)
         return f"{name[-LONGEST:]}-{digest}{ENDING}"
@@ -95,7 +95,7 @@ class OnDisk:
     @property
     def title(self) -> str:
         """The function's own name."""
-        return f"{self.f.__module__}.{self.f.__qualname__.rpartition('_')[0]}"
+        return f"{self.f.__globals__.get('__name__')}.{self.f.__qualname__.rpartition('_')[0]}"
 
 
 def folders(source: Path) -> list[Path]:

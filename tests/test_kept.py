@@ -3,8 +3,10 @@
 import importlib.util
 import itertools
 import os
+import runpy
 import sys
 import tempfile
+import weakref
 
 import numpy as np
 import pytest
@@ -79,6 +81,25 @@ def said(caplog, what):
 def test_machine_code_lies_beside_its_source_and_is_found_again(load, tmp_path):
     assert [from_disk(load().double) for _ in range(3)] == [False, True, True]
     assert len(entries(tmp_path / "source" / "__pycache__")) == len(entries(tmp_path)) == 1
+
+
+def test_machine_code_of_a_file_that_was_run_is_found_again_and_nothing_is_imported(
+    load, tmp_path, monkeypatch
+):
+    """A file that runpy runs is no module; another module of its name is nothing that may be run."""
+    from numba.core.environment import Environment
+
+    load()  # sets the folders
+    other = tmp_path / "elsewhere" / "mine.py"
+    other.parent.mkdir()
+    other.write_text("raise SystemExit('imported')")
+    monkeypatch.syspath_prepend(other.parent)
+    found = []
+    for run_name in (None, None, "mine", "mine"):
+        monkeypatch.setattr(Environment, "_memo", weakref.WeakValueDictionary())  # as in the next process
+        module = runpy.run_path(str(tmp_path / "source" / "functions.py"), run_name=run_name)
+        found.append(from_disk(module["double"]))
+    assert found[1::2] == [True, True]
 
 
 def test_other_types_and_other_tools_have_their_own(load, tmp_path, monkeypatch):
