@@ -15,6 +15,7 @@ import urllib.parse
 import urllib.request
 import venv
 from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
@@ -31,11 +32,8 @@ def main(arguments: list[str]) -> int:
         sys.exit(f"lcpstep needs Python 3.11 or newer; this is {sys.version.split()[0]}")
     if arguments not in ([], ["test"]):
         sys.exit(__doc__)
-    set_up()
-    if not arguments:
-        return subprocess.call([BIN / "lcpstep", "compare", "cam-follower"], cwd=ROOT)
-    set_up_checks()
-    return check()
+    set_up(checks=bool(arguments))
+    return check() if arguments else subprocess.call([BIN / "lcpstep", "compare", "cam-follower"], cwd=ROOT)
 
 
 def check() -> int:
@@ -58,28 +56,44 @@ def check() -> int:
     return tests.wait()
 
 
-def set_up() -> None:
-    """Make the virtual environment and install the project into it, unless that has been done with these sources."""
-    if is_done("installed", *BUILD, *kernels()):
-        return
+def set_up(checks: bool) -> None:
+    """Make the virtual environment, and install the project and what it needs, unless that has been done with these.
+
+    What others have built is fetched while the project is built.
+
+    Parameters
+    ----------
+    checks : whether what the checks need is needed too
+    """
+    what = "checks" if checks else "dependencies"
+    fetched, built = is_done(what, "pyproject.toml"), is_done("built", *BUILD, *kernels())
+    if not built:
+        make_environment()
+    with nullcontext() if fetched else pip_install("--quiet", *required(checks)) as fetching:
+        if not built:
+            finish(pip_install("--verbose", "--no-deps", "--editable", "."))
+            note_done("built", *BUILD, *kernels())
+        if fetching is not None:
+            finish(fetching)
+            note_done(what, "pyproject.toml")
+
+
+def make_environment() -> None:
+    """The virtual environment, and what is to be said before a build."""
     print("setting up .venv, and building; this takes two to ten minutes", flush=True)
     if os.name != "nt" and "CC" not in os.environ and not any(map(shutil.which, ("cc", "gcc", "clang"))):
         print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
-    install("--editable", ".")
-    note_done("installed", *BUILD, *kernels())
 
 
-def set_up_checks() -> None:
-    """Install what the checks need beside the project."""
+def required(checks: bool) -> list[str]:
+    """What the project needs at run time, and what its checks do."""
     import tomllib
 
-    if is_done("checks", "pyproject.toml"):
-        return
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    install(*project["optional-dependencies"]["test"])
-    note_done("checks", "pyproject.toml")
+    more: list[str] = project["optional-dependencies"]["test"]
+    return project["dependencies"] + (more if checks else [])
 
 
 def kernels() -> list[str]:
@@ -106,7 +120,31 @@ def digest(*files: str) -> str:
 
 
 def install(*arguments: str) -> None:
-    """Run `pip install` for the environment, with whatever pip there is.
+    """Run `pip install` for the environment, and wait for it."""
+    finish(pip_install("--verbose", *arguments))
+
+
+def pip_install(*arguments: str) -> subprocess.Popen:
+    """Start `pip install` for the environment; each file is compiled as it is first imported."""
+    later = [] if sys.dont_write_bytecode else ["--no-compile"]
+    return subprocess.Popen(
+        [*pip(), "install", *later, *arguments], cwd=ROOT, text=True, errors="replace",
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+
+
+def finish(process: subprocess.Popen) -> None:
+    """Wait for a `pip install`; what it says is shown where it fails, else its warnings are of no use to anybody."""
+    said = list(shown(process.stdout))
+    if process.wait() != 0:
+        log = ENVIRONMENT / "setting-up.log"
+        log.write_text("".join(said))
+        words = " ".join(map(str, process.args))
+        sys.exit(f"{''.join(said[-LAST:])}setting up failed: {words}; all of it: {log}")
+
+
+def pip() -> list:
+    """A command that runs pip for the environment.
 
     Some systems ship Python without ensurepip: then an installed pip does it from outside, and failing that one
     is fetched from the package index.
@@ -121,20 +159,7 @@ def install(*arguments: str) -> None:
             wheel = fetch_pip(Path(folder))
             subprocess.check_call([python, f"{wheel}/pip", "install", "--quiet", str(wheel)])
         way = ways[0]
-    later = (
-        [] if sys.dont_write_bytecode else ["--no-compile"]
-    )  # each file is compiled as it is first imported
-    pip = subprocess.Popen(
-        [*way, "install", "--verbose", *later, *arguments], cwd=ROOT, text=True, errors="replace",
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-    )  # fmt: skip
-    said = list(shown(pip.stdout))
-    if pip.wait() != 0:  # else its warnings are of no use to anybody
-        log = ENVIRONMENT / "setting-up.log"
-        log.write_text("".join(said))
-        sys.exit(
-            f"{''.join(said[-LAST:])}setting up failed: pip install {' '.join(arguments)}; all of it: {log}"
-        )
+    return way
 
 
 def shown(lines: Iterable[str]) -> Iterator[str]:
