@@ -103,6 +103,7 @@ def test_where_no_library_is_loaded_nothing_is_let_go(tmp_path, monkeypatch):
     assert registered == []
 
 
+@pytest.mark.slow
 def test_functions_of_ones_own_go_along(tmp_path, monkeypatch):
     pytest.importorskip("pythonfmu3")
     pytest.importorskip("fmpy")

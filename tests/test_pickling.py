@@ -215,6 +215,7 @@ def derived_end(scene):
     return simulate(scene, Moreau(0.1)).q[-1], "sympy" in sys.modules
 
 
+@pytest.mark.slow
 def test_a_derived_scene_goes_to_a_process_without_sympy():
     sympy = pytest.importorskip("sympy")
     from lagrangian.symbolic import derive

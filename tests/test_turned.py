@@ -193,6 +193,7 @@ for parts in (1, 3, 64):
 """
 
 
+@pytest.mark.slow
 def test_uncompiled_looks_at_what_turns_say_the_same(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

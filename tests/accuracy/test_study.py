@@ -124,6 +124,7 @@ def test_a_poor_reference_is_said_to_be_one():
     assert given.compared_until == 8.0
 
 
+@pytest.mark.slow
 def test_chaos_ends_the_comparison_where_it_separates_trajectories():
     scene = scenes.cam_follower(rpm=660.0, t_end=10.0)
     found = study(scene, Moreau(), h=[2e-4, 5e-5], horizon=5.0, **SHORT)

@@ -67,6 +67,7 @@ def test_a_dome_that_closes_up_ends_the_motion():
     assert not closed_up(lower, r)
 
 
+@pytest.mark.slow
 def test_the_highest_gap_of_a_dome_is_the_largest_of_many_places():
     d = OTHER["a dome that turns within the step that leads nowhere"][0]
     d = replace(d, round=(0.3, 0.4, 0.0), bend=(0.185, -2.0, -0.619))

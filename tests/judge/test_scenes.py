@@ -178,7 +178,13 @@ def short(seed, scenes, contacts=100):
 
 
 @pytest.mark.parametrize(
-    ("first", "last"), [(0, 50), pytest.param(50, 200, marks=pytest.mark.thorough)], ids=str
+    ("first", "last"),
+    [
+        (0, 20),
+        pytest.param(20, 50, marks=pytest.mark.slow),
+        pytest.param(50, 200, marks=pytest.mark.thorough),
+    ],
+    ids=str,
 )
 def test_some_hundred_scenes(first, last):
     """Short ones, by the methods that are asked for most."""

@@ -85,6 +85,7 @@ def test_kanes_equations_in_any_speeds_give_the_same_motion(known, kinematics):
         mechanism.energy(0.0, [[0.0, 0.0]], [[0.0, 0.0]])
 
 
+@pytest.mark.slow
 def test_lagranges_method_and_systems_enter_too(known):
     x, y = L * sin(a), -L * cos(a)
     kinetic = m * sum(z.diff(T) ** 2 for z in (x, y, x + L * sin(b), y - L * cos(b))) / 2

@@ -86,6 +86,7 @@ def test_the_source_of_callbacks_is_shown_by_tracebacks():
     assert linecache.getlines(f.__code__.co_filename) == pendulum().source.splitlines(keepends=True)
 
 
+@pytest.mark.slow
 def test_the_next_process_finds_the_machine_code_of_callbacks(tmp_path):
     program = """
 import sympy

@@ -151,7 +151,9 @@ def test_impulses_that_are_unique_are_those_of_the_dense_run():
     np.testing.assert_allclose(a.friction_impulse, b.friction_impulse, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize("restitution", [pytest.param(0.0, marks=pytest.mark.thorough), 0.4])
+@pytest.mark.parametrize(
+    "restitution", [pytest.param(0.0, marks=pytest.mark.thorough), pytest.param(0.4, marks=pytest.mark.slow)]
+)
 def test_energy_is_lost_and_never_created(restitution):
     chain = scenes.hinged_chain(n=30, restitution=restitution, t_end=0.25)
     run = simulate(chain, Moreau(5e-4))
@@ -185,6 +187,7 @@ def test_a_free_chain_keeps_its_momentum_and_its_links_their_lengths_to_order_tw
     assert max(drift) < 1e-12  # it falls without turning
 
 
+@pytest.mark.slow
 def test_a_pendulum_of_one_sparse_link_swings_with_the_energy_it_has():
     def gap(t, q, v, p, out):
         out[0] = 0.5 * (q[0] * q[0] + q[1] * q[1] - 1.0)
