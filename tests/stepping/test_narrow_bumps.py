@@ -1,4 +1,4 @@
-"""A point meets a bump narrower than its step: where a step ends within it, it is struck, and not lifted over."""
+"""Gaps that are no parabolas over a step: where a step ends within a narrow bump, that is struck, not lifted over."""
 
 import math
 
@@ -42,3 +42,29 @@ def test_a_step_that_ends_within_a_bump_finds_its_impact(order, r):
         normal = np.array([-slope, 1.0]) / math.hypot(slope, 1.0)
         after = np.array([1.0, 0.0]) - (1.0 + r) * normal[0] * normal
         np.testing.assert_allclose(m.v[-1], after, rtol=0, atol=1e-9)
+
+
+def still(t, q, v, p, out):
+    out[0] = 0.0
+
+
+def shy(t, q, v, p, out):
+    """A hollow whose parabola through both ends of a step dips below zero, by 1e-8, and which does not; a wall."""
+    x = q[0]
+    out[0] = (x - 0.05) ** 2 - 1e-8 - x * x * (x - 0.1)
+    out[1] = 0.08 - x
+
+
+def shy_rows(t, q, v, p, out):
+    x = q[0]
+    out[0, 0] = 2.0 * (x - 0.05) - x * (3.0 * x - 0.2)
+    out[1, 0] = -1.0
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_a_gap_that_only_seems_to_close_hides_no_other_that_closes_after_it(order):
+    contacts = Contacts(2, shy, shy_rows, restitution=1.0)
+    run = simulate(Scene(System(1, 1.0, still), 0.0, 1.0, (0.0, 0.1), contacts), Located(0.1, order=order))
+    np.testing.assert_allclose(run.impacts.time, [0.08], rtol=1e-12)
+    assert run.impacts.contact.tolist() == [1]
+    np.testing.assert_allclose([run.q[-1, 0], run.v[-1, 0]], [0.06, -1.0], rtol=1e-12)

@@ -15,7 +15,9 @@ cdef void fitted(Model m, Plan plan, Work w, double t, double rest) noexcept nog
 cdef bint needs_bias(Plan plan, Work w) noexcept nogil
 cdef bint from_ground(Plan plan, Work w, Py_ssize_t c) noexcept nogil
 @cython.locals(found=Py_ssize_t)
-cdef (Py_ssize_t, double) first_contact(Plan plan, Work w, double rest, double t_end) noexcept nogil
+cdef (Py_ssize_t, double) first_contact(
+    Plan plan, Work w, double rest, double t_end, double past, Py_ssize_t but
+) noexcept nogil
 @cython.locals(falls=bint, near=bint)
 cdef (Py_ssize_t, double) polish(
     Model m, Plan plan, Work w, Py_ssize_t c, double t, double tau, double rest

@@ -150,12 +150,17 @@ def from_ground(plan: Plan, w: Work, c: int) -> bool:
     return w.grounded[c] != 0 or w.gap[c] <= plan.slack
 
 
-def first_contact(plan: Plan, w: Work, rest: float, t_end: float) -> tuple[int, float]:
-    """Which gap closes first, and when; NOBODY and the end of the piece if none does."""
+def first_contact(plan: Plan, w: Work, rest: float, t_end: float, past: float, but: int) -> tuple[int, float]:
+    """Which gap closes first, and when; NOBODY and the end of the piece if none does.
+
+    Of those that do so after contact `but` does, at `past`; none: NOBODY and a time before the base.
+    """
     found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
     for c in range(w.n_c):
         if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.rate[c], w.half[c], tau):
             zero = first_zero(w.gap[c], w.rate[c], w.half[c])
+            if zero < past or (zero == past and c <= but):
+                continue
             if zero < tau or (zero == 0.0 and tau == 0.0 and w.rate[c] < w.rate[found]):
                 found, tau = c, zero
     return found, min(tau, rest)

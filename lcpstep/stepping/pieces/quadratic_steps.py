@@ -77,11 +77,15 @@ class QuadraticSteps(Steps):
 
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
     """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go."""
-    c, tau = first_contact(plan, w, rest, t + w.end)
-    while c != NOBODY and w.joined and stays(m, plan, w, c, t + w.sigma, rest):
-        c, tau = first_contact(plan, w, rest, t + w.end)
-    if c != NOBODY and not plan.plain:
-        c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
+    past, but, found = -1.0, NOBODY, False
+    while not found:  # one whose quadratic is wrong hides none that closes after it
+        c, tau = first_contact(plan, w, rest, t + w.end, past, but)
+        if c != NOBODY and w.joined and stays(m, plan, w, c, t + w.sigma, rest):
+            continue
+        past, but, found = tau, c, c == NOBODY or plan.plain
+        if not found:
+            c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
+            found = c != NOBODY or tau < rest
     if c != NOBODY and at_corner(plan, w, t + w.sigma + tau):
         return NOBODY, rest
     if c == NOBODY and tau < rest:
