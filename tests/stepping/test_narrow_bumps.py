@@ -48,23 +48,29 @@ def still(t, q, v, p, out):
     out[0] = 0.0
 
 
-def shy(t, q, v, p, out):
-    """A hollow whose parabola through both ends of a step dips below zero, by 1e-8, and which does not; a wall."""
+def bent(t, q, v, p, out):
+    """A gap p[0] + p[1] x + p[2] x^2 - p[3] x^2 (x - 0.1), the last term unseen at 0.1; a wall."""
     x = q[0]
-    out[0] = (x - 0.05) ** 2 - 1e-8 - x * x * (x - 0.1)
-    out[1] = 0.08 - x
+    out[0] = p[0] + x * (p[1] + x * (p[2] - p[3] * (x - 0.1)))
+    out[1] = p[4] - x
 
 
-def shy_rows(t, q, v, p, out):
+def bent_rows(t, q, v, p, out):
     x = q[0]
-    out[0, 0] = 2.0 * (x - 0.05) - x * (3.0 * x - 0.2)
+    out[0, 0] = p[1] + x * (2.0 * p[2] - p[3] * (3.0 * x - 0.2))
     out[1, 0] = -1.0
 
 
 @pytest.mark.parametrize("order", [2, 4])
-def test_a_gap_that_only_seems_to_close_hides_no_other_that_closes_after_it(order):
-    contacts = Contacts(2, shy, shy_rows, restitution=1.0)
-    run = simulate(Scene(System(1, 1.0, still), 0.0, 1.0, (0.0, 0.1), contacts), Located(0.1, order=order))
-    np.testing.assert_allclose(run.impacts.time, [0.08], rtol=1e-12)
+@pytest.mark.parametrize(
+    "p",
+    [(2.5e-3 - 1e-8, -0.1, 1.0, 1.0, 0.08), (2.5e-3, -0.03, 0.0, 2.0, 0.086)],
+    ids=["never", "later"],
+)
+def test_a_gap_that_seems_to_close_hides_no_other_that_closes_before_it(order, p):
+    contacts = Contacts(2, bent, bent_rows, restitution=1.0)
+    scene = Scene(System(1, 1.0, still), 0.0, 1.0, (0.0, 0.1), contacts, p=p)
+    run = simulate(scene, Located(0.1, order=order))
+    np.testing.assert_allclose(run.impacts.time, [p[4]], rtol=1e-12)
     assert run.impacts.contact.tolist() == [1]
-    np.testing.assert_allclose([run.q[-1, 0], run.v[-1, 0]], [0.06, -1.0], rtol=1e-12)
+    np.testing.assert_allclose([run.q[-1, 0], run.v[-1, 0]], [2.0 * p[4] - 0.1, -1.0], rtol=1e-12)

@@ -15,7 +15,7 @@ cdef class QuadraticSteps(Steps):
     cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
 
 
-@cython.locals(but=Py_ssize_t, found=bint)
+@cython.locals(found=Py_ssize_t, but=Py_ssize_t, searching=bint)
 cdef (Py_ssize_t, double) closing(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
 cdef bint stays(Model m, Plan plan, Work w, Py_ssize_t c, double t, double rest) noexcept nogil
 cdef bint take_in_turn(Model m, Plan plan, Work w, Record record, double t) noexcept nogil

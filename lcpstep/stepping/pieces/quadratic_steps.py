@@ -76,21 +76,25 @@ class QuadraticSteps(Steps):
 
 
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
-    """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go."""
-    past, but, found = -1.0, NOBODY, False
-    while not found:  # one whose quadratic is wrong hides none that closes after it
-        c, tau = first_contact(plan, w, rest, t + w.end, past, but)
+    """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go.
+
+    One that closes later than its quadratic says, or never, hides none that closes before.
+    """
+    found, until, past, but, searching = NOBODY, rest, -1.0, NOBODY, True
+    while searching:
+        c, tau = first_contact(plan, w, until, t + w.end, past, but)
         if c != NOBODY and w.joined and stays(m, plan, w, c, t + w.sigma, rest):
             continue
-        past, but, found = tau, c, c == NOBODY or plan.plain
-        if not found:
+        past, but, searching = tau, c, c != NOBODY and not plan.plain
+        if searching:
             c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
-            found = c != NOBODY or tau < rest
-    if c != NOBODY and at_corner(plan, w, t + w.sigma + tau):
+        if tau < until or (c != NOBODY and found == NOBODY):
+            found, until = c, tau
+    if found != NOBODY and at_corner(plan, w, t + w.sigma + until):
         return NOBODY, rest
-    if c == NOBODY and tau < rest:
+    if found == NOBODY and until < rest:
         idle(w)
-    return c, tau
+    return found, until
 
 
 def stays(m: Model, plan: Plan, w: Work, c: int, t: float, rest: float) -> bool:
