@@ -48,6 +48,11 @@ def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> 
                 out[i] -= m.M[k] * c[3 * j + 2] + m.C[k] * c[3 * j + 1] + m.K[k] * c[3 * j]
 
 
+def varies(m: Model) -> bool:
+    """Whether F(t) of a linear system is another at another time."""
+    return m.force.given or m.omega != 0.0 or (m.frame.given and not m.carried)
+
+
 def total_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
     """f(t, q, v): all forces but those of the contacts."""
     if m.moded:

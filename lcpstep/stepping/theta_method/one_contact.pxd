@@ -1,3 +1,4 @@
+cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.theta_method.moving cimport Rows, State
@@ -9,9 +10,11 @@ cdef double RESOLUTION, RESTING
 cdef void glide(
     Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint free
 ) noexcept nogil
+@cython.locals(driven=bint, moving=bint)
 cdef void coast(
     Model m, Plan plan, State s, Record record, double t0, Py_ssize_t first, Py_ssize_t last
 ) noexcept nogil
+@cython.locals(driven=bint, moving=bint)
 cdef void press(
     Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last
 ) noexcept nogil

@@ -13,7 +13,7 @@ from lcpstep.stepping.steps import RESOLUTION, RESTING
 from lcpstep.stepping.theta_method.codes import IMPACT, NO_EVENT, RELEASE, STICK
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, obstacle
+    from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import finite
@@ -47,16 +47,20 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
     G, offset = m.G[0], m.offset[0]
     q, v, g, u, f, k = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0], s.steps
     left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
+    driven, moving = varies(m), moves(m)
+    s.next_force[0] = f
     while k < last and g + half * u > slack:
         t = t0 + h * (k + 1 - first)
-        external_force(m, t, s.q, s.v, s.next_force)
+        if driven:
+            external_force(m, t, s.q, s.v, s.next_force)
         f_next = s.next_force[0]
         v_next = v + (A_f * (theta * f_next + (1.0 - theta) * f) - A_q * q - A_v * v)
         if v_next - v_next != 0.0:
             break
         q += h * (theta * v_next + (1.0 - theta) * v)
         v, f = v_next, f_next
-        obstacle(m, t, s.q, s.v)
+        if moving:
+            obstacle(m, t, s.q, s.v)
         g = offset - m.motion_now[0] + G * q
         u = G * v - m.motion_now[1]
         k += 1
@@ -71,18 +75,21 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
 
 def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int) -> None:
     """Steps that have to do with the contact, up to the first that has not."""
-    h, theta = plan.h, plan.theta
+    h, theta, driven, moving = plan.h, plan.theta, varies(m), moves(m)
+    s.next_force[0] = s.force[0]
     while s.steps < last and not record.full(EVENTS):
         q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, record.event
         if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= plan.slack:
             break
         t = t0 + h * (k + 1 - first)
-        external_force(m, t, s.q, s.v, s.next_force)
+        if driven:
+            external_force(m, t, s.q, s.v, s.next_force)
         f_next = s.next_force[0]
         v_next = v + (plan.A_f[0] * (theta * f_next + (1.0 - theta) * f) - plan.A_q[0] * q - plan.A_v[0] * v)
         if v_next - v_next != 0.0:
             break
-        obstacle(m, t, s.q, s.v)
+        if moving:
+            obstacle(m, t, s.q, s.v)
         v_next = met(m, plan, s, c, record, t, k, q, s.g[0], s.u[0], v_next)
         s.q[0] = q + h * (theta * v_next + (1.0 - theta) * v)
         s.v[0], s.force[0] = v_next, f_next
