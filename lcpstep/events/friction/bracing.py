@@ -15,9 +15,10 @@ from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
-    from lcpstep.events.friction.held import constrain, hold_modes, is_held, list_multipliers
-    from lcpstep.events.friction.problem import size_of_rate
+    from lcpstep.events.friction.held import constrain, hold_modes, list_multipliers
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs
 
@@ -72,7 +73,7 @@ def carries(s: Rubbing, inside: float) -> bool:
         T = i + s.n_c
         if rests(s, c):
             within = within and is_still(s, i) and is_still(s, T)
-        if s.mode[c] == STICKS and (is_held(s, i) or is_held(s, T)):
+        if s.mode[c] == STICKS and (is_held(s.rows, i) or is_held(s.rows, T)):
             most = (1.0 - inside) * s.mu_s[c] * s.multiplier[i] + (1.0 + s.mu_s[c]) * noise
             within = within and s.multiplier[i] >= -noise and abs(s.multiplier[T]) <= most
         elif s.mode[c] != OPEN:
@@ -82,4 +83,4 @@ def carries(s: Rubbing, inside: float) -> bool:
 
 def is_still(s: Rubbing, i: int) -> bool:
     """Whether row i has no acceleration."""
-    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= STILL * size_of_rate(s, i)
+    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= STILL * size_of_acceleration(s.rows, i, s.a)

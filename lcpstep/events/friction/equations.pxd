@@ -3,21 +3,16 @@ from lcpstep.events.friction.state cimport Rubbing
 
 cdef Py_ssize_t LEANS, SLIDES, STICKS
 
-cdef bint free_motion(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil
-cdef void measure_rates(Rubbing s, double t, double* y) noexcept nogil
-cdef void measure_biases(Rubbing s, double t, double* y) noexcept nogil
+cdef void renew_rates(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(sticks=bint)
 cdef bint measure_friction(Rubbing s, double t, double* y) noexcept nogil
-cdef void respond(Rubbing s) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_velocities(Rubbing s, double* v) noexcept nogil
-cdef double size_of(Rubbing s, Py_ssize_t i, double* v) noexcept nogil
 cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double speed_tolerance(Rubbing s, Py_ssize_t i) noexcept nogil
-cdef double least_effect(Rubbing s, Py_ssize_t i, double* x) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil
 cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil
 @cython.locals(own=bint)

@@ -1,7 +1,4 @@
-"""Joints, contacts and their tangents at one state, as kernels: rows, velocities, biases, the Delassus matrix.
-
-Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3.
-"""
+"""Joints, contacts and their tangents at one state, as kernels: gaps, velocities, friction; see `events.rows`."""
 
 from __future__ import annotations
 
@@ -11,18 +8,17 @@ from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.state import NOISE, Rubbing
-    from lcpstep.kernels.acceleration import divide_by_mass, response
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
-    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.events.rows.equations import (
+        free_motion,
+        least_effect,
+        measure_biases,
+        measure_rates,
+        respond,
+        size_of,
+    )
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.vectors import largest, product
     from lcpstep.pointers import Doubles, abs, after, max
-
-
-def free_motion(s: Rubbing, t: float, y: Doubles, a: Doubles) -> bool:
-    """A <- M^-1 f, f into `force`; False where M is singular or f is not finite."""
-    q, v, side = y, after(y, s.n_q), s.clock.inside(t)
-    total_force(s.contacts, side, q, v, s.force)
-    copy(a, s.force, s.n_q)
-    return divide_by_mass(s.contacts, side, q, v, s.M, s.work, a)
 
 
 def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -30,45 +26,19 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
 
     False where a coefficient of friction is none.
     """
-    measure_rates(s, t, y)
+    renew_rates(s, t, y)
     if not s.measured or s.moving:
-        measure_biases(s, t, y)
+        measure_biases(s.rows, t, y, after(y, s.n_q))
     if not s.measured:
-        respond(s)
+        respond(s.rows)
         s.measured = s.constant
     return measure_friction(s, t, y)
 
 
-def measure_rates(s: Rubbing, t: float, y: Doubles) -> None:
-    """Rows and their rates."""
-    if s.measured and not s.moving:
-        return
-    n, n_j, k = s.n_q, s.n_j, s.n_j + s.n_c
-    q, v, side = y, after(y, n), s.clock.inside(t)
-    if n_j > 0:
-        gap_rates(s.joints, side, q, v, s.R, s.rate)
-    gap_rates(s.contacts, side, q, v, after(s.R, n_j * n), after(s.rate, n_j))
-    gap_rates(s.tangents, side, q, v, after(s.R, k * n), after(s.rate, k))
-
-
-def measure_biases(s: Rubbing, t: float, y: Doubles) -> None:
-    """Accelerations of the rows that the state alone makes."""
-    n_j, k, low, high = s.n_j, s.n_j + s.n_c, s.clock.low, s.clock.high
-    q, v, side = y, after(y, s.n_q), s.clock.inside(t)
-    if n_j > 0:
-        bias(s.joints, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, s.bias)
-    bias(s.contacts, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, n_j))
-    bias(s.tangents, side, low, high, q, v, s.shifted, s.G, s.shifted_rate, after(s.bias, k))
-
-
-def respond(s: Rubbing) -> None:
-    """The Delassus matrix of the rows, and what an impulse on each of them does."""
-    n, r = s.n_q, s.n_r
-    for i in range(r):
-        row = after(s.MR, i * n)
-        response(s.contacts, s.M, s.work, after(s.R, i * n), row)
-        for j in range(i + 1):
-            s.W[i * r + j] = s.W[j * r + i] = product(s.R, row, j, n)
+def renew_rates(s: Rubbing, t: float, y: Doubles) -> None:
+    """Rows and their rates, unless these are known and never change."""
+    if not s.measured or s.moving:
+        measure_rates(s.rows, t, y, after(y, s.n_q))
 
 
 def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -87,7 +57,7 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
-    if not free_motion(s, t, y, s.a_free):
+    if not free_motion(s.rows, t, y, after(y, s.n_q), s.a_free):
         return False
     if not measure_rows(s, t, y):
         return False
@@ -103,8 +73,8 @@ def measure_gaps(s: Rubbing, t: float, y: Doubles) -> None:
     """Gaps of joints and contacts."""
     q, v = y, after(y, s.n_q)
     if s.n_j > 0:
-        gaps(s.joints, t, q, v, s.gap)
-    gaps(s.contacts, t, q, v, after(s.gap, s.n_j))
+        gaps(s.rows.joints, t, q, v, s.gap)
+    gaps(s.model, t, q, v, after(s.gap, s.n_j))
 
 
 def measure_velocities(s: Rubbing, v: Doubles) -> None:
@@ -112,46 +82,24 @@ def measure_velocities(s: Rubbing, v: Doubles) -> None:
     for i in range(s.n_r):
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
     for i in range(2 * s.n_c):
-        s.terms[i] = max(s.terms[i], NOISE * size_of(s, s.n_j + i, v))
-
-
-def size_of(s: Rubbing, i: int, v: Doubles) -> float:
-    """Size of the terms of the velocity of row i, their signs left aside."""
-    size = abs(s.rate[i])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j] * v[j])
-    return size
+        s.terms[i] = max(s.terms[i], NOISE * size_of(s.rows, s.n_j + i, s.rate[s.n_j + i], v))
 
 
 def gap_size(s: Rubbing, c: int) -> float:
     """Size of the terms of gap c at the base state, as far as they are known."""
-    i, size = s.n_j + c, abs(s.gap[s.n_j + c])
-    if s.contacts.flat:
-        size += abs(s.contacts.offset[c])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j] * s.q[j])
-    return size
+    i = s.n_j + c
+    offset = abs(s.model.offset[c]) if s.model.flat else 0.0
+    return size_of(s.rows, i, abs(s.gap[i]) + offset, s.q)
 
 
 def gap_tolerance(s: Rubbing, c: int) -> float:
     """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
-    return least_effect(s, s.n_j + c, s.q)
+    return least_effect(s.rows, s.n_j + c, s.q)
 
 
 def speed_tolerance(s: Rubbing, i: int) -> float:
     """The velocity of row i that goes without changing a velocity by more than its tolerance."""
-    return least_effect(s, i, s.v)
-
-
-def least_effect(s: Rubbing, i: int, x: Doubles) -> float:
-    """What row i can change of itself without changing an x by more than its tolerance, in whatever unit it has."""
-    least = -1.0
-    for j in range(s.n_q):
-        moved = abs(s.MR[i * s.n_q + j])
-        if moved > 0.0:
-            here = (s.atol + s.rtol * abs(x[j])) * s.W[i * s.n_r + i] / moved
-            least = here if least < 0.0 or here < least else least
-    return max(least, 0.0)
+    return least_effect(s.rows, i, s.v)
 
 
 def force_noise(s: Rubbing) -> float:
@@ -164,9 +112,9 @@ def force_noise(s: Rubbing) -> float:
 
 def load_terms(s: Rubbing, j: int) -> float:
     """Size of the terms of a harmonic load on coordinate j, which may cancel; of callbacks nothing finer is known."""
-    if not s.contacts.linear or s.contacts.force.given or s.contacts.omega == 0.0:
+    if not s.model.linear or s.model.force.given or s.model.omega == 0.0:
         return 0.0
-    return abs(s.contacts.constant[j]) + abs(s.contacts.cosine[j]) + abs(s.contacts.sine[j])
+    return abs(s.model.constant[j]) + abs(s.model.cosine[j]) + abs(s.model.sine[j])
 
 
 def apply(s: Rubbing, i: int, p: float) -> None:

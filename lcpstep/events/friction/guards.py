@@ -20,14 +20,15 @@ if not cython.compiled:
         gap_tolerance,
         measure_friction,
         measure_gaps,
-        measure_rates,
-        size_of,
+        renew_rates,
         speed_tolerance,
     )
-    from lcpstep.events.friction.held import is_held, right_hand_side
+    from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+    from lcpstep.events.rows.equations import size_of
+    from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 
@@ -43,14 +44,14 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
     """All guards at a state, into `value`; False where one is not finite."""
     if not right_hand_side(s, t, y, s.dy):
         return False
-    if s.n_held == 0:
-        measure_rates(s, t, y)
+    if s.rows.n_held == 0:
+        renew_rates(s, t, y)
     return read(s, t, y)
 
 
 def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
     """The same at a stage of the step at hand, where the forces are known."""
-    measure_rates(s, t, y)
+    renew_rates(s, t, y)
     copy(s.multiplier, after(s.loads, stage * s.n_r), s.n_r)
     return measure_friction(s, t, y) and read(s, t, y)
 
@@ -69,7 +70,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             s.value[k] = s.gap[i]
             total += s.gap[i]
             continue
-        if is_held(s, i) or (s.mode[c] == LEANS and is_held(s, i + s.n_c)):
+        if is_held(s.rows, i) or (s.mode[c] == LEANS and is_held(s.rows, i + s.n_c)):
             s.value[k] = s.multiplier[i]
         slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
         if s.mode[c] == SLIDES and rubs(s, c):
@@ -97,7 +98,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
             s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + none
             if s.mode[c] == SLIDES:
                 T = i + s.n_c
-                s.band[k + 1] = NOISE * (size_of(s, T, s.v) + speed_tolerance(s, T))
+                s.band[k + 1] = NOISE * (size_of(s.rows, T, s.rate[T], s.v) + speed_tolerance(s, T))
         for g in range(k, k + GUARDS):
             s.armed[g] = 1 if s.value[g] > s.band[g] else 0
     return True
@@ -171,15 +172,15 @@ def stays_clear(s: Rubbing, h: float) -> bool:
 
 def find_bows(s: Rubbing, h: float) -> None:
     """How far the step leads off the line between its ends, at most: states into `seen`, forces into `dv`."""
-    n, turn = s.n_q, 0.125 * (s.contacts.omega * h) * (s.contacts.omega * h)
+    n, turn = s.n_q, 0.125 * (s.model.omega * h) * (s.model.omega * h)
     for i in range(2 * n):
         s.seen[i] = 0.0
         for k in range(1, 7):
             s.seen[i] += 0.25 * abs(s.F[2 * n * k + i])
     for i in range(n):
-        s.dv[i] = turn * (abs(s.contacts.cosine[i]) + abs(s.contacts.sine[i]))
+        s.dv[i] = turn * (abs(s.model.cosine[i]) + abs(s.model.sine[i]))
         for j in range(n):
-            s.dv[i] += abs(s.contacts.K[i * n + j]) * s.seen[j] + abs(s.contacts.C[i * n + j]) * s.seen[n + j]
+            s.dv[i] += abs(s.model.K[i * n + j]) * s.seen[j] + abs(s.model.C[i * n + j]) * s.seen[n + j]
 
 
 def bow(s: Rubbing, g: int) -> float:

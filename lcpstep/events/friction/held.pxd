@@ -14,8 +14,6 @@ cdef void hold_joints(Rubbing s) noexcept nogil
 cdef void accelerate_on_joints(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil
 cdef void hold_leaning(Rubbing s) noexcept nogil
-@cython.locals(found=bint)
-cdef bint is_held(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint hold_again(Rubbing s) noexcept nogil
 cdef void solve_held(Rubbing s, double* x) noexcept nogil
 cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil

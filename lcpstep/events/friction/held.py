@@ -14,15 +14,11 @@ import cython
 from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import (
-        add_impulse,
-        free_motion,
-        measure_biases,
-        measure_rates,
-        measure_rows,
-    )
+    from lcpstep.events.friction.equations import add_impulse, measure_rows, renew_rates
     from lcpstep.events.friction.on_joints import leave_joints
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.rows.equations import free_motion, measure_biases
+    from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.dynamics import total_force
     from lcpstep.kernels.vectors import add, clear, copy, product
@@ -64,11 +60,11 @@ def first_between(s: Rubbing, i: int, k: int) -> int:
 
 def hold(s: Rubbing, i: int) -> bool:
     """Add row i to the rows held, unless it depends on them; False where sliding takes its force away."""
-    k, r = s.n_held, s.n_r
-    s.held[k] = i
+    k, r = s.rows.n_held, s.n_r
+    s.rows.row[k] = i
     for m in range(k):
-        up, low = entry(s, s.held[m], i), entry(s, i, s.held[m])
-        for j in range(first_between(s, i, s.held[m]), m):
+        up, low = entry(s, s.rows.row[m], i), entry(s, i, s.rows.row[m])
+        for j in range(first_between(s, i, s.rows.row[m]), m):
             up -= s.L[m * r + j] * s.L[j * r + k]
             low -= s.L[k * r + j] * s.L[j * r + m]
         s.L[m * r + k] = up
@@ -81,7 +77,7 @@ def hold(s: Rubbing, i: int) -> bool:
     s.L[k * r + k] = pivot
     # of what leans on others the sign tells nothing: it does not slide
     if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and leans(s, i)):
-        s.n_held = k + 1
+        s.rows.n_held = k + 1
         return True
     return pivot >= -DEPENDENT * size
 
@@ -93,7 +89,7 @@ def leans(s: Rubbing, i: int) -> bool:
 
 def hold_joints(s: Rubbing) -> None:
     """Hold the independent joints, and nothing else."""
-    s.n_held, s.mapped = 0, False
+    s.rows.n_held, s.mapped = 0, False
     for i in range(s.n_j):
         hold(s, i)
     leave_joints(s)
@@ -135,37 +131,29 @@ def hold_leaning(s: Rubbing) -> None:
     """
     for c in range(s.n_c):
         i = s.n_j + c
-        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, i):
+        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s.rows, i):
             hold(s, i + s.n_c)
-
-
-def is_held(s: Rubbing, i: int) -> bool:
-    """Whether row i is among the rows held."""
-    found = False
-    for m in range(s.n_held):
-        found = found or s.held[m] == i
-    return found
 
 
 def hold_again(s: Rubbing) -> bool:
     """The same rows with the matrices of another state; False where they have become dependent."""
-    count = s.n_held
-    s.n_held = 0
+    count = s.rows.n_held
+    s.rows.n_held = 0
     for m in range(count):
-        i = s.held[m]
+        i = s.rows.row[m]
         if m == s.n_kept:
             leave_joints(s)
         hold(s, i)
-        if s.n_held != m + 1:
+        if s.rows.n_held != m + 1:
             s.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c else -1
-            s.n_held = count
+            s.rows.n_held = count
             return False
     return True
 
 
 def solve_held(s: Rubbing, x: Doubles) -> None:
     """X <- (L U)^-1 x."""
-    r, k = s.n_r, s.n_held
+    r, k = s.n_r, s.rows.n_held
     for i in range(k):
         for j in range(i):
             x[i] -= s.L[i * r + j] * x[j]
@@ -186,17 +174,17 @@ def push(s: Rubbing, i: int, x: float, a: Doubles) -> None:
 
 def constrain(s: Rubbing, a: Doubles, bias: Doubles) -> None:
     """A, which comes free, such that R a + bias = 0 on the rows held; multipliers into `x`."""
-    clear(s.x, s.n_held)
-    for _ in range(REFINEMENTS if s.n_held > 0 else 0):
-        for m in range(s.n_held):
-            i = s.held[m]
+    clear(s.x, s.rows.n_held)
+    for _ in range(REFINEMENTS if s.rows.n_held > 0 else 0):
+        for m in range(s.rows.n_held):
+            i = s.rows.row[m]
             s.change[m] = -bias[i] - product(s.R, a, i, s.n_q)
-        if nothing(s.change, s.n_held):
+        if nothing(s.change, s.rows.n_held):
             break
         solve_held(s, s.change)
-        for m in range(s.n_held):
+        for m in range(s.rows.n_held):
             s.x[m] += s.change[m]
-            push(s, s.held[m], s.change[m], a)
+            push(s, s.rows.row[m], s.change[m], a)
 
 
 def nothing(x: Doubles, n: int) -> bool:
@@ -215,9 +203,9 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if s.measured:
         accelerate(s, t, y, a)
         return a[0] - a[0] == 0.0
-    if not free_motion(s, t, y, a):
+    if not free_motion(s.rows, t, y, after(y, s.n_q), a):
         return False
-    if s.n_held > 0:
+    if s.rows.n_held > 0:
         if not measure_rows(s, t, y) or not (s.constant or hold_again(s)):
             return False
         constrain(s, a, s.bias)
@@ -230,13 +218,13 @@ def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
     n, m = s.n_q, s.n_q + s.n_r
     if not s.mapped:
         map_forces(s)
-    total_force(s.contacts, s.clock.inside(t), y, after(y, n), s.force)
+    total_force(s.model, s.clock.inside(t), y, after(y, n), s.force)
     clear(s.effect, m)
     for j in range(n):
         add(s.effect, s.force[j], after(s.effects, j * m), m)
-    if s.moving and s.n_held > 0:
-        measure_rates(s, t, y)
-        measure_biases(s, t, y)
+    if s.moving and s.rows.n_held > 0:
+        renew_rates(s, t, y)
+        measure_biases(s.rows, t, y, after(y, s.n_q))
         for i in range(s.n_r):
             add(s.effect, s.bias[i], after(s.effects, (n + i) * m), m)
     copy(a, s.effect, n)
@@ -250,7 +238,7 @@ def map_forces(s: Rubbing) -> None:
         clear(bias, r)
         if k < n:
             a[k] = 1.0
-            inverse_mass(s.contacts, s.M, s.work, a)
+            inverse_mass(s.model, s.rows.M, s.rows.work, a)
         else:
             bias[k - n] = 1.0
         constrain(s, a, bias)
@@ -263,8 +251,8 @@ def map_forces(s: Rubbing) -> None:
 def list_multipliers(s: Rubbing) -> None:
     """Forces by row from those of the rows held: the friction of sliding contacts on their tangents."""
     clear(s.multiplier, s.n_r)
-    for m in range(s.n_held):
-        i = s.held[m]
+    for m in range(s.rows.n_held):
+        i = s.rows.row[m]
         s.multiplier[i] = s.multiplier[i] + s.x[m]
         share = pull(s, i)
         if share != 0.0:
@@ -281,8 +269,8 @@ def stop_rows(s: Rubbing) -> None:
 
 def count_impulses(s: Rubbing, x: Doubles) -> None:
     """Count impulses of the rows held, with the friction of those that slide."""
-    for m in range(s.n_held):
-        i = s.held[m]
+    for m in range(s.rows.n_held):
+        i = s.rows.row[m]
         add_impulse(s, i, x[m])
         share = pull(s, i)
         if share != 0.0:

@@ -26,7 +26,6 @@ if not cython.compiled:
         gap_tolerance,
         measure,
         measure_velocities,
-        size_of,
         speed_tolerance,
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
@@ -35,6 +34,7 @@ if not cython.compiled:
     from lcpstep.events.friction.parting import approaches, let_go, rejoin
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.rows.equations import size_of
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
@@ -126,7 +126,7 @@ def strike_with(
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
             kind = JAM if c == jammed else IMPACT
-            if plastic and s.contacts.restitution[c] > 0.0:
+            if plastic and s.model.restitution[c] > 0.0:
                 kind = ACCUMULATION
             s.clock.log(record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
         s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
@@ -140,7 +140,7 @@ def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     own = s.in_turn or plastic
     for a in range(n_a):
         c = s.problem.ids[a]
-        r = 0.0 if s.thrown[c] == 1 else s.contacts.restitution[c]
+        r = 0.0 if s.thrown[c] == 1 else s.model.restitution[c]
         s.problem.rate[a] = s.before[c] if own else (1.0 + r) * min(s.before[c], 0.0)
         s.problem.slow[a] = inf if s.thrown[c] == 1 else 0.0
     for f in range(n_f):
@@ -148,7 +148,7 @@ def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
         share = 1.0 if own or s.thrown[c] == 1 else 1.0 + s.tangential[c]
         s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
     if s.in_turn and not plastic:
-        return strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, -1)
+        return strike_in_turn(s.problem, s.model.restitution, n_a, n_f, -1)
     return solve_contacts(s.problem, n_a, n_f)
 
 
@@ -178,7 +178,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
             first = a
     for f in range(n_f):
         s.problem.rate[n_a + f] = s.velocity[s.n_j + s.n_c + s.problem.ids[s.problem.carrier[f]]]
-    done = first >= 0 and strike_in_turn(s.problem, s.contacts.restitution, n_a, n_f, first)
+    done = first >= 0 and strike_in_turn(s.problem, s.model.restitution, n_a, n_f, first)
     if not (done and s.problem.impulse[first] > 0.0):
         return PAINLEVE_INCONSISTENT
     s.jams += 1
@@ -206,7 +206,7 @@ def find_free(s: Rubbing) -> None:
 
 def still(s: Rubbing, i: int) -> float:
     """The velocity of row i below which it is zero."""
-    return NOISE * size_of(s, i, s.v) + STILL * speed_tolerance(s, i)
+    return NOISE * size_of(s.rows, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
 
 
 def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
@@ -230,7 +230,7 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
     what elastic ones would go on with for ever.
     """
     slow = u <= speed_tolerance(s, s.n_j + c)
-    if s.contacts.restitution[c] < 1.0:
+    if s.model.restitution[c] < 1.0:
         slow = slow or s.n_c == 1 or height <= SEEN * RESOLUTION * gap_size(s, c)
     return slow and height <= gap_tolerance(s, c)
 

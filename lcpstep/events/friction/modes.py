@@ -32,9 +32,10 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
     from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
-    from lcpstep.events.friction.problem import fill, list_unknowns, row_of, size_of_rate, solve_forces
+    from lcpstep.events.friction.problem import fill, list_unknowns, row_of, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.kernels.coulomb import motion_of
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.repose import moves, stay
@@ -191,7 +192,7 @@ def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     """Size of the terms of the same acceleration, their signs left aside."""
-    m, size = n_a + n_f, size_of_rate(s, row_of(s, a, n_a))
+    m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size

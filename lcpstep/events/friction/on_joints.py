@@ -30,13 +30,13 @@ def leave_joints(s: Rubbing) -> None:
     A row of which nothing is left is a joint's own: zero.
     """
     n, n_j, r = s.n_q, s.n_j, s.n_r
-    s.n_kept = s.n_held
+    s.n_kept = s.rows.n_held
     copy(s.bent, s.bias, r)
     if n_j == 0:  # S is W, and P is R
         return
     copy(s.P, s.R, r * n)
-    for m in range(s.n_held):
-        sweep(s, s.held[m])
+    for m in range(s.rows.n_held):
+        sweep(s, s.rows.row[m])
     least = SAME if s.constant else DEPENDENT
     for i in range(n_j, r):
         respond_on_joints(s, i)
@@ -61,7 +61,7 @@ def sweep(s: Rubbing, j: int) -> None:
 
 def respond_on_joints(s: Rubbing, i: int) -> None:
     """M^-1 P_i^T: of the row that is left, for a difference of two such would be off from it by rounding of both."""
-    response(s.contacts, s.M, s.work, after(s.P, i * s.n_q), after(s.MP, i * s.n_q))
+    response(s.model, s.rows.M, s.rows.work, after(s.P, i * s.n_q), after(s.MP, i * s.n_q))
 
 
 def rubs(s: Rubbing, c: int) -> bool:

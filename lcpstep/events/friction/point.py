@@ -16,14 +16,15 @@ from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.events.friction.equations import free_motion, measure, measure_rows
+    from lcpstep.events.friction.equations import measure, measure_rows
     from lcpstep.events.friction.guards import look
     from lcpstep.events.friction.held import hold_modes, pull, right_hand_side
     from lcpstep.events.friction.impact import find_free
     from lcpstep.events.friction.modes import adopt_modes, decide
     from lcpstep.events.friction.state import GUARDS, Rubbing
+    from lcpstep.events.rows.equations import free_motion
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, max
+    from lcpstep.pointers import abs, after, max
 
 
 def modes(s: Rubbing) -> tuple[Any, Any]:
@@ -55,7 +56,7 @@ def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
         s.mode[c], s.direction[c] = int(mode[c]), direction[c]
         s.loaded[c] = 1 if s.mode[c] != OPEN else 0
     y = doubles(x)
-    if not free_motion(s, t, y, s.a_free):
+    if not free_motion(s.rows, t, y, after(y, s.n_q), s.a_free):
         return False
     return measure_rows(s, t, y) and hold_modes(s)
 

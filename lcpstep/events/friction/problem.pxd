@@ -9,4 +9,3 @@ cdef void fill(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 @cython.locals(found=bint)
 cdef bint solve_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void allow(Rubbing s, Py_ssize_t n_a, double sign) noexcept nogil
-cdef double size_of_rate(Rubbing s, Py_ssize_t i) noexcept nogil

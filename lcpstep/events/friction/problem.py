@@ -13,8 +13,8 @@ from lcpstep.events.friction.codes import OPEN
 if not cython.compiled:
     from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.kernels.coulomb import solve_contacts
-    from lcpstep.pointers import abs
 
 
 def row_of(s: Rubbing, a: int, n_a: int) -> int:
@@ -67,12 +67,6 @@ def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
 def allow(s: Rubbing, n_a: int, sign: float) -> None:
     """Raise, or lower, the accelerations of the normals by their rounding."""
     for a in range(n_a):
-        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size_of_rate(s, row_of(s, a, n_a))
-
-
-def size_of_rate(s: Rubbing, i: int) -> float:
-    """Size of the terms of row i's acceleration without contact forces, their signs left aside."""
-    size = abs(s.bias[i])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j]) * (abs(s.a_free[j]) + abs(s.a[j]))
-    return size
+        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size_of_acceleration(
+            s.rows, row_of(s, a, n_a), s.a
+        )

@@ -11,10 +11,10 @@ from lagrangian import Scene
 from lcpstep.events.friction.loop import Course
 from lcpstep.events.friction.smooth import Smooth
 from lcpstep.events.general.ends import NO_IMPULSES
+from lcpstep.events.rows.state import Rows
 from lcpstep.events.running import FIRST_STEP, QUADRATURE, Integrated
 from lcpstep.events.scan import scan_interval
 from lcpstep.gauss import gauss
-from lcpstep.kernels.clock import Clock
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Status
@@ -33,11 +33,13 @@ def start(
     friction = given and given.friction
     tangential = np.zeros(scene.n_c) if friction is None else friction.tangential(given.restitution)
     scan = scan_interval(scene, contacts, 0.0)
-    clock = Clock(scene.t_span, turns(scene, with_belts=True).stops, scene.period)
+    corners = turns(scene, with_belts=True).stops
+    rows = Rows(
+        contacts, joints, scene.n_j, tangents, scene.n_c, (rtol, atol), scene.t_span, corners, scene.period
+    )
     s = kind(
-        contacts, joints, tangents, coefficients(scene), tangential,
-        friction is not None and friction.law == "stronge", yields, clock, scene.t_span[1], scan, rtol, atol,
-        *gauss(QUADRATURE), *more,
+        rows, coefficients(scene), tangential, friction is not None and friction.law == "stronge", yields,
+        scene.t_span[1], scan, *gauss(QUADRATURE), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan

@@ -1,4 +1,5 @@
 from lcpstep.events.hybrid.roots cimport Scan
+from lcpstep.events.rows.state cimport Rows
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
@@ -14,24 +15,25 @@ cdef double NOISE
 
 cdef class Rubbing(RungeKutta):
     cdef object turn, rule, table, per_contact, given, marks, looks, arms
-    cdef readonly Model contacts, joints, tangents
+    cdef readonly Rows rows
     cdef readonly Clock clock
+    cdef readonly Model model
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
     cdef Scan scan
-    cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_held, n_kept, n_nodes
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_kept, n_nodes
     cdef public Py_ssize_t next, culprit, jams, rounds
     cdef readonly bint in_turn, yields
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard, paced
     cdef double found, slope
     cdef bint constant, moving, plain, measured, mapped, risen
-    cdef Doubles nodes, weights, q, v, a_free, a, force, work, shifted, dy, seen, dv, M, R, MR, G, W, S, L, P, MP, bent
+    cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S, L, P, MP, bent
     cdef Doubles rate, bias, gap, velocity, x, change, multiplier, impulse, account, instant, paces
     cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
     cdef Doubles owed
-    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, held
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown
     cdef Doubles value, band, samples
     cdef Indices armed
     cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -1,7 +1,6 @@
 """The state of a system whose contacts stick and slide, under the names of mechanics, and its work space.
 
-Rows are joints, then the contacts' normals, then their tangents: R v + rate are the velocities of joints, of gaps and
-of sliding, R a + bias their accelerations, W = R M^-1 R^T.
+R v + rate are the velocities of joints, of gaps and of sliding, R a + bias their accelerations, W = R M^-1 R^T.
 """
 
 from __future__ import annotations
@@ -18,10 +17,10 @@ from lcpstep.kernels.status import NOT_FINITE
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
-    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.events.rows.state import Rows
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem
-    from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.tally import Tally
@@ -36,16 +35,16 @@ NOISE = 64 * RESOLUTION
 class Rubbing(RungeKutta):
     """A motion under way; its field, that of the modes at hand, is given by `smooth`.
 
-    contacts, joints, tangents   the same system with its contacts, joints or tangents as rows
-    clock, t_end, scan, scan_length   times; the polynomials of guards; longest interval between two looks at them
+    rows, clock, model           the rows of joints, contacts and tangents, which are the clock as well; the system
+    t_end, scan, scan_length     end of the span; the polynomials of guards; longest interval between looks at them
     constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
     plain                        no function of the user's is in it
     next                         what comes next: BEGIN, MOVE, JUMP, SETTLE or OBEY
     q, v : (n_q,)                state at the base time
-    a_free, a, force : (n_q,)    acceleration without constraints, with them; force
-    R, MR : (n_r, n_q)           rows; rows M^-1 R^T;  W : (n_r, n_r)  Delassus matrix
+    a : (n_q,)                   acceleration with constraints
+    a_free, force, R, MR, W, rate, bias   of `rows`, of which W is the Delassus matrix D
     P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   the same, and `bias`, on the joints held, see `on_joints`
-    rate, bias, gap, velocity : (n_r,)   of rows at the state last measured
+    gap, velocity : (n_r,)       of rows at the state last measured
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
     tangential : (n_c,)          restitution on the tangent
@@ -59,8 +58,8 @@ class Rubbing(RungeKutta):
     terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
-    held : (n_held,)             rows held, the first n_kept of them joints;  x : (n_r,)  their multipliers
-    L : (n_r, n_r)               factors of their matrix
+    n_kept                       joints among the rows held, which come first
+    x : (n_r,), L : (n_r, n_r)   multipliers of the rows held, factors of their matrix
     effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
         never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
     impulse : (n_r,)             contacts, tangents, joints, since the last kept state
@@ -80,32 +79,26 @@ class Rubbing(RungeKutta):
 
     Parameters
     ----------
-    contacts, joints, tangents : Model;  coefficients : Coefficients;  tangential : (n_c,)
-    in_turn, yields : bool
-    clock : Clock;  t_end, scan_length, rtol, atol : float;  nodes, weights : quadrature on [0, 1]
+    rows : Rows;  coefficients : Coefficients;  tangential : (n_c,);  in_turn, yields : bool
+    t_end, scan_length : float;  nodes, weights : quadrature on [0, 1]
     """
 
     def __init__(
         self,
-        contacts: Model,
-        joints: Model,
-        tangents: Model,
+        rows: Rows,
         coefficients: Coefficients,
         tangential: Any,
         in_turn: bool,
         yields: bool,
-        clock: Clock,
         t_end: float,
         scan_length: float,
-        rtol: float,
-        atol: float,
         nodes: Any,
         weights: Any,
     ) -> None:
-        n, n_c, n_j = contacts.n_q, contacts.n_c, joints.n_c
-        RungeKutta.__init__(self, 2 * n, n, rtol, atol)
-        r = n_j + 2 * n_c
-        self.contacts, self.joints, self.tangents, self.clock = contacts, joints, tangents, clock
+        contacts, joints, tangents = rows.model, rows.joints, rows.tangents
+        n, n_c, n_j, r = rows.n_q, rows.n_c, rows.n_j, rows.n_r
+        RungeKutta.__init__(self, 2 * n, n, rows.rtol, rows.atol)
+        self.rows, self.clock, self.model = rows, rows, contacts
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
         self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
@@ -118,34 +111,23 @@ class Rubbing(RungeKutta):
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
-        self.n_held, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
-        self.n_kept = 0
+        self.n_kept, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
         self.risen = False
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(
-            11 * n + n * n + 5 * r * n + 3 * r * r + (16 + ALL) * r + 1 + (n + r + 1) * (n + r)
-        )
+        self.table = np.zeros(8 * n + 2 * r * n + 2 * r * r + (13 + ALL) * r + 1 + (n + r + 1) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
-        self.a_free = doubles(self.table)
-        self.a = after(self.a_free, n)
-        self.force = after(self.a, n)
-        self.work = after(self.force, n)
-        self.shifted = after(self.work, n)
-        self.dy = after(self.shifted, n)
+        self.a_free, self.force = self.rows.a_free, self.rows.force
+        self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D
+        self.rate, self.bias, self.shifted_rate = self.rows.rate, self.rows.bias, self.rows.near
+        self.a = doubles(self.table)
+        self.dy = after(self.a, n)
         self.seen = after(self.dy, 2 * n)
         self.dv = after(self.seen, 2 * n)
-        self.M = after(self.dv, 2 * n)
-        self.R = after(self.M, n * n)
-        self.MR = after(self.R, r * n)
-        self.G = after(self.MR, r * n)
-        self.W = after(self.G, r * n)
-        self.S = after(self.W, r * r) if n_j > 0 else self.W
-        self.L = after(self.W, 2 * r * r)
-        self.rate = after(self.L, r * r)
-        self.bias = after(self.rate, r)
-        self.gap = after(self.bias, r)
+        self.S = after(self.dv, 2 * n) if n_j > 0 else self.W
+        self.L = after(self.dv, 2 * n + r * r)
+        self.gap = after(self.L, r * r)
         self.velocity = after(self.gap, r)
         self.x = after(self.velocity, r)
         self.change = after(self.x, r)
@@ -153,8 +135,7 @@ class Rubbing(RungeKutta):
         self.account = after(self.impulse, r)
         self.instant = after(self.account, r)
         self.paces, self.paced = after(self.instant, r), 0
-        self.shifted_rate = after(self.paces, r + 1)
-        self.counted = after(self.shifted_rate, r)
+        self.counted = after(self.paces, r + 1)
         self.total = after(self.counted, r)
         self.loads = after(self.total, r)
         self.doubt = after(self.loads, ALL * r)
@@ -175,7 +156,7 @@ class Rubbing(RungeKutta):
         self.before = after(self.direction, 5 * n_c)
         self.owed = after(self.direction, 6 * n_c)
         self.slip = after(self.direction, 8 * n_c)
-        self.marks = np.zeros(9 * n_c + r, dtype=np.intp)
+        self.marks = np.zeros(9 * n_c, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)
         self.new_mode = indices_after(self.mode, 2 * n_c)
@@ -185,7 +166,6 @@ class Rubbing(RungeKutta):
         self.new_loaded = indices_after(self.mode, 6 * n_c)
         self.parting = indices_after(self.mode, 7 * n_c)
         self.thrown = indices_after(self.mode, 8 * n_c)
-        self.held = indices_after(self.mode, 9 * n_c)
         samples = DEGREE + 1 + CHECKS
         self.looks = np.zeros(GUARDS * n_c * (samples + 2))
         self.value = doubles(self.looks)

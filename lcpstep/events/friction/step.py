@@ -35,7 +35,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step, which ends at the first event within it; what comes next into `next`. A status."""
     t0, border = s.clock.t0, min(s.t_end, s.clock.high)
     s.culprit = -1
-    if s.n_held != s.paced:
+    if s.rows.n_held != s.paced:
         change_pace(s)
     code = s.take_step(t0, min(border - t0, s.scan_length), s.scan_length)
     if code != DONE:
@@ -63,9 +63,9 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
 def change_pace(s: Rubbing) -> None:
     """Go on with the step that was next when as many rows were held: what sticks allows others than what slides."""
     s.paces[s.paced] = s.next_step
-    if s.paces[s.n_held] > 0.0:
-        s.next_step = s.paces[s.n_held]
-    s.paced = s.n_held
+    if s.paces[s.rows.n_held] > 0.0:
+        s.next_step = s.paces[s.rows.n_held]
+    s.paced = s.rows.n_held
 
 
 def of_force(s: Rubbing, g: int) -> bool:
@@ -148,7 +148,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
         record.store(s.F, s.length)
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
-    if tau > 0.0 and s.n_held > 0:
+    if tau > 0.0 and s.rows.n_held > 0:
         project(s, t)
 
 
@@ -159,7 +159,7 @@ def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
         s.at(tau / s.length, s.seen)
         copy(s.dy, s.y, 2 * s.n_q)
         copy(s.y, s.seen, 2 * s.n_q)
-        if s.n_held > 0:
+        if s.rows.n_held > 0:
             project(s, t)
         keep(s, record, t, s.y)
         copy(s.y, s.dy, 2 * s.n_q)
@@ -170,7 +170,7 @@ def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
 
 def press_between(s: Rubbing, a: float, b: float) -> None:
     """Add the impulses of the forces between a and b after the base: Gauss' quadrature."""
-    if s.n_held == 0 or b <= a:
+    if s.rows.n_held == 0 or b <= a:
         return
     for k in range(s.n_nodes):
         tau = a + s.nodes[k] * (b - a)
@@ -184,7 +184,7 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
 
 def press_rest(s: Rubbing, a: float, b: float) -> None:
     """Add the impulses of the rest of the step, which ends b after the base; up to a they have been counted."""
-    if s.n_held == 0:
+    if s.rows.n_held == 0:
         return
     if not sum_up(s):
         press_between(s, a, b)

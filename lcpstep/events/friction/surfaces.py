@@ -12,11 +12,11 @@ if not cython.compiled:
         gap_tolerance,
         measure_friction,
         measure_gaps,
-        measure_rates,
-        respond,
+        renew_rates,
     )
     from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
     from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.rows.equations import respond
     from lcpstep.kernels.acceleration import factor_mass
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import clear, copy, product
@@ -36,14 +36,14 @@ def project(s: Rubbing, t: float) -> bool:
         measure_gaps(s, t, s.y)
         if is_on_rows(s) or not take_rows(s, t):
             break
-        for m in range(s.n_held):
-            i = s.held[m]
+        for m in range(s.rows.n_held):
+            i = s.rows.row[m]
             s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
         push_by_change(s, s.q)
     if not take_rows(s, t):
         return False
-    for m in range(s.n_held):
-        i = s.held[m]
+    for m in range(s.rows.n_held):
+        i = s.rows.row[m]
         s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
     push_by_change(s, s.v)
     return True
@@ -52,8 +52,8 @@ def project(s: Rubbing, t: float) -> bool:
 def is_on_rows(s: Rubbing) -> bool:
     """Whether the gaps of all rows held are exactly zero."""
     zero = True
-    for m in range(s.n_held):
-        i = s.held[m]
+    for m in range(s.rows.n_held):
+        i = s.rows.row[m]
         zero = zero and (i >= s.n_j + s.n_c or s.gap[i] == 0.0)
     return zero
 
@@ -61,22 +61,22 @@ def is_on_rows(s: Rubbing) -> bool:
 def take_rows(s: Rubbing, t: float) -> bool:
     """Rows, rates and factors of the rows held at the base state; False where these have become dependent."""
     if s.constant:
-        measure_rates(s, t, s.y)
+        renew_rates(s, t, s.y)
         return True
-    if not factor_mass(s.contacts, s.clock.inside(t), s.q, s.v, s.M):
+    if not factor_mass(s.model, s.clock.inside(t), s.q, s.v, s.rows.M):
         return False
-    measure_rates(s, t, s.y)
-    respond(s)
+    renew_rates(s, t, s.y)
+    respond(s.rows)
     return measure_friction(s, t, s.y) and hold_again(s)
 
 
 def push_by_change(s: Rubbing, x: Doubles) -> None:
     """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
-    if nothing(s.change, s.n_held):
+    if nothing(s.change, s.rows.n_held):
         return
     solve_held(s, s.change)
-    for m in range(s.n_held):
-        push(s, s.held[m], s.change[m], x)
+    for m in range(s.rows.n_held):
+        push(s, s.rows.row[m], s.change[m], x)
 
 
 def lift(s: Rubbing, c: int) -> None:
@@ -90,7 +90,7 @@ def lift(s: Rubbing, c: int) -> None:
     way, speed = s.v, u
     if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
         way, speed = after(s.MR, i * n), s.W[i * s.n_r + i]
-        if s.n_held > 0:
+        if s.rows.n_held > 0:
             copy(s.dv, way, n)
             clear(s.shifted_rate, s.n_r)
             constrain(s, s.dv, s.shifted_rate)

@@ -18,12 +18,14 @@ import cython
 from lcpstep.events.general.ends import ACCUMULATION
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import bias_of, biases, constraint_rows, measure_again
-    from lcpstep.events.general.held import constrain, hold_contacts, is_held, right_hand_side, solve_held
-    from lcpstep.events.general.impact import apply, gap_tolerance, speed_noise, speed_tolerance
+    from lcpstep.events.general.equations import gap_tolerance, measure_again, speed_tolerance
+    from lcpstep.events.general.held import constrain, hold_contacts, right_hand_side, solve_held
+    from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.problem import CHECKED
     from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.rows.equations import measure_biases, measure_rates
+    from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
@@ -267,8 +269,8 @@ def later(s: Mechanism, c: int, T: float) -> float:
         v[j] = s.v[j] + T * s.a[j]
     curve = nan
     if right_hand_side(s, s.t0 + T, q, dy):
-        biases(s, s.model, s.contact, s.t0 + T, q, v)
-        constraint_rows(s, s.t0 + T, q, v)
-        curve = product(s.R, after(dy, n), s.n_j + c, n) + bias_of(s, s.n_j + c)
+        measure_biases(s, s.t0 + T, q, v)
+        measure_rates(s, s.t0 + T, q, v)
+        curve = product(s.R, after(dy, n), s.n_j + c, n) + s.contact.bias[c]
     measure_again(s, s.t0)
     return curve

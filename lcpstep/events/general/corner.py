@@ -12,10 +12,11 @@ from lcpstep.events.general.ends import NO_IMPULSES
 from lcpstep.kernels.status import BUFFER_FULL, DONE
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import JUMPS, constraint_rows
-    from lcpstep.events.general.impact import speed_tolerance, strike
+    from lcpstep.events.general.equations import speed_tolerance
+    from lcpstep.events.general.impact import strike
     from lcpstep.events.general.modes import tell_impacts
     from lcpstep.events.general.state import JUMP, SETTLE, Mechanism
+    from lcpstep.events.rows.equations import JUMPS, measure_rates, size_of
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
@@ -43,14 +44,13 @@ def throws(s: Mechanism) -> bool:
     """Whether a closed contact is struck or left by its obstacle; gap velocities of open ones are the new ones."""
     some = False
     before = s.left.curve
-    constraint_rows(s, s.t0, s.q, s.v)  # as they are here, and not where gaps were last looked at
+    measure_rates(s, s.t0, s.q, s.v)  # as they are here, and not where gaps were last looked at
     copy(before, s.contact.rate, s.n_c)
     s.find_corners(s.t0)
-    constraint_rows(s, s.t0, s.q, s.v)
+    measure_rates(s, s.t0, s.q, s.v)
     for c in range(s.n_c):
-        jump, size = s.contact.rate[c] - before[c], abs(s.contact.rate[c]) + abs(before[c])
-        for j in range(s.n_q):
-            size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
+        jump = s.contact.rate[c] - before[c]
+        size = size_of(s, s.n_j + c, abs(s.contact.rate[c]) + abs(before[c]), s.v)
         s.contact.terms[c], s.contact.parting[c], s.contact.thrown[c] = size, 0, 0.0
         if abs(jump) <= max(JUMPS * size, speed_tolerance(s, c)):
             jump = 0.0

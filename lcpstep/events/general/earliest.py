@@ -13,10 +13,11 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import biases, constraint_rows
+    from lcpstep.events.general.equations import gap_tolerance
     from lcpstep.events.general.held import note, right_hand_side
-    from lcpstep.events.general.impact import gap_tolerance, speed_noise
+    from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.rows.equations import measure_biases, measure_rates
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import copy, largest, product
@@ -185,8 +186,9 @@ def observe(s: Mechanism, tau: float) -> bool:
         return False
     if s.n_c > 0:
         gaps(s.model, t, s.q, s.v, s.contact.gap)
-        biases(s, s.model, s.contact, s.inside(t), s.q, s.v)
-        constraint_rows(s, t, s.q, s.v)
+        if s.n_held == 0:
+            measure_biases(s, t, s.q, s.v)
+        measure_rates(s, t, s.q, s.v)
     note(s, s.a)
     known = True
     for c in range(s.n_c):

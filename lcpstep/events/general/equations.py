@@ -1,55 +1,47 @@
-"""Contacts and joints at one state, as kernels: gaps, Jacobians, biases and the Delassus matrix.
-
-With the rows R of joints (first) and contacts (after them), the rate of row i is R_i v + rate_i and its acceleration
-R_i a + bias_i; D = R M^-1 R^T is the Delassus matrix. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth
-Dynamical Systems (Springer 2008), chapter 3.
-"""
+"""Contacts and joints at the state q, v, as kernels: gaps, speeds, and what they may be off. See `events.rows`."""
 
 from __future__ import annotations
 
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.state import Mechanism, Rows
-    from lcpstep.kernels.acceleration import divide_by_mass, response
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after
-
-
-JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
-BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
+    from lcpstep.events.general.state import Mechanism
+    from lcpstep.events.rows.equations import (
+        free_motion,
+        least_effect,
+        measure_biases,
+        measure_rates,
+        respond,
+    )
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.vectors import product
 
 
 def measure(s: Mechanism, t: float) -> bool:
     """Everything at the state q, v and time t: gaps, speeds, R, D, free acceleration; False where M is singular."""
-    q, v, a = s.q, s.v, s.a_free
-    n_j, n_c = s.n_j, s.n_c
-    side = s.inside(t)
-    total_force(s.model, side, q, v, s.force)
-    copy(a, s.force, s.n_q)
-    if not divide_by_mass(s.model, side, q, v, s.M, s.work, a):
+    q, v, n_j = s.q, s.v, s.n_j
+    if not free_motion(s, t, q, v, s.a_free):
         return False
-    if n_c > 0:
-        gaps(s.model, t, q, v, s.contact.gap)
-    if n_j > 0:
-        gaps(s.joints, t, q, v, s.joint.gap)
-    biases(s, s.model, s.contact, side, q, v)
-    biases(s, s.joints, s.joint, side, q, v)
-    constraint_rows(s, t, q, v)
-    for i in range(n_j + n_c):
-        response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
-        for j in range(i + 1):
-            s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+    measure_gaps(s, t)
+    measure_biases(s, t, q, v)
+    measure_rates(s, t, q, v)
+    respond(s)
     for i in range(n_j):
         s.joint.speed[i] = product(s.R, v, i, s.n_q) + s.joint.rate[i]
-    for i in range(n_c):
+    for i in range(s.n_c):
         s.contact.speed[i] = product(s.R, v, n_j + i, s.n_q) + s.contact.rate[i]
         size = s.contact.speed[i] + s.contact.gap[i] + s.contact.bias[i]
         if size - size != 0.0:
             return False
     return True
+
+
+def measure_gaps(s: Mechanism, t: float) -> None:
+    """Gaps of joints and contacts."""
+    if s.n_c > 0:
+        gaps(s.model, t, s.q, s.v, s.contact.gap)
+    if s.n_j > 0:
+        gaps(s.joints, t, s.q, s.v, s.joint.gap)
 
 
 def measure_on(s: Mechanism, t: float) -> bool:
@@ -73,36 +65,11 @@ def measure_again(s: Mechanism, t: float) -> bool:
     return True
 
 
-def constraint_rows(s: Mechanism, t: float, q: Doubles, v: Doubles) -> None:
-    """Jacobians of joints and contacts into R, and their rates at rest, on their side of a corner."""
-    if s.n_j > 0:
-        rates_on_side(s, s.joints, s.joint, t, q, v)
-    if s.n_c > 0:
-        rates_on_side(s, s.model, s.contact, t, q, v)
+def gap_tolerance(s: Mechanism, c: int) -> float:
+    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance."""
+    return least_effect(s, s.n_j + c, s.q)
 
 
-def rates_on_side(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """The same of one model. A callback tells on a corner of either side; where that is the other one, the rates here
-    are those of the straight line through two times inside, for there is no digit to lose: contacts may be at rest.
-    """
-    side = s.inside(t)
-    if side != t:
-        gap_rates(model, side, q, v, now.G, now.near)
-        gap_rates(model, 2.0 * side - t, q, v, now.G, now.shifted)
-    gap_rates(model, t, q, v, now.G, now.rate)
-    for i in range(now.n if side != t else 0):
-        jump, size = abs(now.near[i] - now.rate[i]), abs(now.near[i]) + abs(now.rate[i])
-        if jump > JUMPS * size + BENDS * abs(now.shifted[i] - now.near[i]):
-            now.rate[i] = 2.0 * now.near[i] - now.shifted[i]
-
-
-def biases(s: Mechanism, model: Model, now: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """(dG/dt) v + d(rate)/dt along the motion, for all rows of a model; G is overwritten."""
-    if now.n > 0:
-        bias(model, t, s.low, s.high, q, v, s.work, now.G, now.shifted, now.bias)
-
-
-def bias_of(s: Mechanism, i: int) -> float:
-    """Bias of a row."""
-    n_j = s.n_j
-    return s.joint.bias[i] if i < n_j else s.contact.bias[i - n_j]
+def speed_tolerance(s: Mechanism, c: int) -> float:
+    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, s.n_j + c, s.v)

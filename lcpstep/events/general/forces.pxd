@@ -11,7 +11,6 @@ cdef bint stands(Mechanism s) noexcept nogil
 cdef bint enters(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef bint presses(Mechanism s) noexcept nogil
 cdef void open_contacts(Mechanism s, double t) noexcept nogil
-cdef double terms(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(shifting=bint)
 cdef void unload(Mechanism s) noexcept nogil
 cdef double passed_on(Mechanism s, Py_ssize_t c) noexcept nogil

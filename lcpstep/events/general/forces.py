@@ -13,20 +13,19 @@ from lcpstep.events.general.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import bias_of
     from lcpstep.events.general.held import (
         constrain,
-        contradiction,
         hold,
         hold_contacts,
         hold_joints,
         joints_own,
         note,
-        size_of_rate,
         solve_held,
     )
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.rows.equations import size_of, size_of_acceleration
+    from lcpstep.events.rows.held import contradiction
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
 
@@ -53,7 +52,7 @@ def contact_forces(s: Mechanism, t: float) -> int:
         s.contact.multiplier[c] = 0.0
         if s.contact.closed[c] == 1 and not joints_own(s, c):
             s.contact.member[s.n_members], s.contact.b[s.n_members] = c, s.contact.curve[c]
-            s.contact.noise[s.n_members] = 0.5 * NOISE * terms(s, c)
+            s.contact.noise[s.n_members] = 0.5 * NOISE * size_of(s, s.n_j + c, s.contact.bias[c], s.a_free)
             s.n_members += 1
     solved = True
     if s.n_members > 0:
@@ -88,7 +87,7 @@ def enters(s: Mechanism, c: int) -> bool:
     """Whether contact c accelerates into its surface, by more than rounding."""
     i = s.n_j + c
     alpha = product(s.R, s.a, i, s.n_q) + s.contact.bias[c]
-    return alpha < 0.0 and alpha < -PASSES * size_of_rate(s, i, s.a)
+    return alpha < 0.0 and alpha < -PASSES * size_of_acceleration(s, i, s.a)
 
 
 def presses(s: Mechanism) -> bool:
@@ -109,7 +108,7 @@ def open_contacts(s: Mechanism, t: float) -> None:
     k = s.n_members
     for m in range(k):
         c, alpha = s.contact.member[m], s.contact.b[m]
-        size = terms(s, c)
+        size = size_of(s, s.n_j + c, s.contact.bias[c], s.a_free)
         for b in range(k):
             alpha += s.W[m * k + b] * s.contact.z[b]
             size += abs(s.W[m * k + b] * s.contact.z[b])
@@ -137,18 +136,7 @@ def passed_on(s: Mechanism, c: int) -> float:
         s.change[m] = s.D[s.row[m] * s.n_r + i]
     solve_held(s, s.n_held, s.change)
     for m in range(s.n_held):
-        terms_m = abs(bias_of(s, s.row[m]))
-        for j in range(s.n_q):
-            terms_m += abs(s.R[s.row[m] * s.n_q + j]) * acting[j]
-        size += abs(s.change[m]) * terms_m
-    return size
-
-
-def terms(s: Mechanism, c: int) -> float:
-    """Size of the terms of a gap acceleration without contact forces."""
-    size = abs(s.contact.bias[c])
-    for j in range(s.n_q):
-        size += abs(s.R[(s.n_j + c) * s.n_q + j] * s.a_free[j])
+        size += abs(s.change[m]) * size_of(s, s.row[m], s.bias[s.row[m]], acting)
     return size
 
 

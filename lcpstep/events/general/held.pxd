@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
 cdef Py_ssize_t REFINEMENTS
-cdef double PARTED, DISAGREEMENT, DRIFT
+cdef double DRIFT
 
 cdef void hold(Mechanism s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Mechanism s) noexcept nogil
@@ -14,10 +14,5 @@ cdef void solve_held(Mechanism s, Py_ssize_t k, double* x) noexcept nogil
 cdef void constrain(Mechanism s, double* a) noexcept nogil
 cdef void note(Mechanism s, double* a) noexcept nogil
 cdef bint drifts(Mechanism s, double* a, Py_ssize_t c) noexcept nogil
-cdef double size_of_rate(Mechanism s, Py_ssize_t i, double* a) noexcept nogil
 cdef bint right_hand_side(Mechanism s, double t, double* y, double* dy) noexcept nogil
 cdef void project(Mechanism s, double t) noexcept nogil
-@cython.locals(found=bint)
-cdef bint is_held(Mechanism s, Py_ssize_t i) noexcept nogil
-cdef Py_ssize_t contradiction(Mechanism s, double* a) noexcept nogil
-cdef Py_ssize_t parted(Mechanism s) noexcept nogil

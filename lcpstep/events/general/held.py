@@ -12,18 +12,22 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.equations import bias_of, biases, constraint_rows
+    from lcpstep.events.general.equations import measure_gaps
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.kernels.acceleration import divide_by_mass, inverse_mass, response
+    from lcpstep.events.rows.equations import (
+        free_motion,
+        measure_biases,
+        measure_rates,
+        respond_to,
+        size_of_acceleration,
+    )
+    from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.dynamics import gaps, total_force
     from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import Doubles, abs, after
 
 REFINEMENTS = 6
-PARTED = 1e3  # tolerances by which joints that say the same may differ
-DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
 DRIFT = 1e-9  # of the terms of a gap acceleration: one that the rows held do not keep at zero
 
 
@@ -66,14 +70,13 @@ def hold_contacts(s: Mechanism) -> None:
 
 def hold_again(s: Mechanism, t: float, q: Doubles, v: Doubles) -> bool:
     """Jacobians and factor of the same rows at another state; False where they have become dependent."""
-    biases(s, s.model, s.contact, t, q, v)
-    biases(s, s.joints, s.joint, t, q, v)
-    constraint_rows(s, t, q, v)
+    measure_biases(s, t, q, v)
+    measure_rates(s, t, q, v)
     count = s.n_held
     s.n_held = 0
     for m in range(count):
         i = s.row[m]
-        response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
+        respond_to(s, i)
         for k in range(m + 1):
             j = s.row[k]
             s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
@@ -99,7 +102,7 @@ def constrain(s: Mechanism, a: Doubles) -> None:
     for _ in range(REFINEMENTS):
         for m in range(k):
             i = s.row[m]
-            s.change[m] = -bias_of(s, i) - product(s.R, a, i, s.n_q)
+            s.change[m] = -s.bias[i] - product(s.R, a, i, s.n_q)
         solve_held(s, k, s.change)
         if largest(s.change, 0.0, k) <= 4.0 * RESOLUTION * largest(s.held, 0.0, k):
             break
@@ -114,7 +117,7 @@ def constrain(s: Mechanism, a: Doubles) -> None:
     # what rounding of large multipliers leaves is taken out of the acceleration, which must stay on the surface
     for m in range(k):
         i = s.row[m]
-        s.change[m] = -bias_of(s, i) - product(s.R, a, i, s.n_q)
+        s.change[m] = -s.bias[i] - product(s.R, a, i, s.n_q)
     solve_held(s, k, s.change)
     for m in range(k):
         for j in range(n):
@@ -131,7 +134,7 @@ def note(s: Mechanism, a: Doubles) -> None:
         s.joint.multiplier[i] = 0.0
     for c in range(n_c):
         s.contact.multiplier[c] = 0.0
-        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + bias_of(s, n_j + c)
+        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
     for m in range(s.n_held):
         i = s.row[m]
         if i < n_j:
@@ -147,29 +150,17 @@ def note(s: Mechanism, a: Doubles) -> None:
 def drifts(s: Mechanism, a: Doubles, c: int) -> bool:
     """Whether a gap acceleration, in `curve`, is no rounding under the acceleration a."""
     alpha = abs(s.contact.curve[c])
-    return alpha > 0.0 and alpha > DRIFT * size_of_rate(s, s.n_j + c, a)
-
-
-def size_of_rate(s: Mechanism, i: int, a: Doubles) -> float:
-    """Size of the terms of row i's acceleration under a, and without the rows held, their signs left aside."""
-    size = abs(bias_of(s, i))
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
-    return size
+    return alpha > 0.0 and alpha > DRIFT * size_of_acceleration(s, s.n_j + c, a)
 
 
 def right_hand_side(s: Mechanism, t: float, y: Doubles, dy: Doubles) -> bool:
     """dy = (v, v') with the rows held; False where it is not finite or the rows have become dependent."""
     n = s.n_q
-    q, v, a = y, after(y, n), after(dy, n)
-    t, s.parallel = s.inside(t), False
-    total_force(s.model, t, q, v, a)
-    if s.n_held > 0:
-        copy(s.force, a, n)
-    if not divide_by_mass(s.model, t, q, v, s.M, s.work, a):
+    q, v, a, s.parallel = y, after(y, n), after(dy, n), False
+    if not free_motion(s, t, q, v, a):
         return False
     if s.n_held > 0:
-        s.parallel = not hold_again(s, t, q, v)
+        s.parallel = not hold_again(s, s.inside(t), q, v)
         if s.parallel:
             return False
         constrain(s, a)
@@ -183,10 +174,7 @@ def project(s: Mechanism, t: float) -> None:
     q, v = s.q, s.v
     for level in range(3):  # positions twice, velocities once
         x = q if level < 2 else v
-        if s.n_c > 0:
-            gaps(s.model, t, q, v, s.contact.gap)
-        if n_j > 0:
-            gaps(s.joints, t, q, v, s.joint.gap)
+        measure_gaps(s, t)
         if not hold_again(s, t, q, v):
             return
         for m in range(k):
@@ -194,39 +182,8 @@ def project(s: Mechanism, t: float) -> None:
             if level < 2:
                 s.change[m] = -(s.joint.gap[i] if i < n_j else s.contact.gap[i - n_j])
             else:
-                rate = s.joint.rate[i] if i < n_j else s.contact.rate[i - n_j]
-                s.change[m] = -product(s.R, v, i, s.n_q) - rate
+                s.change[m] = -product(s.R, v, i, s.n_q) - s.rate[i]
         solve_held(s, k, s.change)
         for m in range(k):
             for j in range(n):
                 x[j] += s.MR[s.row[m] * s.n_q + j] * s.change[m]
-
-
-def is_held(s: Mechanism, i: int) -> bool:
-    """Whether row i is held."""
-    found = False
-    for m in range(s.n_held):
-        found = found or s.row[m] == i
-    return found
-
-
-def contradiction(s: Mechanism, a: Doubles) -> int:
-    """The first joint left out whose acceleration is not zero under the others, or -1."""
-    for i in range(s.n_j):
-        off = abs(product(s.R, a, i, s.n_q) + s.joint.bias[i])
-        if not is_held(s, i) and off > DISAGREEMENT * size_of_rate(s, i, a):
-            return i
-    return -1
-
-
-def parted(s: Mechanism) -> int:
-    """The first joint left out that the others have not kept closed, or -1; its gap and row those of the state."""
-    if s.n_held_joints == s.n_j:
-        return -1
-    for i in range(s.n_j):
-        size = 0.0
-        for j in range(s.n_q):
-            size += abs(s.R[i * s.n_q + j] * s.q[j])
-        if not is_held(s, i) and abs(s.joint.gap[i]) > PARTED * (s.atol + s.rtol * size):
-            return i
-    return -1

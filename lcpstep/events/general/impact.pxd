@@ -13,6 +13,3 @@ cdef void list_impulses(Mechanism s) noexcept nogil
 cdef bint separates(Mechanism s) noexcept nogil
 cdef void apply(Mechanism s) noexcept nogil
 cdef double speed_noise(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef double gap_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef double speed_tolerance(Mechanism s, Py_ssize_t c) noexcept nogil
-cdef double least_effect(Mechanism s, Py_ssize_t c, double* x) noexcept nogil

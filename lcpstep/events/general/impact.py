@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.events.general.state import NOISE, Mechanism
     from lcpstep.kernels.acceleration import inverse_mass
     from lcpstep.kernels.vectors import clear, largest, product
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.pointers import abs, inf, max, min
 
 
 def strike(s: Mechanism) -> bool:
@@ -187,26 +187,3 @@ def speed_noise(s: Mechanism, c: int) -> float:
         size += abs(s.R[i * s.n_q + j]) * (abs(s.v[j]) + s.length * abs(s.a_free[j]))
     s.contact.terms[c] = max(size, s.contact.terms[c])
     return NOISE * s.contact.terms[c]
-
-
-def gap_tolerance(s: Mechanism, c: int) -> float:
-    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance.
-
-    Zero where it depends on no coordinate, as in the middle of a bowl.
-    """
-    return least_effect(s, c, s.q)
-
-
-def speed_tolerance(s: Mechanism, c: int) -> float:
-    """The gap velocity of contact c that goes without changing a velocity by more than its tolerance."""
-    return least_effect(s, c, s.v)
-
-
-def least_effect(s: Mechanism, c: int, x: Doubles) -> float:
-    """The gap, or gap velocity, that contact c can change without changing an x by more than its tolerance."""
-    i, least = s.n_j + c, inf
-    for j in range(s.n_q):
-        moved = abs(s.MR[i * s.n_q + j])
-        if moved > 0.0:
-            least = min(least, (s.atol + s.rtol * abs(x[j])) * s.D[i * s.n_r + i] / moved)
-    return least if least < inf else 0.0

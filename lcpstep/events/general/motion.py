@@ -6,9 +6,9 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.general.earliest import observe
-    from lcpstep.events.general.equations import measure_on
-    from lcpstep.events.general.impact import gap_tolerance, speed_tolerance
+    from lcpstep.events.general.equations import gap_tolerance, measure_on, speed_tolerance
     from lcpstep.events.general.state import Mechanism
+    from lcpstep.events.rows.equations import size_of
     from lcpstep.kernels.dynamics import gap_rates, gap_rounding
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max
@@ -101,7 +101,7 @@ def has_room(s: Mechanism, c: int, g: float) -> bool:
     """
     i = s.n_j + c
     D = s.D[i * s.n_r + i]
-    gap_rates(s.model, s.t0, s.q, s.v, s.turned, s.contact.shifted)
+    gap_rates(s.model, s.t0, s.q, s.v, s.turned, s.near)
     bend = product(s.turned, after(s.MR, i * s.n_q), c, s.n_q) - D
     if abs(bend) <= SURE * D:
         return True
@@ -128,11 +128,7 @@ def closed_from(s: Mechanism, c: int) -> float:
 
 def rounding_of_gap(s: Mechanism, c: int) -> float:
     """What rounding may leave of the gap of contact c, of the way included by which it has come in the last step."""
-    way = 0.0
-    if s.length > 0.0:
-        for j in range(s.n_q):
-            way += abs(s.R[(s.n_j + c) * s.n_q + j] * s.v[j])
-        way *= s.length
+    way = s.length * size_of(s, s.n_j + c, 0.0, s.v) if s.length > 0.0 else 0.0
     return gap_rounding(s.model, s.contact.G, s.q, c, way)
 
 

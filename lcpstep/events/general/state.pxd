@@ -1,13 +1,12 @@
 from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.events.rows.state cimport Rows
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.kernels.clock cimport Clock
-from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.turn cimport Turn
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport Doubles, Indices
 
-cdef Py_ssize_t ROWS, CONTACTS, MARKS, BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
+cdef Py_ssize_t CONTACTS, MARKS, BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
 cdef double NOISE
 
 
@@ -17,12 +16,13 @@ cdef class Seen:
     cdef Doubles gap, speed, curve, multiplier
 
 
-cdef class Rows(Seen):
+cdef class Pressed(Seen):
     cdef object own
-    cdef Doubles rate, bias, shifted, near, turn_impulse, impulse, G
+    cdef Doubles rate, bias, G, turn_impulse, impulse
+    cdef void take_rows(self, Rows s, Py_ssize_t first) noexcept nogil
 
 
-cdef class Contacts(Rows):
+cdef class Contacts(Pressed):
     cdef object history, marks
     cdef Doubles struck, since, held_until, chatter_end, rest, owed, terms, turn_speed, synchronous, lands, b
     cdef Doubles thrown
@@ -30,25 +30,23 @@ cdef class Contacts(Rows):
     cdef Indices member, closed, was_closed, loaded, carried, parting
 
 
-cdef class Mechanism(Clock):
+cdef class Mechanism(Rows):
     cdef object rule, numbers, lists
-    cdef readonly Model model, joints
     cdef readonly RungeKutta smooth
     cdef readonly Motion watch
     cdef readonly bint watched
     cdef readonly Contacts contact
-    cdef Rows joint
+    cdef Pressed joint
     cdef Seen start, before, left, right
     cdef Workspace lcp
     cdef Bracket bracket
     cdef Turn turn
     cdef readonly bint constant
-    cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_members, culprit
-    cdef readonly double scan, t_end, rtol, atol
+    cdef readonly Py_ssize_t n_members, culprit
+    cdef readonly double scan, t_end
     cdef double length, found, seen_to, slope
     cdef bint bare, parallel, relieved
     cdef readonly Py_ssize_t event_contact
-    cdef Py_ssize_t guards, next, event_kind, n_nodes, n_held, n_held_joints
-    cdef Doubles nodes, weights, q0, v0, q, v, dy, a, trial, a_free, force, work, M, R, MR, D, L, held, change
-    cdef Doubles doubt, impulse, W, turned
-    cdef Indices row, kept
+    cdef Py_ssize_t guards, next, event_kind, n_nodes, n_held_joints
+    cdef Doubles nodes, weights, q0, v0, q, v, dy, a, trial, L, held, change, doubt, impulse, W, turned
+    cdef Indices kept

@@ -10,15 +10,16 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.state import Motion
+    from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.clock import RESOLUTION, Clock
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.turn import Turn
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import after, indices_after, inf
 
-ROWS, CONTACTS, MARKS = 6, 14, 6  # numbers per row, per contact besides, and marks of a contact
+CONTACTS, MARKS = 14, 6  # numbers per contact besides those of `Pressed`, and marks of a contact
 BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
 NOISE = 64 * RESOLUTION
@@ -38,33 +39,31 @@ class Seen:
         self.multiplier = after(self.curve, n)
 
 
-class Rows(Seen):
+class Pressed(Seen):
     """Contacts or joints at the state of the system; each is a row of the equations.
 
-    rate, bias        gap velocity at rest, and gap acceleration at v' = 0
-    shifted, near     work space of the bias, and of rates
+    rate, bias, G     of their rows, see `Rows`
     impulse           since the last kept state
     turn_impulse      since a number of impacts ago, at one instant
-    G : (n, n_q)      Jacobian; also work space of the bias
 
     Parameters
     ----------
-    n : int;  G, impulse : where these lie
+    n : int
     """
 
     def __init__(self, n: int) -> None:
         Seen.__init__(self, n)
-        self.own = np.zeros(ROWS * n)
-        self.rate = doubles(self.own)
-        self.bias = after(self.rate, n)
-        self.shifted = after(self.bias, n)
-        self.near = after(self.shifted, n)
-        self.turn_impulse = after(self.near, n)
+        self.own = np.zeros(2 * n)
+        self.turn_impulse = doubles(self.own)
         self.impulse = after(self.turn_impulse, n)
-        self.G = self.rate
+
+    def take_rows(self, s: Rows, first: int) -> None:
+        """Theirs are the rows from the first on."""
+        self.rate, self.bias = after(s.rate, first), after(s.bias, first)
+        self.G = after(s.R, first * s.n_q)
 
 
-class Contacts(Rows):
+class Contacts(Pressed):
     """Contacts, what has happened at each, and the problem of those that are closed, its members.
 
     struck, since     time of the last impact, since the one before
@@ -85,7 +84,7 @@ class Contacts(Rows):
     """
 
     def __init__(self, n: int) -> None:
-        Rows.__init__(self, n)
+        Pressed.__init__(self, n)
         self.history, self.marks = np.zeros(CONTACTS * n), np.zeros(MARKS * n, dtype=np.intp)
         self.struck = doubles(self.history)
         self.since = after(self.struck, n)
@@ -124,13 +123,12 @@ class Contacts(Rows):
         return [c for c in range(self.n) if times[c] == sorted(times)[-1]]
 
 
-class Mechanism(Clock):
+class Mechanism(Rows):
     """A system with contacts and joints: its equations, its state, and work space.
 
-    model, joints     the same system with its contacts, and with its joints in their place
     constant          the acceleration is constant between events, and gaps are linear in q
     scan              longest interval of the scan for events
-    rtol, atol        tolerances;  t_end: end of the span
+    t_end             end of the span
     nodes, weights    quadrature of the forces of contacts and joints, on [0, 1]
     length            duration of the step at hand
     found, seen_to    event within it, looked for up to here; which contact and what it does
@@ -142,13 +140,11 @@ class Mechanism(Clock):
     guards            LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
     slope             of the guard found within the step
     q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration there
-    a_free, force     acceleration M^-1 f without contacts and joints, f
     contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
     before            of contacts where the interval before it began
     start             of contacts at the base time of a step
-    R, MR : (n_r, n_q)  rows of joints (first) and contacts, rows M^-1 R^T
-    D, L : (n_r, n_r)   Delassus matrix R M^-1 R^T, Cholesky factor of the rows held
-    row, held         rows held, their multipliers;  n_held, n_held_joints  how many
+    L : (n_r, n_r)    Cholesky factor of the Delassus matrix of the rows held
+    held              their multipliers;  n_held_joints  how many are joints
     kept              rows held, while others are tried
     doubt             relative error of the diagonal of L, in units of rounding
     change            work space by row
@@ -180,12 +176,11 @@ class Mechanism(Clock):
         nodes: Any,
         weights: Any,
     ) -> None:
-        Clock.__init__(self, t_span, corners, period)
-        n, n_c = model.n_q, model.n_c
-        r = n_c + n_j
-        self.model, self.joints, self.smooth, self.constant = model, joints, smooth, constant
-        self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
-        self.scan, self.t_end, self.rtol, self.atol = scan, t_span[1], smooth.rtol, smooth.atol
+        tolerances = smooth.rtol, smooth.atol
+        Rows.__init__(self, model, joints, n_j, model, 0, tolerances, t_span, corners, period)
+        n, n_c, r = self.n_q, self.n_c, self.n_r
+        self.smooth, self.constant = smooth, constant
+        self.scan, self.t_end = scan, t_span[1]
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
@@ -193,9 +188,9 @@ class Mechanism(Clock):
         self.parallel = self.relieved = False
         self.watched = isinstance(smooth, Motion)
         self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
-        self.event_contact = self.event_kind = self.n_held = self.n_held_joints = self.n_members = 0
+        self.event_contact = self.event_kind = self.n_held_joints = self.n_members = 0
         self.culprit = -1
-        self.numbers = np.zeros(11 * n + n * n + 2 * r * n + 2 * r * r + 4 * r + n_c * n_c + n_c * n)
+        self.numbers = np.zeros(9 * n + r * r + 4 * r + n_c * n_c + n_c * n)
         self.q0 = self.smooth.y
         self.v0 = after(self.smooth.y, n)
         self.q = doubles(self.numbers)
@@ -203,28 +198,21 @@ class Mechanism(Clock):
         self.dy = after(self.v, n)
         self.a = after(self.dy, n)
         self.trial = after(self.a, n)
-        self.a_free = after(self.trial, 4 * n)
-        self.force = after(self.a_free, n)
-        self.work = after(self.force, n)
-        self.M = after(self.work, n)
-        self.R = after(self.M, n * n)
-        self.MR = after(self.R, r * n)
-        self.D = after(self.MR, r * n)
-        self.L = after(self.D, r * r)
+        self.L = after(self.trial, 4 * n)
         self.held = after(self.L, r * r)
         self.change = after(self.held, r)
         self.doubt = after(self.change, r)
         self.impulse = after(self.doubt, r)
         self.W = after(self.impulse, r)
         self.turned = after(self.W, n_c * n_c)
-        self.lists = np.zeros(2 * r, dtype=np.intp)
-        self.row = indices(self.lists)
-        self.kept = indices_after(self.row, r)
-        self.contact, self.joint = Contacts(n_c), Rows(n_j)
+        self.lists = np.zeros(r, dtype=np.intp)
+        self.kept = indices(self.lists)
+        self.contact, self.joint = Contacts(n_c), Pressed(n_j)
         self.bracket, self.turn = Bracket(), Turn()
         self.start, self.before, self.left, self.right = Seen(n_c), Seen(n_c), Seen(n_c), Seen(n_c)
         self.lcp = Workspace(n_c)
-        self.joint.G, self.contact.G = self.R, after(self.R, n_j * n)
+        self.joint.take_rows(self, 0)
+        self.contact.take_rows(self, n_j)
         self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
         for i in range(n):
             self.q[i], self.v[i] = self.q0[i], self.v0[i]

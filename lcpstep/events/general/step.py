@@ -20,12 +20,13 @@ if not cython.compiled:
     )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
-    from lcpstep.events.general.held import constrain, hold_again, is_held, note, parted, project
+    from lcpstep.events.general.held import constrain, hold_again, note, project
     from lcpstep.events.general.hops import carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import arrive, press_between, rebase
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
     from lcpstep.events.general.switching import SWITCHES, reach_guard, watch
+    from lcpstep.events.rows.held import is_held, parted
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -238,7 +239,7 @@ def pass_end(s: Mechanism, record: Record, tally: Tally) -> int:
     if not measure_on(s, s.t0):
         return NOT_FINITE
     carry(s)
-    s.culprit = parted(s)
+    s.culprit = parted(s, s.joint.gap, s.q) if s.n_held_joints < s.n_j else -1
     if s.culprit >= 0:
         return JOINTS_FAILED
     a = s.a

@@ -17,11 +17,12 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import measure_biases, measure_rates, size_of
+    from lcpstep.events.friction.equations import renew_rates
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS, NOISE
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
+    from lcpstep.events.rows.equations import measure_biases, size_of
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
@@ -57,22 +58,21 @@ def widen_bands(s: Strides) -> None:
     for c in range(s.n_c):
         g, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            s.band[g] = max(s.band[g], s.h * NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i)))
+            s.band[g] = max(
+                s.band[g],
+                s.h
+                * NOISE
+                * (size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)),
+            )
             s.band[g] = max(s.band[g], NOISE * s.atol)
         elif s.mode[c] == SLIDES:
             g, i = g + 1, i + s.n_c
-            s.band[g] = NOISE * (size_of(s, i, s.v) + s.h * pushed(s, i) + s.atol)
+            s.band[g] = NOISE * (
+                size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free) + s.atol
+            )
         else:
             continue
         s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
-
-
-def pushed(s: Strides, i: int) -> float:
-    """Size of the terms of the acceleration of row i without contact forces, their signs left aside."""
-    size = abs(s.bias[i])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j] * s.a_free[j])
-    return size
 
 
 def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
@@ -93,11 +93,11 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
 
 def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> None:
     """Accelerations of the open gaps that have not left their bands, at a state whose rates are known."""
-    a, known = after(dy, s.n_q), s.n_held > 0 or (s.measured and not s.moving)
+    a, known = after(dy, s.n_q), s.rows.n_held > 0 or (s.measured and not s.moving)
     for c in range(s.n_c):
         if s.mode[c] == OPEN and s.armed[GUARDS * c] == 0:
             if not known:
-                measure_biases(s, t, y)
+                measure_biases(s.rows, t, y, after(y, s.n_q))
                 known = True
             i = s.n_j + c
             bend[c] = product(s.R, a, i, s.n_q) + s.bias[i]
@@ -105,8 +105,8 @@ def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> 
 
 def read_guards(s: Strides, t: float, y: Doubles) -> bool:
     """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
-    if s.n_held == 0:
-        measure_rates(s, t, y)
+    if s.rows.n_held == 0:
+        renew_rates(s, t, y)
     return read(s, t, y)
 
 
@@ -121,7 +121,7 @@ def note_arrival(s: Strides, t: float, h: float) -> bool:
 
 def note_middle(s: Strides, t: float, h: float, value: Doubles) -> None:
     """With order four, guards of the forces between the ends of the step just made."""
-    if s.order == 4 and s.n_held > 0:
+    if s.order == 4 and s.rows.n_held > 0:
         copy(s.multiplier, s.middle, s.n_r)
         read(s, t + 0.5 * h, s.y_stage)
         copy(value, s.value, GUARDS * s.n_c)
@@ -171,7 +171,7 @@ def curve(s: Strides, g: int, h: float) -> float:
         between = 0.5 * (b[0] + b[3])
         if moves:
             between = b[0] + 0.5 * h * s.begin_slope[g]
-        elif s.order == 4 and s.n_held > 0:
+        elif s.order == 4 and s.rows.n_held > 0:
             between = 2.0 * s.middle_value[g] - between
         b[1] = (b[0] + 2.0 * between) / 3.0
         b[2] = (b[3] + 2.0 * between) / 3.0

@@ -129,7 +129,7 @@ def weigh(s: Strides, h: float) -> float:
 
 def strayed(s: Strides, g: int) -> float:
     """How far guard g, whose polynomial is at hand, is from it where that was not made from it."""
-    if s.order == 4 and s.n_held > 0 and not is_motion(s, g):
+    if s.order == 4 and s.rows.n_held > 0 and not is_motion(s, g):
         early = abs(value_at(s, 0.25) - s.quarter_value[g])
         return max(early, abs(value_at(s, 0.75) - s.late_value[g]))
     return abs(value_at(s, 0.5) - s.half_value[g])

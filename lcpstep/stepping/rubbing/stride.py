@@ -130,7 +130,7 @@ def changes(s: Strides, c: int) -> bool:
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
-    put_back = tau > 0.0 and s.n_held > 0 and put_end_back(s, t)
+    put_back = tau > 0.0 and s.rows.n_held > 0 and put_end_back(s, t)
     if tau > 0.0:
         pressed = keep_between(s, record, t, tau)
         press(s, pressed, 1.0)
@@ -177,7 +177,7 @@ def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
 
 def press(s: Strides, a: float, b: float) -> None:
     """Add the impulses of the forces between two places in the step."""
-    if s.n_held == 0:
+    if s.rows.n_held == 0:
         return
     for i in range(s.n_r):
         change = s.push[i] if b >= 1.0 else s.pressed(i, b)

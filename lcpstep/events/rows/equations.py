@@ -1,0 +1,112 @@
+"""Joints, contacts and tangents at one state, as kernels: Jacobians, rates, biases and the Delassus matrix.
+
+The velocity of row i is R_i v + rate_i, its acceleration R_i a + bias_i; D = R M^-1 R^T is the Delassus matrix.
+Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.rows.state import Rows
+    from lcpstep.kernels.acceleration import divide_by_mass, response
+    from lcpstep.kernels.dynamics import bias, gap_rates, total_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import Doubles, abs, after
+
+JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
+BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
+
+
+def free_motion(s: Rows, t: float, q: Doubles, v: Doubles, a: Doubles) -> bool:
+    """A <- M^-1 f, f into `force`; False where M is singular or f is not finite."""
+    side = s.inside(t)
+    total_force(s.model, side, q, v, s.force)
+    copy(a, s.force, s.n_q)
+    return divide_by_mass(s.model, side, q, v, s.M, s.work, a)
+
+
+def measure_rates(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """Jacobians of all rows into R, and their rates at rest, on their side of a corner."""
+    if s.n_j > 0:
+        rates_on_side(s, s.joints, 0, t, q, v)
+    if s.n_c > 0:
+        rates_on_side(s, s.model, s.n_j, t, q, v)
+    if s.n_t > 0:
+        rates_on_side(s, s.tangents, s.n_j + s.n_c, t, q, v)
+
+
+def rates_on_side(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Doubles) -> None:
+    """The same of one model, from row `first` on. A callback tells on a corner of either side; where that is the
+    other one, rates are those of the straight line through two times inside: no digit is lost, contacts may rest.
+    """
+    side, R, rate = s.inside(t), after(s.R, first * s.n_q), after(s.rate, first)
+    if side != t:
+        gap_rates(model, side, q, v, R, s.near)
+        gap_rates(model, 2.0 * side - t, q, v, R, s.further)
+    gap_rates(model, t, q, v, R, rate)
+    for i in range(model.n_c if side != t else 0):
+        jump, size = abs(s.near[i] - rate[i]), abs(s.near[i]) + abs(rate[i])
+        if jump > JUMPS * size + BENDS * abs(s.further[i] - s.near[i]):
+            rate[i] = 2.0 * s.near[i] - s.further[i]
+
+
+def measure_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """(dR/dt) v + d(rate)/dt along the motion, of all rows."""
+    if s.n_j > 0:
+        biases_of(s, s.joints, 0, t, q, v)
+    if s.n_c > 0:
+        biases_of(s, s.model, s.n_j, t, q, v)
+    if s.n_t > 0:
+        biases_of(s, s.tangents, s.n_j + s.n_c, t, q, v)
+
+
+def biases_of(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Doubles) -> None:
+    """The same of one model, from row `first` on."""
+    bias(model, s.inside(t), s.low, s.high, q, v, s.shifted, s.G, s.near, after(s.bias, first))
+
+
+def respond(s: Rows) -> None:
+    """What an impulse on each row does, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
+    r = s.n_r
+    for i in range(r):
+        respond_to(s, i)
+        for j in range(i + 1):
+            s.D[i * r + j] = s.D[j * r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+
+
+def respond_to(s: Rows, i: int) -> None:
+    """What an impulse on row i does."""
+    response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
+
+
+def size_of(s: Rows, i: int, constant: float, x: Doubles) -> float:
+    """Size of the terms of R_i x + constant, their signs left aside."""
+    size = abs(constant)
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j] * x[j])
+    return size
+
+
+def size_of_acceleration(s: Rows, i: int, a: Doubles) -> float:
+    """Size of the terms of row i's acceleration under a, and under the free one."""
+    size = abs(s.bias[i])
+    for j in range(s.n_q):
+        size += abs(s.R[i * s.n_q + j]) * (abs(a[j]) + abs(s.a_free[j]))
+    return size
+
+
+def least_effect(s: Rows, i: int, x: Doubles) -> float:
+    """What row i can change of itself without changing an x by more than its tolerance, in whatever unit it has.
+
+    Zero where it depends on no coordinate, as in the middle of a bowl.
+    """
+    least = -1.0
+    for j in range(s.n_q):
+        moved = abs(s.MR[i * s.n_q + j])
+        if moved > 0.0:
+            here = (s.atol + s.rtol * abs(x[j])) * s.D[i * s.n_r + i] / moved
+            least = here if least < 0.0 or here < least else least
+    return least if least > 0.0 else 0.0

@@ -1,0 +1,12 @@
+from lcpstep.kernels.clock cimport Clock
+from lcpstep.kernels.model cimport Model
+from lcpstep.pointers cimport Doubles, Indices
+
+
+cdef class Rows(Clock):
+    cdef object row_numbers, row_list
+    cdef readonly Model model, joints, tangents
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_held
+    cdef readonly double rtol, atol
+    cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
+    cdef Indices row
