@@ -113,7 +113,10 @@ class Integrated(EventRun):
     clock, motion   times of the motion; its steps, which have the state reached
     scan            longest interval between two looks for events
     constant        accelerations are constant between events, and gaps linear in q
+    system          what moves
     """
+
+    system: Any
 
     def __init__(
         self, method: Any, scene: Scene, kept: Kept, clock: Any, motion: Any, scan: float, columns: int,
@@ -156,6 +159,8 @@ class Integrated(EventRun):
         """Why the run ended early, in words."""
         if code == NO_FORCES:
             return f"no forces of the closed contacts {self.closed_ones} keep them from passing {self.where}"
+        if code == Status.JOINTS_FAILED:
+            return f"joint {self.system.culprit} contradicts the joints before it {self.where}"
         return f"{super().why(code)}; closed contacts {self.closed_ones}"
 
 

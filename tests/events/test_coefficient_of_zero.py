@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene
+from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Status, simulate
 
 G = 9.0
@@ -40,3 +40,24 @@ def test_a_table_that_starts_from_rest_does_not_strike_what_lies_on_it(a, fricti
     assert np.all(m.impacts.impulse == 0.0)
     np.testing.assert_allclose(m.q[-1], [0.0, 4.0 * a * 0.125**2], rtol=0, atol=1e-13)
     assert m.impulse.sum() == pytest.approx(2.0 * G, rel=1e-13)
+
+
+def parting(t, q, v, p, out):
+    """Two joints on one coordinate, that agree up to t = 0.3; or not even in acceleration, for p[0] > 0."""
+    late = max(t - 0.3, 0.0)
+    out[:] = 0.0
+    out[1] = 0.5 * p[0] * t * t + late**3, p[0] * t + 3.0 * late * late, p[0] + 6.0 * late
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2, 4)], ids=["event-driven", "located"])
+@pytest.mark.parametrize("friction", [None, Coulomb(0.0, [[1.0, 0.0]])], ids=["smooth", "rough"])
+@pytest.mark.parametrize(("a", "end"), [(0.0, 0.3), (1.0, 0.0)])
+def test_joints_that_contradict_each_other_end_the_run(a, end, friction, method):
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, -G]), [0.0, 1.0], [0.0, 0.0], (0.0, 1.0),
+        LinearContacts([[0.0, 1.0]], friction=friction), LinearJoints([[1.0, 0.0]] * 2, motion=parting), p=[a],
+    )  # fmt: skip
+    m = simulate(scene, method)
+    assert m.status is Status.JOINTS_FAILED
+    assert "joint 1 contradicts" in m.message
+    assert m.t[-1] == pytest.approx(end, abs=0.02)

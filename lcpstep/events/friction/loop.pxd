@@ -4,7 +4,7 @@ from lcpstep.kernels.course cimport Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t BEGIN, SETTLE, JUMP, MOVE, OPEN, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+cdef Py_ssize_t BEGIN, SETTLE, JUMP, MOVE, OPEN, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 cdef double LOOK_AHEAD, FURTHER, NO_TIME
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import BEGIN, JUMP, MOVE, OPEN, SETTLE
-from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.friction.balance import opens_any, reconsider
@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.events.friction.surfaces import find_touching
+    from lcpstep.events.friction.surfaces import come_apart, contradict, find_touching
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -93,6 +93,8 @@ def progress(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
     t = s.clock.t0
     code = s.proceed(record, tally)
+    if code == DONE and s.n_kept < s.n_j and come_apart(s):
+        code = JOINTS_FAILED
     moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
     tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= moment else 0
     return code
@@ -147,6 +149,8 @@ def seek_modes(s: Rubbing, t: float) -> int:
     """New modes at the base state just measured, or a little later where it leaves them open; a status."""
     longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
     code = decide(s)
+    if s.n_kept < s.n_j and contradict(s):
+        return JOINTS_FAILED
     if code == DONE and opens_any(s):
         code = reconsider(s, t, longest)
     if code == DONE and undecided(s):

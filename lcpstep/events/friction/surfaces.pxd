@@ -12,3 +12,5 @@ cdef void push_by_change(Rubbing s, double* x) noexcept nogil
 cdef void lift(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double touching(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void find_touching(Rubbing s) noexcept nogil
+cdef bint contradict(Rubbing s) noexcept nogil
+cdef bint come_apart(Rubbing s) noexcept nogil

@@ -17,8 +17,10 @@ if not cython.compiled:
     from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.events.rows.equations import respond
+    from lcpstep.events.rows.held import contradiction, parted
     from lcpstep.kernels.acceleration import factor_mass
     from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import Doubles, abs, after
 
@@ -47,6 +49,21 @@ def project(s: Rubbing, t: float) -> bool:
         s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
     push_by_change(s, s.v)
     return True
+
+
+def contradict(s: Rubbing) -> bool:
+    """Whether joints left out ask for another acceleration than the joints held leave, in `a`; `culprit`."""
+    i = contradiction(s.rows, s.a)
+    s.culprit = i if i >= 0 else s.culprit
+    return i >= 0
+
+
+def come_apart(s: Rubbing) -> bool:
+    """Whether a joint left out is no longer closed at the base state; `culprit`."""
+    gaps(s.rows.joints, s.clock.t0, s.q, s.v, s.gap)
+    i = parted(s.rows, s.gap, s.q)
+    s.culprit = i if i >= 0 else s.culprit
+    return i >= 0
 
 
 def is_on_rows(s: Rubbing) -> bool:

@@ -70,8 +70,6 @@ class General(Integrated):
             return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
         if code == NO_SURFACE:
             return f"the obstacle of contact {s.event_contact} closes in, and leaves no room {where}"
-        if code == Status.JOINTS_FAILED:
-            return f"joint {s.culprit} contradicts the joints before it {where}"
         if code == Status.TOO_MANY_EVENTS:
             bound = f"more than max_events = {self.method.max_events} events"
             if self.tally.events <= self.method.max_events:

@@ -8,7 +8,7 @@ if not cython.compiled:
     from lcpstep.events.rows.equations import size_of, size_of_acceleration
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs
+    from lcpstep.pointers import Doubles, abs, max
 
 PARTED = 1e3  # tolerances by which joints that say the same may differ
 DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
@@ -32,8 +32,14 @@ def contradiction(s: Rows, a: Doubles) -> int:
 
 
 def parted(s: Rows, gap: Doubles, q: Doubles) -> int:
-    """The first joint left out that the others have not kept closed, or -1; gaps and rows must be those of q."""
+    """The first joint left out that the others have not kept closed, or -1; gaps and rows must be those of q.
+
+    It is as far open as these, of which long steps leave more than the tolerance.
+    """
+    left = 0.0
     for i in range(s.n_j):
-        if not is_held(s, i) and abs(gap[i]) > PARTED * (s.atol + s.rtol * size_of(s, i, 0.0, q)):
+        left = max(left, abs(gap[i]) if is_held(s, i) else 0.0)
+    for i in range(s.n_j):
+        if not is_held(s, i) and abs(gap[i]) > PARTED * (s.atol + s.rtol * size_of(s, i, 0.0, q) + left):
             return i
     return -1
