@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep import EventDriven, Located, Status, simulate
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
+from lcpstep import EventDriven, Kind, Located, Status, simulate
 
 G = 9.0
 
@@ -61,3 +61,42 @@ def test_joints_that_contradict_each_other_end_the_run(a, end, friction, method)
     assert m.status is Status.JOINTS_FAILED
     assert "joint 1 contradicts" in m.message
     assert m.t[-1] == pytest.approx(end, abs=0.02)
+
+
+@pytest.mark.parametrize("friction", [None, Coulomb(0.0, [[1.0, 0.0]] * 2)], ids=["smooth", "rough"])
+@pytest.mark.parametrize("slope", [1e-2, 1e-4, 1e-6])
+def test_a_body_in_a_flat_notch_slides_up_one_side_of_it(slope, friction):
+    """A pull of 0.3 N + 0.1 N sin(3 t) along; the other side, were it held, would have to pull with 1e5 N."""
+    t, m_x, m_y = 1.0, 1.0, 2.0
+    force = Harmonic(constant=[0.3, -9.0], sine=[0.1, -0.5], omega=3.0)
+    sides = LinearContacts([[slope, 1.0], [-slope, 1.0]], 0.0, 0.0, friction=friction)
+    system = LinearSystem(np.diag([m_x, m_y]), force=force)
+    run = simulate(Scene(system, [0.0, 0.0], [0.0, 0.0], (0.0, t), sides), EventDriven())
+    assert run.status is Status.DONE
+    constant, sine = 0.3 - 9.0 * slope, 0.1 - 0.5 * slope
+    x = (0.5 * constant * t * t + sine * (t / 3.0 - np.sin(3.0 * t) / 9.0)) / (m_x + m_y * slope**2)
+    np.testing.assert_allclose(run.q[-1], [x, slope * x], rtol=1e-10, atol=0)
+    assert run.impulse[:, 0].sum() == 0.0
+    assert run.impulse[:, 1].sum() > 0.0
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2)], ids=["event-driven", "located"])
+@pytest.mark.parametrize("friction", [None, Coulomb(0.0, [[1.0, 0.0]])], ids=["smooth", "rough"])
+def test_what_is_taken_along_has_no_velocity_before(friction, method):
+    """From a table that begins to rise with 0.4 m/s: u- = 0 is the velocity of the gap before the jump."""
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, -G]), [0.0, 0.0], [0.0, 0.0], (0.0, 0.6),
+        LinearContacts([[0.0, 1.0]], restitution=0.5, motion=rising, friction=friction), corners=[0.3],
+    )  # fmt: skip
+    run = simulate(scene, method)
+    (hit,) = run.impacts[run.impacts.kind == Kind.IMPACT]
+    assert hit.time == 0.3
+    assert (hit.before, hit.after) == (0.0, 0.0)
+    assert hit.impulse == pytest.approx(0.4, rel=1e-12)
+
+
+def rising(t, q, v, p, out):
+    late = t - 0.3
+    out[:] = 0.0
+    if late > 0.0:
+        out[0, 0], out[0, 1] = 0.4 * late, 0.4

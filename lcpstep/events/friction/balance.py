@@ -12,15 +12,15 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import OPEN
-from lcpstep.kernels.status import NOT_FINITE
+from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import accelerate_on_joints
-    from lcpstep.events.friction.modes import decide
+    from lcpstep.events.friction.equations import force_noise, measure
+    from lcpstep.events.friction.held import accelerate_on_joints, constrain, list_multipliers
+    from lcpstep.events.friction.modes import adopt_modes, decide
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.surfaces import touching
-    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
@@ -45,10 +45,33 @@ def reconsider(s: Rubbing, t: float, longest: float) -> int:
         if not foresee(s, t, share * h):
             return NOT_FINITE
         if cannot_be_told(s, share * h):
-            return decide(s)
+            code = decide(s)
+            if code != DONE or not pulls(s):
+                return code
+            break
         share *= SHORTER
     clear(s.doubt, s.n_r)
     return decide(s)
+
+
+def pulls(s: Rubbing) -> bool:
+    """Whether a contact that is closed in doubt would have to pull by more than the doubt.
+
+    Walls that are nearly parallel take from two such forces, which cancel, what they hold in the little that is left.
+    """
+    for c in range(s.n_c):
+        s.tried[c] = s.mode[c]
+    some = adopt_modes(s) != DONE
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s, s.a, s.bias)
+    list_multipliers(s)
+    noise = force_noise(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        doubtful = s.mode[c] != OPEN and s.doubt[i] > 0.0 and s.W[i * s.n_r + i] > 0.0
+        some = some or (doubtful and s.multiplier[i] < -noise - s.doubt[i] / s.W[i * s.n_r + i])
+        s.mode[c] = s.tried[c]
+    return some
 
 
 def foresee(s: Rubbing, t: float, tau: float) -> bool:

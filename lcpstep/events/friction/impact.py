@@ -125,10 +125,10 @@ def strike_with(
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
-            kind = JAM if c == jammed else IMPACT
-            if plastic and s.model.restitution[c] > 0.0:
-                kind = ACCUMULATION
-            s.clock.log(record, tally, t, c, kind, s.before[c], u, s.problem.impulse[a])
+            kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
+            kind = JAM if c == jammed else kind
+            before = 0.0 if s.thrown[c] == 1 else s.before[c]  # its obstacle takes it along
+            s.clock.log(record, tally, t, c, kind, before, u, s.problem.impulse[a])
         s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
 
 

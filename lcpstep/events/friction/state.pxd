@@ -33,7 +33,7 @@ cdef class Rubbing(RungeKutta):
     cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
     cdef Doubles owed
-    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, tried
     cdef Doubles value, band, samples
     cdef Indices armed
     cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -54,6 +54,7 @@ class Rubbing(RungeKutta):
     direction, was_direction, new_direction : (n_c,)   sign of the sliding velocity
     loaded, new_loaded, free, touches : (n_c,)   carries a force; as decided; slides in no direction; gap zero
     parting : (n_c,)             opened by the forces between impacts of one instant
+    tried : (n_c,)               modes, while others are tried
     thrown : (n_c,)              closed, and the velocity of its obstacle has just jumped
     terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
@@ -156,7 +157,7 @@ class Rubbing(RungeKutta):
         self.before = after(self.direction, 5 * n_c)
         self.owed = after(self.direction, 6 * n_c)
         self.slip = after(self.direction, 8 * n_c)
-        self.marks = np.zeros(9 * n_c, dtype=np.intp)
+        self.marks = np.zeros(10 * n_c, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)
         self.new_mode = indices_after(self.mode, 2 * n_c)
@@ -166,6 +167,7 @@ class Rubbing(RungeKutta):
         self.new_loaded = indices_after(self.mode, 6 * n_c)
         self.parting = indices_after(self.mode, 7 * n_c)
         self.thrown = indices_after(self.mode, 8 * n_c)
+        self.tried = indices_after(self.mode, 9 * n_c)
         samples = DEGREE + 1 + CHECKS
         self.looks = np.zeros(GUARDS * n_c * (samples + 2))
         self.value = doubles(self.looks)
