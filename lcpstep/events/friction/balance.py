@@ -16,11 +16,14 @@ from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise, measure
-    from lcpstep.events.friction.held import accelerate_on_joints, constrain, list_multipliers
+    from lcpstep.events.friction.held import (
+        accelerate_as_held,
+        accelerate_on_joints,
+    )
     from lcpstep.events.friction.modes import adopt_modes, decide
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.surfaces import touching
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
@@ -62,9 +65,7 @@ def pulls(s: Rubbing) -> bool:
     for c in range(s.n_c):
         s.tried[c] = s.mode[c]
     some = adopt_modes(s) != DONE
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
-    list_multipliers(s)
+    accelerate_as_held(s)
     noise = force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c

@@ -15,11 +15,11 @@ from lcpstep.events.friction.codes import LEANS, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import force_noise
-    from lcpstep.events.friction.held import constrain, hold_modes, list_multipliers
+    from lcpstep.events.friction.held import accelerate_as_held, hold_modes
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.events.rows.held import is_held
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import product
     from lcpstep.pointers import abs
 
 MOST = 4  # contacts at rest: of more not every way is tried
@@ -64,9 +64,7 @@ def choose(s: Rubbing, way: int) -> None:
 
 def carries(s: Rubbing, inside: float) -> bool:
     """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding."""
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
-    list_multipliers(s)
+    accelerate_as_held(s)
     within, noise = True, force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c

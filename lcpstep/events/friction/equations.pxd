@@ -10,7 +10,7 @@ cdef bint measure_friction(Rubbing s, double t, double* y) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_gaps(Rubbing s, double t, double* y) noexcept nogil
 cdef void measure_velocities(Rubbing s, double* v) noexcept nogil
-cdef double gap_size(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef double rounding_of_gap(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double gap_tolerance(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef double speed_tolerance(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil

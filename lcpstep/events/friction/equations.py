@@ -16,7 +16,7 @@ if not cython.compiled:
         respond,
         size_of,
     )
-    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import largest, product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -85,11 +85,9 @@ def measure_velocities(s: Rubbing, v: Doubles) -> None:
         s.terms[i] = max(s.terms[i], NOISE * size_of(s.rows, s.n_j + i, s.rate[s.n_j + i], v))
 
 
-def gap_size(s: Rubbing, c: int) -> float:
-    """Size of the terms of gap c at the base state, as far as they are known."""
-    i = s.n_j + c
-    offset = abs(s.model.offset[c]) if s.model.flat else 0.0
-    return size_of(s.rows, i, abs(s.gap[i]) + offset, s.q)
+def rounding_of_gap(s: Rubbing, c: int) -> float:
+    """Rounding of gap c at the base state, as far as its terms are known."""
+    return gap_rounding(s.model, after(s.R, s.n_j * s.n_q), s.q, c, abs(s.gap[s.n_j + c]))
 
 
 def gap_tolerance(s: Rubbing, c: int) -> float:

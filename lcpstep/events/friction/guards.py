@@ -16,11 +16,11 @@ from lcpstep.kernels.dop853 import STAGES
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
         force_noise,
-        gap_size,
         gap_tolerance,
         measure_friction,
         measure_gaps,
         renew_rates,
+        rounding_of_gap,
         speed_tolerance,
     )
     from lcpstep.events.friction.held import right_hand_side
@@ -91,7 +91,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            s.band[k] = max(NOISE * gap_size(s, c) + no_gap(s, i), -2.0 * s.value[k])  # deeper than it is now
+            s.band[k] = max(rounding_of_gap(s, c) + no_gap(s, i), -2.0 * s.value[k])  # deeper than it is now
         else:
             none = NOISE * speed_tolerance(s, i) / s.W[i * s.n_r + i]
             s.band[k] = forces + none

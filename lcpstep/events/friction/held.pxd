@@ -12,6 +12,7 @@ cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint leans(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef void hold_joints(Rubbing s) noexcept nogil
 cdef void accelerate_on_joints(Rubbing s) noexcept nogil
+cdef void accelerate_as_held(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil
 cdef void hold_leaning(Rubbing s) noexcept nogil
 cdef bint hold_again(Rubbing s) noexcept nogil

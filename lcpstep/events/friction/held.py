@@ -102,6 +102,13 @@ def accelerate_on_joints(s: Rubbing) -> None:
     constrain(s, s.a, s.bias)
 
 
+def accelerate_as_held(s: Rubbing) -> None:
+    """The acceleration with the rows held, into `a`, and multipliers by row; everything must be measured."""
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s, s.a, s.bias)
+    list_multipliers(s)
+
+
 def hold_modes(s: Rubbing) -> bool:
     """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`).
 

@@ -22,10 +22,10 @@ if not cython.compiled:
     from lcpstep.events.friction.cycle import look_back, recurs, sum_up
     from lcpstep.events.friction.equations import (
         apply,
-        gap_size,
         gap_tolerance,
         measure,
         measure_velocities,
+        rounding_of_gap,
         speed_tolerance,
     )
     from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
@@ -35,7 +35,6 @@ if not cython.compiled:
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import NOISE, Rubbing
     from lcpstep.events.rows.equations import size_of
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
@@ -45,7 +44,6 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, min
 
 ROUNDS = 1000  # problems of impacts at one instant
-SEEN = 64.0  # roundings of a gap: hops must be higher to be followed
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
@@ -231,7 +229,7 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
     """
     slow = u <= speed_tolerance(s, s.n_j + c)
     if s.model.restitution[c] < 1.0:
-        slow = slow or s.n_c == 1 or height <= SEEN * RESOLUTION * gap_size(s, c)
+        slow = slow or s.n_c == 1 or height <= rounding_of_gap(s, c)
     return slow and height <= gap_tolerance(s, c)
 
 

@@ -30,7 +30,12 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 if not cython.compiled:
     from lcpstep.events.friction.bracing import braced
     from lcpstep.events.friction.equations import force_noise
-    from lcpstep.events.friction.held import accelerate_on_joints, constrain, hold_modes, list_multipliers
+    from lcpstep.events.friction.held import (
+        accelerate_as_held,
+        accelerate_on_joints,
+        constrain,
+        hold_modes,
+    )
     from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
@@ -255,9 +260,7 @@ def stand(s: Rubbing) -> bool:
         s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
     stands = hold_modes(s)
     if stands:
-        copy(s.a, s.a_free, s.n_q)
-        constrain(s, s.a, s.bias)
-        list_multipliers(s)
+        accelerate_as_held(s)
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == STICKS:

@@ -58,12 +58,6 @@ class FrictionRun(Integrated):
         """The motion at the start of the span."""
         return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
 
-    @property
-    def closed_ones(self) -> list[int]:
-        """The contacts that are closed."""
-        closed: list[int] = self.system.closed_ones()
-        return closed
-
     def message(self, code: int) -> str:
         """How the run ended, in words."""
         said, times = super().message(code), self.system.jams

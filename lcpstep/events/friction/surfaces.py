@@ -8,14 +8,14 @@ from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
-        gap_size,
         gap_tolerance,
         measure_friction,
         measure_gaps,
         renew_rates,
+        rounding_of_gap,
     )
     from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import respond
     from lcpstep.events.rows.held import contradiction, parted
     from lcpstep.kernels.acceleration import factor_mass
@@ -125,7 +125,7 @@ def touching(s: Rubbing, c: int) -> float:
     Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
     """
     late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
-    return NOISE * gap_size(s, c) + TOGETHER * gap_tolerance(s, c) + late
+    return rounding_of_gap(s, c) + TOGETHER * gap_tolerance(s, c) + late
 
 
 def find_touching(s: Rubbing) -> None:

@@ -15,7 +15,7 @@ from lcpstep.kernels.status import DONE, NOT_FINITE
 if not cython.compiled:
     from lcpstep.events.general.equations import measure, measure_again
     from lcpstep.events.general.forces import contact_forces
-    from lcpstep.events.general.held import constrain, hold_contacts, note
+    from lcpstep.events.general.held import accelerate
     from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after, min
@@ -49,10 +49,7 @@ def balanced_forces(s: Mechanism, t: float) -> int:
         if opens(s, c) and s.contact.curve[c] <= DOUBTFUL * s.left.curve[c]:
             s.contact.closed[c], doubtful = 1, True
     if doubtful:
-        copy(s.a, s.a_free, s.n_q)
-        hold_contacts(s)
-        constrain(s, s.a)
-        note(s, s.a)
+        accelerate(s)
     return DONE
 
 

@@ -14,9 +14,9 @@ from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
     from lcpstep.events.general.held import (
+        accelerate,
         constrain,
         hold,
-        hold_contacts,
         hold_joints,
         joints_own,
         note,
@@ -60,10 +60,9 @@ def contact_forces(s: Mechanism, t: float) -> int:
         if solved:
             open_contacts(s, t)
             unload(s)
-        copy(a, s.a_free, s.n_q)
-        hold_contacts(s)
-        constrain(s, a)
-    note(s, a)
+        accelerate(s)
+    else:
+        note(s, a)
     return DONE if solved or presses(s) else NO_FORCES
 
 

@@ -12,6 +12,7 @@ cdef void hold_contacts(Mechanism s) noexcept nogil
 cdef bint hold_again(Mechanism s, double t, double* q, double* v) noexcept nogil
 cdef void solve_held(Mechanism s, Py_ssize_t k, double* x) noexcept nogil
 cdef void constrain(Mechanism s, double* a) noexcept nogil
+cdef void accelerate(Mechanism s) noexcept nogil
 cdef void note(Mechanism s, double* a) noexcept nogil
 cdef bint drifts(Mechanism s, double* a, Py_ssize_t c) noexcept nogil
 cdef bint right_hand_side(Mechanism s, double t, double* y, double* dy) noexcept nogil

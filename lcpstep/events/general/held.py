@@ -124,6 +124,14 @@ def constrain(s: Mechanism, a: Doubles) -> None:
             a[j] += s.MR[s.row[m] * s.n_q + j] * s.change[m]
 
 
+def accelerate(s: Mechanism) -> None:
+    """The acceleration with joints and closed contacts held, into `a`; multipliers, and gap accelerations."""
+    copy(s.a, s.a_free, s.n_q)
+    hold_contacts(s)
+    constrain(s, s.a)
+    note(s, s.a)
+
+
 def note(s: Mechanism, a: Doubles) -> None:
     """Multipliers of the rows held, and the gap accelerations of all contacts.
 

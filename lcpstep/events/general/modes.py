@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.events.general.cycle import fades, look_back, recurrence, sum_up
     from lcpstep.events.general.equations import measure_again
     from lcpstep.events.general.forces import contact_forces, stands
-    from lcpstep.events.general.held import constrain, hold_contacts, note
+    from lcpstep.events.general.held import accelerate
     from lcpstep.events.general.impact import speed_noise, strike
     from lcpstep.events.general.keep import keep_event
     from lcpstep.events.general.motion import lift, rebase, rounding_of_gap
@@ -28,7 +28,6 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, max
 
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -209,11 +208,8 @@ def forces(s: Mechanism, t: float) -> int:
 
 def obey(s: Mechanism, record: Record, tally: Tally) -> None:
     """After a release: the contacts closed and loaded are those that `look_ahead` has found."""
-    a, t = s.a, s.t0
-    copy(a, s.a_free, s.n_q)
-    hold_contacts(s)
-    constrain(s, a)
-    note(s, a)
+    t = s.t0
+    accelerate(s)
     for c in range(s.n_c):
         if s.contact.closed[c] == 0 and s.contact.was_closed[c] == 1:
             s.contact.gap[c] = s.contact.speed[c] = 0.0

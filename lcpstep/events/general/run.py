@@ -56,11 +56,6 @@ class General(Integrated):
         super().__init__(method, scene, kept, s, s.smooth, s.scan, scene.n_c + scene.n_j, s.constant)
         self.course = Course(s, self.recorder.record, self.tally)
 
-    @property
-    def closed_ones(self) -> list[int]:
-        """The contacts that are closed."""
-        return self.system.contact.closed_ones()
-
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
         s, where = self.system, self.where

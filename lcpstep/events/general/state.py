@@ -109,10 +109,6 @@ class Contacts(Pressed):
         for c in range(n):
             self.struck[c] = self.held_until[c] = self.chatter_end[c] = -inf
 
-    def closed_ones(self) -> list[int]:
-        """The contacts that are closed."""
-        return [c for c in range(self.n) if self.closed[c] == 1]
-
     def members(self, n: int) -> list[int]:
         """The first n members of the problem."""
         return sorted([self.member[a] for a in range(n)])
@@ -216,3 +212,7 @@ class Mechanism(Rows):
         self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
         for i in range(n):
             self.q[i], self.v[i] = self.q0[i], self.v0[i]
+
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return [c for c in range(self.n_c) if self.contact.closed[c] == 1]
