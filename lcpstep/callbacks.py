@@ -98,7 +98,7 @@ def warn(what: str, f: Callback, why: NotCompiled) -> None:
 def _made(f: Callback, takes: int, ndim: int) -> Any:
     """C function of a callback, made once."""
     function = _function(f, takes)
-    kind = takes, ndim, function.__code__, *map(_kind, _read(function))
+    kind = takes, ndim, frozenset(map(_make, fingerprint.reached(function)))
     if kind in FAILED:
         raise FAILED[kind]
     depends = fingerprint.dependencies(function)
@@ -235,8 +235,15 @@ def _read(f: FunctionType) -> list[Any]:
     return [f.__globals__.get(name) for name in names] + [x for _, x in fingerprint.cells(f)]
 
 
-def _kind(x: Any) -> Any:
+def _make(f: FunctionType) -> Any:
     """What compiling depends on mostly, so that functions made over and over are not tried over and over."""
+    return f.__code__, *map(_kind, _read(f))
+
+
+def _kind(x: Any) -> Any:
+    """The same of what a function reads."""
+    if isinstance(x, tuple):
+        return type(x), *map(_kind, x)
     return (x.dtype.str, x.ndim) if isinstance(x, np.ndarray) else getattr(x, "__code__", type(x))
 
 

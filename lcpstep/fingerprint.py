@@ -10,6 +10,7 @@ import dis
 import functools
 import hashlib
 from collections.abc import Iterator, Mapping
+from enum import Enum, EnumType
 from types import BuiltinFunctionType, CellType, CodeType, FunctionType, ModuleType
 from typing import Any
 
@@ -59,7 +60,7 @@ def callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
         g = getattr(g, "py_func", g)
         if isinstance(g, FunctionType):
             yield name, g
-    for name in names_read(f):
+    for name in names_read(f.__code__):
         if "." in name and isinstance(g := getattr(_member(f, name), "py_func", None), FunctionType):
             yield name, g
 
@@ -79,19 +80,21 @@ def cells(f: FunctionType) -> Iterator[tuple[str, Any]]:
         yield name, cell.cell_contents
 
 
-@functools.cache
 def global_names(f: FunctionType) -> list[str]:
     """Globals that f reads; its attribute names, which `co_names` mixes with these, left out."""
-    return sorted({name for name in names_read(f) if "." not in name})
+    return [name for name in names_read(f.__code__) if "." not in name]
 
 
 @functools.cache
-def names_read(f: FunctionType) -> list[str]:
-    """Globals that f and functions inside it read, and attributes of these that are read at once: "np", "np.pi"."""
+def names_read(code: CodeType) -> list[str]:
+    """Globals that code and functions inside it read, and attributes of these that are read at once: "np", "np.pi".
+
+    Of code, not of a function: IPython gives functions of an edited module their new code.
+    """
     names: set[str] = set()
-    for code in codes(f.__code__):
+    for inner in codes(code):
         chain = ""
-        for i in dis.get_instructions(code):
+        for i in dis.get_instructions(inner):
             if i.opname == "LOAD_GLOBAL":
                 chain = i.argval
             elif i.opname in ("LOAD_ATTR", "LOAD_METHOD") and chain:
@@ -140,7 +143,7 @@ def code_text(f: FunctionType) -> str:
 
 def values_read(f: FunctionType) -> Iterator[tuple[str, Any]]:
     """What f reads by name: globals, and attributes of modules and classes, which numba freezes as well."""
-    for name in names_read(f):
+    for name in names_read(f.__code__):
         first, *attributes = name.split(".")
         if first not in f.__globals__:
             continue
@@ -158,10 +161,16 @@ def value_text(value: Any) -> str:
         return f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
     if isinstance(value, tuple):
         functions = [x.py_func for x in value if isinstance(getattr(x, "py_func", None), FunctionType)]
-        return str([value_text(item) for item in value] + list(map(dependencies, functions)))
+        items = str([value_text(item) for item in value] + list(map(dependencies, functions)))
+        return items if type(value) is tuple else f"{value_text(type(value))} {items}"
+    if isinstance(value, Enum):
+        return f"{type(value).__name__}.{value.name} {value_text(value.value)}"
     if isinstance(value, (bool, int, float, complex, str, np.generic, type(None))):
         return repr(value)
-    if isinstance(value, (ModuleType, type, FunctionType, BuiltinFunctionType, np.ufunc)):
+    if isinstance(value, type):
+        members: Any = getattr(value, "_fields", "")  # of a named tuple
+        return f"{value.__name__}{list(map(value_text, value)) if isinstance(value, EnumType) else members}"
+    if isinstance(value, (ModuleType, FunctionType, BuiltinFunctionType, np.ufunc)):
         return value.__name__
     if isinstance(getattr(value, "py_func", None), FunctionType):
         return value.py_func.__name__  # one of `reached`, or in a tuple

@@ -14,7 +14,7 @@ import importlib
 import inspect
 import textwrap
 from dataclasses import dataclass
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any
 
 from lcpstep import fingerprint
@@ -72,9 +72,8 @@ def found(name: str, source: str, sha256: str) -> Any:
     return Absent(name, source, sha256, reason)
 
 
-@functools.cache
 def checksum(f: FunctionType) -> str:
-    """A number that is the same exactly if the function is."""
+    """A number that is the same exactly if the function is, and what it reads."""
     parts = [f"{plain_source(g)} {read_values(g)}" for g in fingerprint.reached(f)]
     return hashlib.sha256("\n".join(sorted(parts)).encode()).hexdigest()
 
@@ -88,7 +87,7 @@ def read_values(f: FunctionType) -> list[str]:
 
 def plain_source(f: FunctionType) -> str:
     """The source as Python reads it, without comments; byte code where there is none."""
-    text = source_of(f)
+    text = source_of(f.__code__)
     if not text:
         return fingerprint.code_text(f)
     try:
@@ -100,12 +99,14 @@ def plain_source(f: FunctionType) -> str:
 def whole_source(f: FunctionType) -> str:
     """The function and those that it calls, for a reader."""
     others = sorted(fingerprint.reached(f) - {f}, key=lambda g: g.__qualname__)
-    return "\n".join(source_of(g) for g in (f, *others))
+    return "\n".join(source_of(g.__code__) for g in (f, *others))
 
 
-def source_of(f: FunctionType) -> str:
-    """Its text; empty where nobody has kept it."""
+@functools.cache
+def source_of(code: CodeType) -> str:
+    """Its text; empty where nobody has kept it, or its file has been edited since it was read."""
     try:
-        return textwrap.dedent(inspect.getsource(f))
-    except (OSError, TypeError):
+        now = compile("".join(inspect.findsource(code)[0]), code.co_filename, "exec", dont_inherit=True)
+    except (OSError, TypeError, ValueError, SyntaxError):
         return ""
+    return textwrap.dedent(inspect.getsource(code)) if code in fingerprint.codes(now) else ""

@@ -14,6 +14,8 @@ from tests.marks import compiled_only
 from tests.processes import python
 
 CONSTANTS = {"g": 8.0}
+GRAVITY = 8.0
+PAIR = ([4.0], 1)  # what numba does not freeze
 
 
 # --- what is written, and how it is taken
@@ -153,6 +155,46 @@ def test_a_default_that_changes_is_another_function():
             out[0] = -g
 
         assert simulate(falling(force), Moreau(1e-2)).v[-1, 0] == pytest.approx(-0.5 * g)
+
+
+def reads_gravity(t, q, v, p, out):
+    out[0] = -GRAVITY
+
+
+def test_new_code_of_a_function_is_heard_with_what_it_reads(monkeypatch):
+    """As IPython's autoreload gives it, where a module has been edited."""
+
+    def force(t, q, v, p, out):
+        out[0] = -8.0
+
+    assert simulate(falling(force), Moreau(1e-2)).v[-1, 0] == pytest.approx(-4.0)
+    monkeypatch.setattr(force, "__code__", reads_gravity.__code__, raising=False)
+    for g in (2.0, 6.0):
+        monkeypatch.setitem(globals(), "GRAVITY", g)
+        assert simulate(falling(force), Moreau(1e-2)).v[-1, 0] == pytest.approx(-0.5 * g)
+
+
+def looked_up():
+    return CONSTANTS["g"]
+
+
+def between():
+    return looked_up()
+
+
+def calls_two_deep(t, q, v, p, out):
+    out[0] = -between() - PAIR[0][0]
+
+
+@compiled_only
+def test_what_could_not_be_compiled_is_tried_again_where_it_reads_or_calls_something_else(monkeypatch):
+    from lcpstep import callbacks
+
+    for name, other in (("looked_up", lambda: 4.0), ("PAIR", ((4.0,), 1))):
+        with pytest.raises(callbacks.NotCompiled):
+            callbacks.address(calls_two_deep, 1)
+        monkeypatch.setitem(globals(), name, other)
+    assert callbacks.address(calls_two_deep, 1) != 0
 
 
 PRINTING = """

@@ -224,7 +224,8 @@ def test_a_disk_that_is_full_stops_no_run(load, tmp_path, caplog, silent):
 
 READING = """
 import os
-from enum import IntEnum
+from collections import namedtuple
+from enum import Enum, IntEnum
 from types import ModuleType
 
 NUMBER = float(os.environ["NUMBER"])
@@ -234,6 +235,12 @@ settings.MASS = NUMBER
 class Box(IntEnum):
     SIDE = int(NUMBER)
 
+class Wall(Enum):
+    SIDE = NUMBER
+
+Pair = namedtuple("Pair", "a b" if NUMBER == 2.0 else "b a")
+PAIR = Pair(2.0, 3.0)
+
 def double(t, q, v, p, out):
     {body}
 """
@@ -241,9 +248,15 @@ def double(t, q, v, p, out):
 
 @pytest.mark.parametrize(
     "body",
-    ["out[0] = settings.MASS", "out[0] = Box.SIDE.value", "f = lambda z: NUMBER * z\n    out[0] = f(1.0)"],
-    ids=["attribute of a module", "member of an enumeration", "read by a function inside"],
-)
+    [
+        "out[0] = settings.MASS", "out[0] = Box.SIDE.value", "f = lambda z: NUMBER * z\n    out[0] = f(1.0)",
+        "out[0] = Wall.SIDE.value", "out[0] = PAIR.a", "out[0] = Pair(2.0, 3.0).a",
+    ],
+    ids=[
+        "attribute of a module", "member of an enumeration", "read by a function inside",
+        "member that is no whole number", "named tuple", "class of named tuples",
+    ],
+)  # fmt: skip
 def test_what_a_function_reads_in_other_places_is_noticed(load, tmp_path, monkeypatch, body):
     (tmp_path / "source" / "functions.py").write_text(READING.replace("{body}", body))
     hits = []

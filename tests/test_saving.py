@@ -163,6 +163,23 @@ def test_comments_do_not_make_another_function_and_what_is_called_does(tmp_path)
     assert sums[0] == sums[1] != sums[2]
 
 
+def test_a_function_is_told_by_what_it_reads_now(monkeypatch):
+    before = functions.checksum(spring)
+    monkeypatch.setitem(globals(), "STIFFNESS", 7.0)
+    assert functions.checksum(spring) != before
+
+
+def test_text_of_a_file_that_was_edited_meanwhile_is_not_taken_for_the_function_that_runs(tmp_path):
+    file = tmp_path / "edited.py"
+    for edited in ("def f(x):\n    return 3.0 * x\n", "f = (\n"):
+        file.write_text("def f(x):\n    return 2.0 * x\n")
+        module = module_from_spec(spec_from_loader("edited", SourceFileLoader("edited", str(file))))
+        module.__loader__.exec_module(module)
+        file.write_text(edited)
+        functions.source_of.cache_clear()
+        assert functions.described(module.f)["source"] == ""
+
+
 def test_nothing_of_a_file_is_run(tmp_path):
     """A name that leads out of the ready scenes is not looked up."""
     for name in (
