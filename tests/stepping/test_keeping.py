@@ -9,6 +9,7 @@ from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import Located, Moreau, simulate
 from lcpstep.stepping.pieces import run as pieces
 from lcpstep.trajectory import Kind, Status
+from tests.falling import FALLING, FLOOR
 from tests.stepping.test_step import three_masses
 
 H = 1e-3
@@ -236,3 +237,16 @@ def test_states_asked_for_ahead_of_many_short_steps_are_made_once():
     (few, run), (many, more) = asked_of_a_bowl([1.0, 2.0]), asked_of_a_bowl(np.linspace(1.75, 2.0, 500))
     assert np.array_equal(run.q[-1], more.q[-1])
     assert many - few < 4 * 500
+
+
+@pytest.mark.parametrize(
+    "method", [Located(1e-2), Located(1e-2, order=4), Located(1e-2, order="exact")], ids=repr
+)
+def test_an_impact_at_rounding_after_a_step_is_in_the_state_of_its_time(method):
+    """The ball strikes at t = 1/2 and 1, where steps end, to rounding; it leaves with 2 and 1 m/s."""
+    scene = Scene(FALLING, 1.0, 0.0, (0.0, 1.2), FLOOR)
+    run = simulate(scene, method)
+    times = run.impacts.time
+    np.testing.assert_allclose(times, [0.5, 1.0], rtol=1e-15)
+    for v in (run.at(times)[1], simulate(scene, method, keep=times).v):
+        np.testing.assert_allclose(v[:, 0], [2.0, 1.0], rtol=1e-12)

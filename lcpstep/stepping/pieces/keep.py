@@ -25,9 +25,9 @@ def keep_times(w: Work, record: Record, now: float, before: float) -> None:
         record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 
-def keep_now(w: Work, record: Record, before: float) -> None:
-    """Keep the current state for the times asked for before the given one."""
-    while record.awaited() < before:
+def keep_now(w: Work, record: Record, until: float) -> None:
+    """Keep the current state for the times asked for up to the given one."""
+    while record.awaited() <= until:
         record.keep_awaited(w.q, w.v, w.impulse)
 
 

@@ -12,6 +12,7 @@ cdef class Steps(Stepwise):
     cdef readonly Record record
     cdef bint gliding, ends
     cdef double tau
+    cdef public double stop
     cdef Py_ssize_t found
     cdef Py_ssize_t start(self, double t) noexcept
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
@@ -36,7 +37,7 @@ cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t
 @cython.locals(first=Py_ssize_t, touches=bint)
 cdef Py_ssize_t struck_at_start(Work w) noexcept nogil
 @cython.locals(code=Py_ssize_t)
-cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t) noexcept nogil
+cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t, double stop) noexcept nogil
 cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil
 @cython.locals(known=bint)
 cdef bint is_finite(Work w) noexcept nogil

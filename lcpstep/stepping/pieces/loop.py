@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, finite, product
-    from lcpstep.pointers import abs, max
+    from lcpstep.pointers import abs, inf, max
     from lcpstep.stepping.pieces.carried import put_kept_back
     from lcpstep.stepping.pieces.codes import (
         AGAIN,
@@ -100,6 +100,7 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
+    stop     end of the span
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ class Steps(Stepwise):
         super().__init__()
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
-        self.tau, self.found = 0.0, NOBODY
+        self.tau, self.found, self.stop = 0.0, NOBODY, inf
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
@@ -151,7 +152,7 @@ class Steps(Stepwise):
         if code != FINISHED:
             return code
         t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
-        return end_step(self.plan, self.w, self.record, t_next)
+        return end_step(self.plan, self.w, self.record, t_next, self.stop)
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""
@@ -259,10 +260,13 @@ def struck_at_start(w: Work) -> int:
     return first
 
 
-def end_step(plan: Plan, w: Work, record: Record, t: float) -> int:
-    """What is kept where a step ends, at time t; whether the run goes on."""
+def end_step(plan: Plan, w: Work, record: Record, t: float, stop: float) -> int:
+    """What is kept where a step ends, at time t; whether the run goes on.
+
+    States asked for at rounding after it are the next step's, which an impact may begin; at the span's end none is.
+    """
     late = just_after(plan, t)
-    keep_now(w, record, late)
+    keep_now(w, record, late if late >= stop else t)
     w.steps += 1
     w.under_way = False
     if not is_finite(w):

@@ -50,6 +50,7 @@ class LocatedRun(StepRun):
         super().__init__(method, scene, kept, recorder, PORTION)
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
+        self.loop.stop = scene.t_span[1]
         self.finite: tuple[float, Array, Array] | None = (
             None  # the last state known, after a step that failed
         )
