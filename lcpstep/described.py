@@ -32,6 +32,8 @@ from lagrangian.checks import ReadOnly
 from lagrangian.pickling import Pickled
 from lagrangian.sparse import is_sparse
 from lcpstep import functions
+from lcpstep.audit.result import Audit, Found, Window
+from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.arcs.run import Arcs
@@ -51,7 +53,8 @@ MODELS = (
 )  # fmt: skip
 METHODS = (EventDriven, Located, Moreau)
 MOTIONS = (Again, Arcs, Bent, Flights, Linear, Moved, Parabolic, Pieces, States)
-KINDS = {kind.__name__: kind for kind in (*MODELS, *METHODS, *MOTIONS, Counts, Trajectory, HybridTrajectory)}
+ANSWERS = (Audit, Bar, Counts, ErrorBar, Found, HybridTrajectory, Trajectory, Window)
+KINDS = {kind.__name__: kind for kind in (*MODELS, *METHODS, *MOTIONS, *ANSWERS)}
 LEFT_OUT = {"Flights": ("model",)}  # good in one process only
 COLUMNS = {"impacts": "impact", "switches": "switch"}  # what the log's columns begin with
 Tree = Any
