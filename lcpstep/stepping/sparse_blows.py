@@ -24,8 +24,7 @@ def opens_and_closes(u: Array, slow: float) -> bool:
 def forced(step: Any, u: Array, rate: Array, v: Array, v_free: Array, q: Array) -> Array:
     """How far the forces of a step move each gap velocity from u to `rate`, its rounding, and what moves nothing."""
     abs_G, speed = step.saddle.abs_G, max(np.max(np.abs(v)), np.max(np.abs(v_free)))
-    largest = abs_G.max(axis=1).toarray().ravel()
-    return np.abs(rate - u) + ROUNDING * largest * speed + RESOLUTION / step.h * (abs_G @ np.abs(q))
+    return np.abs(rate - u) + ROUNDING * step.steepest * speed + RESOLUTION / step.h * (abs_G @ np.abs(q))
 
 
 class Blows:

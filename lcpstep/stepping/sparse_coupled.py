@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Joints, Scene
-from lcpstep.lcp.factor import factoriser
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
 from lcpstep.stepping.sparse_blows import ROUNDING, Blows
@@ -45,17 +44,11 @@ class Before(NamedTuple):
 
 
 class CoupledStep(Step):
-    """Steps of one size h: A factorised once, and its matrix with those of the joints and contacts."""
+    """Steps of one size h: A, and its matrix with those of the joints and contacts."""
 
     def __init__(self, equations: Equations, h: float, theta: float, T: Any, J: Any) -> None:
         super().__init__(equations, h, theta)
-        A = self.saddle.A
-        self.A_solve = factoriser(A).factor(np.ones(A.shape[0], dtype=bool), np.zeros(A.shape[0]))
-        self.coupled = Coupled(A, equations.G, T, J)
-
-    def without_contact(self, r: Array) -> Array:
-        """Change of the velocity, A^-1 r."""
-        return self.A_solve(r)
+        self.coupled = Coupled(self.saddle.A, equations.G, T, J)
 
 
 class CoupledRun(SparseRun):
@@ -172,8 +165,7 @@ class CoupledRun(SparseRun):
         sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
         if rough.any():
             b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
-        largest = step.saddle.abs_G.max(axis=1).toarray().ravel() if len(s_t) else s_t
-        slow = np.abs(b[0] - u) + ROUNDING * largest * np.max(np.abs(self.v))
+        slow = np.abs(b[0] - u) + ROUNDING * step.steepest * np.max(np.abs(self.v))
         impact = bool(rough.any() and np.any(active & (u < -slow)))
         bounces = impact and not blows.last
         tangents = bounces * self.tangent_restitution * before.sliding

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Harmonic, Joints, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.function import Function
+from lcpstep.lcp.factor import Solve, factoriser
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.model import c_functions
 
@@ -140,9 +142,19 @@ class Step:
 
     def without_contact(self, r: Array) -> Array:
         """Change of the velocity, A^-1 r."""
-        none = np.zeros(self.saddle.m, dtype=bool)
-        solve = self.saddle.factor(none, self.saddle.proximal[0])
-        return solve(np.concatenate([r, np.zeros(self.saddle.m)]))[: self.saddle.n]
+        return self.A_solve(r)
+
+    @functools.cached_property
+    def A_solve(self) -> Solve:
+        """Solver for A alone; beside that of the saddle, which keeps its factors for the next contacts."""
+        A = self.saddle.A
+        return factoriser(A).factor(np.ones(A.shape[0], dtype=bool), np.zeros(A.shape[0]))
+
+    @functools.cached_property
+    def steepest(self) -> Array:
+        """The largest entry of each row of G."""
+        abs_G = self.saddle.abs_G
+        return abs_G.max(axis=1).toarray().ravel() if self.saddle.m else np.zeros(0)
 
     def at_rest(self, v: Array, r: Array, p: Array) -> Array:
         """The velocities, zero where contact forces hold them there up to rounding."""
