@@ -98,18 +98,19 @@ def warn(what: str, f: Callback, why: NotCompiled) -> None:
 def _made(f: Callback, takes: int, ndim: int) -> Any:
     """C function of a callback, made once."""
     function = _function(f, takes)
-    kind = takes, ndim, frozenset(map(_make, fingerprint.reached(function)))
-    if kind in FAILED:
-        raise FAILED[kind]
     depends = fingerprint.dependencies(function)
     # Where nobody can tell whether a value has changed, the function itself must be the same
     key = takes, ndim, depends, function if fingerprint.UNKNOWN in depends else None
-    if key not in MADE:
-        try:
-            MADE[key] = _machine_code(function, takes, ndim)
-        except NotCompiled as why:
-            FAILED[kind] = why
-            raise
+    if key in MADE:
+        return MADE[key]
+    kind = takes, ndim, frozenset(map(_make, fingerprint.reached(function)))
+    if kind in FAILED:
+        raise FAILED[kind]
+    try:
+        MADE[key] = _machine_code(function, takes, ndim)
+    except NotCompiled as why:
+        FAILED[kind] = why
+        raise
     return MADE[key]
 
 
