@@ -1,7 +1,7 @@
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef double RESOLUTION, NUDGE
+cdef double RESOLUTION, NOISE, NUDGE
 
 
 cdef class Clock:

@@ -20,6 +20,7 @@ if not cython.compiled:
     from lcpstep.pointers import abs, inf, max, min
 
 RESOLUTION = 2.0**-52
+NOISE = 64 * RESOLUTION  # relative to the terms of a sum: what rounding may leave of it
 NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
 
 

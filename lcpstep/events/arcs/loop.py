@@ -24,7 +24,6 @@ if not cython.compiled:
 
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.arcs.motion import (
-        NOISE,
         Arc,
         belt_slip,
         bend_at,
@@ -36,7 +35,7 @@ if not cython.compiled:
         set_out,
         state_at,
     )
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.pointers import abs, inf, max, min
 

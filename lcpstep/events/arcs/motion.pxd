@@ -5,7 +5,6 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport Doubles
 
 
-cdef double NOISE
 
 
 cdef class Arc(Clock):

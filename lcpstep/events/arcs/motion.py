@@ -22,11 +22,8 @@ if not cython.compiled:
 
     from lcpstep.arrays import doubles
     from lcpstep.events.flight.oscillator import fundamental
-    from lcpstep.kernels.clock import Clock
+    from lcpstep.kernels.clock import NOISE, Clock
     from lcpstep.pointers import abs, after, inf
-
-
-NOISE = 64 * 2.0**-52
 
 
 class Arc(Clock):

@@ -7,7 +7,7 @@ import cython
 from lcpstep.events.friction.codes import LEANS, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import (
         free_motion,
         least_effect,
@@ -16,6 +16,7 @@ if not cython.compiled:
         respond,
         size_of,
     )
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import largest, product
     from lcpstep.pointers import Doubles, abs, after, max

@@ -25,10 +25,11 @@ if not cython.compiled:
     )
     from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.on_joints import rubs
-    from lcpstep.events.friction.state import GUARDS, NOISE, Rubbing
+    from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
     from lcpstep.events.rows.equations import size_of
     from lcpstep.events.rows.held import is_held
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
 

@@ -33,8 +33,9 @@ if not cython.compiled:
     from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.parting import approaches, let_go, rejoin
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record

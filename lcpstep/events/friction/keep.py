@@ -5,7 +5,8 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
     from lcpstep.pointers import Doubles, abs, after
 

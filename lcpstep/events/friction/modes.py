@@ -39,8 +39,9 @@ if not cython.compiled:
     from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import motion_of
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.repose import moves, stay

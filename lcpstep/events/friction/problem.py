@@ -12,8 +12,9 @@ from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
     from lcpstep.events.friction.on_joints import rubs
-    from lcpstep.events.friction.state import NOISE, Rubbing
+    from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import solve_contacts
 
 

@@ -10,7 +10,6 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t ALL, GUARDS, BEGIN, NOT_FINITE
-cdef double NOISE
 
 
 cdef class Rubbing(RungeKutta):

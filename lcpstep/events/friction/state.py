@@ -18,7 +18,6 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
     from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem
     from lcpstep.kernels.record import Record
@@ -29,7 +28,6 @@ if not cython.compiled:
 GUARDS = (
     3  # of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
 )
-NOISE = 64 * RESOLUTION
 
 
 class Rubbing(RungeKutta):

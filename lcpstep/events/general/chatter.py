@@ -23,10 +23,10 @@ if not cython.compiled:
     from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.problem import CHECKED
-    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import measure_biases, measure_rates
     from lcpstep.events.rows.held import is_held
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally

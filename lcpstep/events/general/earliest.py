@@ -16,9 +16,9 @@ if not cython.compiled:
     from lcpstep.events.general.equations import gap_tolerance
     from lcpstep.events.general.held import note, right_hand_side
     from lcpstep.events.general.impact import speed_noise
-    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import measure_biases, measure_rates
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.dynamics import gap_rounding, gaps
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs, max, min

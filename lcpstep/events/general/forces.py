@@ -23,9 +23,10 @@ if not cython.compiled:
         solve_held,
     )
     from lcpstep.events.general.problem import CHECKED, solve_contacts
-    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import size_of, size_of_acceleration
     from lcpstep.events.rows.held import contradiction
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
 

@@ -19,8 +19,8 @@ if not cython.compiled:
     from lcpstep.events.general.earliest import NEVER, NONE, observe
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.parabolas import hop
-    from lcpstep.events.general.state import NOISE, Mechanism
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.events.general.state import Mechanism
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.vectors import largest
     from lcpstep.pointers import abs, inf, max, min, nan

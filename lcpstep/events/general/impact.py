@@ -15,8 +15,9 @@ import cython
 if not cython.compiled:
     from lcpstep.events.general.held import REFINEMENTS, hold, hold_joints, joints_own, solve_held
     from lcpstep.events.general.problem import CHECKED, solve_contacts
-    from lcpstep.events.general.state import NOISE, Mechanism
+    from lcpstep.events.general.state import Mechanism
     from lcpstep.kernels.acceleration import inverse_mass
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import clear, largest, product
     from lcpstep.pointers import abs, inf, max, min
 

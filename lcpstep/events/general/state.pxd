@@ -7,7 +7,6 @@ from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport Doubles, Indices
 
 cdef Py_ssize_t CONTACTS, MARKS, BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH, LOOKED, ENTERED, JUMPED
-cdef double NOISE
 
 
 cdef class Seen:

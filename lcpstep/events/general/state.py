@@ -12,7 +12,6 @@ if not cython.compiled:
     from lcpstep.events.hybrid.state import Motion
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.turn import Turn
@@ -22,7 +21,6 @@ if not cython.compiled:
 CONTACTS, MARKS = 14, 6  # numbers per contact besides those of `Pressed`, and marks of a contact
 BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards wait to be looked at, and why
-NOISE = 64 * RESOLUTION
 
 
 class Seen:

@@ -20,10 +20,10 @@ if not cython.compiled:
     from lcpstep.events.friction.equations import renew_rates
     from lcpstep.events.friction.guards import first_fall, read
     from lcpstep.events.friction.on_joints import rubs
-    from lcpstep.events.friction.state import GUARDS, NOISE
+    from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.events.rows.equations import measure_biases, size_of
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.rubbing.strides import Strides
