@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -246,11 +246,6 @@ def said(error: BaseException, letter: str = "v") -> str:
     if "read-only" in str(error):
         return f"{error}; q, {letter} and p are not the callback's to change"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-
-
-def numbers(parameters: Mapping[str, Any]) -> list[Any]:
-    """The values of parameters that are no text; those of switches as 0 and 1."""
-    return [float(x) if isinstance(x, bool) else x for x in parameters.values() if not isinstance(x, str)]
 
 
 class ReadOnly(dict[str, Any]):

@@ -37,6 +37,7 @@ from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.modes import Function, Guard, Mode, Surface
+from lagrangian.parameters import values
 from lagrangian.pickling import Pickled
 
 ModeOf = Callable[[float, Any, Any], str]  # mode(t, x, p), its name
@@ -184,10 +185,10 @@ class HybridScene(Pickled):
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
             raise TypeError(f"system: expected a lagrangian.HybridSystem, got {self.system!r}")
-        p = checks.numbers(self.parameters) if self.p is None else self.p
+        p = values(self.p, self.parameters)
         object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         object.__setattr__(self, "x0", checks.array("x0", self.x0, (self.system.n_x,)))
-        object.__setattr__(self, "p", checks.vector("p", p))
+        object.__setattr__(self, "p", p)
         if self.mode not in self.system.names:
             raise ValueError(f"mode: unknown mode {self.mode!r}; known: {', '.join(self.system.names)}")
         span = checks.array("t_span", self.t_span, (2,))

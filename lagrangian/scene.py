@@ -16,6 +16,7 @@ from lagrangian.drawing import Drawing
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
 from lagrangian.labels import rate_label
+from lagrangian.parameters import values
 from lagrangian.pickling import Pickled
 from lagrangian.relations import check_derivatives
 from lagrangian.system import Harmonic, LinearSystem, System
@@ -36,7 +37,8 @@ class Scene(Pickled):
     t_span : (t_start, t_end) [s]
     contacts : LinearContacts, Contacts, or None for a system that meets nothing
     joints : LinearJoints, Joints, or None   bilateral constraints, which the initial state must satisfy
-    p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given
+    p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given, or None, as beside
+        new ones in `dataclasses.replace(scene, parameters=..., p=None)`
     parameters : names and values of the scene's parameters, for reports; read-only
     corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
     period : period of the forcing [s], a whole number of turns of a `Harmonic` force; math.inf where nothing repeats
@@ -74,12 +76,12 @@ class Scene(Pickled):
     def __post_init__(self) -> None:
         self._check_parts()
         n_q = self.system.n_q
-        p = checks.numbers(self.parameters) if self.p is None else self.p
+        p = values(self.p, self.parameters)
         object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         corners = np.sort(checks.vector("corners", self.corners))
         object.__setattr__(self, "q0", checks.array("q0", self.q0, (n_q,)))
         object.__setattr__(self, "v0", checks.array("v0", self.v0, (n_q,)))
-        object.__setattr__(self, "p", checks.vector("p", p))
+        object.__setattr__(self, "p", p)
         object.__setattr__(self, "corners", checks.array("corners", corners, corners.shape))
         self._check_times()
         object.__setattr__(self, "coordinates", checks.labels("coordinates", self.coordinates, n_q))

@@ -51,7 +51,7 @@ def elastic_ball(h0: float = 1.0, g: float = 9.81, bounces: int = 1000, t_end: f
     checks.count("bounces", bounces)
     whole = 2.0 * math.sqrt(2.0 * checks.positive("h0", h0) / checks.positive("g", g)) * bounces
     scene = bouncing_ball(h0, 0.0, g, 1.0, whole if t_end is None else t_end)
-    return replace(scene, name="elastic-ball", parameters={"h0": h0, "g": g, "bounces": bounces})
+    return replace(scene, name="elastic-ball", parameters={"h0": h0, "g": g, "bounces": bounces}, p=None)
 
 
 def impact_times(h0: float, v0: float, g: float, restitution: float, n: int) -> Array:

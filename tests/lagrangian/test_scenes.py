@@ -73,6 +73,15 @@ def test_parameters_are_the_values_of_the_named_ones_unless_given():
     np.testing.assert_array_equal(scene(parameters={"a": 2.0}, p=[5.0]).p, [5.0])
 
 
+def test_new_parameters_beside_old_values_are_refused():
+    old = pickle.loads(pickle.dumps(scene(parameters={"a": 2.0, "b": "x"})))
+    with pytest.raises(ValueError, match=r"^parameters: expected p=None beside new ones"):
+        dataclasses.replace(old, parameters={"a": 3.0, "b": "x"})
+    assert dataclasses.replace(old, parameters={"a": 3.0, "b": "x"}, p=None).p.tolist() == [3.0]
+    assert dataclasses.replace(old, parameters={"a": 2.0, "b": "y"}, p=[4.0]).p.tolist() == [4.0]
+    assert dataclasses.replace(dataclasses.replace(old, name="other"), t_span=(0.0, 2.0)).p.tolist() == [2.0]
+
+
 # --- contacts
 
 

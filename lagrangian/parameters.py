@@ -1,0 +1,32 @@
+"""The numbers p that functions are handed, from the named parameters of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lagrangian.checks import Array, vector
+
+
+class Values(np.ndarray[Any, np.dtype[np.float64]]):
+    """The p of a scene that are the values of its parameters."""
+
+
+def values(p: ArrayLike | None, parameters: Mapping[str, Any]) -> Array:
+    """The p of a scene: as given, or the values of its parameters; ValueError where these are others by now."""
+    named = numbers(parameters)
+    if p is not None and not isinstance(p, Values):
+        return vector("p", p)
+    if p is not None and named and p.tolist() != named:
+        raise ValueError(
+            f"parameters: expected p=None beside new ones, for p to be theirs: it has {p.tolist()} of others"
+        )
+    return vector("p", named if p is None else p).view(Values)
+
+
+def numbers(parameters: Mapping[str, Any]) -> list[Any]:
+    """The values of parameters that are no text; those of switches as 0 and 1."""
+    return [float(x) if isinstance(x, bool) else x for x in parameters.values() if not isinstance(x, str)]
