@@ -182,10 +182,10 @@ def _message(d: Direction, look: Look, row: int) -> str:
 
 
 class Known:
-    """Sets of functions that have been looked at, as long as they live."""
+    """Sets of functions that have been looked at, as long as they live, and with which parameters."""
 
     def __init__(self) -> None:
-        self.shapes: set[Any] = set()
+        self.parameters: dict[Any, set[bytes]] = {}
         self.more: WeakKeyDictionary[Any, Known] = WeakKeyDictionary()
 
     def of(self, functions: list[Any]) -> Known:

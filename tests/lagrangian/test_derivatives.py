@@ -183,6 +183,19 @@ def test_what_has_been_looked_at_is_not_looked_at_again():
     assert len(calls) == first + 1
 
 
+def test_what_is_right_with_the_first_parameters_is_looked_at_with_others():
+    def gap(t, q, v, p, out):
+        out[0] = 1.0 + p[0] * math.sin(q[0])
+
+    def jacobian(t, q, v, p, out):  # the factor is forgotten
+        out[0, 0] = math.cos(q[0])
+
+    contacts, system = Contacts(1, gap, jacobian), LinearSystem(M=1.0)
+    made(contacts, system, q0=0.3, v0=0.1, p=[1.0])
+    with pytest.raises(ValueError, match=r"^contacts\.jacobian\[0, 0\] is "):
+        made(contacts, system, q0=0.3, v0=0.1, p=[2.0])
+
+
 def test_what_is_wrong_is_so_every_time():
     wrong = bowl(sign=-1.0)
     for _ in range(2):
