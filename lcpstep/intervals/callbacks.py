@@ -162,6 +162,7 @@ def _copy(f: Any, made: dict[int, Any], seen: Seen) -> Any:
     copy = FunctionType(f.__code__, own, f.__name__, f.__defaults__, closure or None)
     copy.__kwdefaults__ = f.__kwdefaults__
     made[id(f)] = copy
+    seen.append((functools.partial(getattr, f, "__code__"), f.__code__))
     for name in _names(f.__code__):
         if name in f.__globals__:
             own[name] = _copy(f.__globals__[name], made, seen)

@@ -7,12 +7,14 @@ A frame and the obstacles of flat contacts give all three (s, s', s''); gaps of 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import FunctionType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
+from lcpstep import fingerprint
 from lcpstep.intervals import Interval, Moving, NotEnclosed, enclose
 from lcpstep.intervals.callbacks import Enclosed, plain
 
@@ -47,7 +49,8 @@ class Source:
     @property
     def key(self) -> tuple[Any, ...]:
         """What its answers depend on."""
-        return self.name, self.f, self.also, self.rows, *[x.tobytes() for x in self.at]
+        functions = self.f, _read_by(self.f), self.also, _read_by(self.also)
+        return self.name, self.rows, *functions, *[x.tobytes() for x in self.at]
 
     @property
     def order(self) -> int:
@@ -111,6 +114,13 @@ class Source:
         except Exception:  # the motion may never come there
             return np.zeros((self.rows, 3))
         return out
+
+
+def _read_by(f: Any) -> Any:
+    """What a function reads from around it, and what it is; equal to nothing where that may change unseen."""
+    f = plain(f)
+    text = fingerprint.dependencies(f) if isinstance(f, FunctionType) else fingerprint.UNKNOWN
+    return object() if f is not None and fingerprint.UNKNOWN in text else text
 
 
 def _finite(values: Array) -> Array:

@@ -171,3 +171,30 @@ def test_the_tails_of_a_burr_do_not_make_the_whole_scan_fine():
     assert simulate(scene, EventDriven()).counts.steps < 1000
     assert not turns(scene).elsewhere(np.array([3.87452818 - 1e-4]), math.inf)[0]
     assert turns(scene).elsewhere(np.array([0.0, 3.8, 3.9, 10.0]), math.inf).all()
+
+
+PLACE = 3.3333
+SETTINGS = {"place": PLACE}
+
+
+def bell_at_place(t, q, v, p, out):
+    s = (t - PLACE) / 1e-3
+    e = 0.1 * math.exp(-s * s)
+    out[0, 0], out[0, 1], out[0, 2] = e, -2e3 * s * e, (4.0 * s * s - 2.0) * e * 1e6
+
+
+def bell_in_settings(t, q, v, p, out):
+    s = (t - SETTINGS["place"]) / 1e-3
+    e = 0.1 * math.exp(-s * s)
+    out[0, 0], out[0, 1], out[0, 2] = e, -2e3 * s * e, (4.0 * s * s - 2.0) * e * 1e6
+
+
+@pytest.mark.filterwarnings("ignore::lcpstep.model.UncompiledCallback", "ignore::lcpstep.turns.FastTurn")
+@pytest.mark.parametrize("motion", [bell_at_place, bell_in_settings])
+def test_a_burr_is_looked_for_where_the_values_that_its_function_reads_have_brought_it(motion, monkeypatch):
+    scene = Scene(LinearSystem(M=1.0), 0.05, 0.0, (0.0, 10.0), LinearContacts(G=1.0, motion=motion))
+    for place in (PLACE, 6.6667):
+        monkeypatch.setitem(globals(), "PLACE", place)
+        monkeypatch.setitem(SETTINGS, "place", place)
+        times = simulate(scene, Located(0.1)).impacts.time
+        assert times[0] == pytest.approx(place - 1e-3 * math.sqrt(math.log(2.0)), abs=1e-5)
