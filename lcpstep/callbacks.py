@@ -177,6 +177,8 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
             raise _unfit(g, f"numba does not check the indices of {min(unchecked)!r}")
         if "objmode" in _names(g):
             raise _unfit(g, f"{g.__name__} goes back to Python by objmode")
+        if g.__code__.co_flags & inspect.CO_VARKEYWORDS:  # numba fails without a word
+            raise _unfit(g, f"{g.__name__} takes any arguments by keyword")
         if any(g in fingerprint.reached(callee) for _, callee in fingerprint.callees(g)):
             raise _unfit(g, f"{g.__name__} calls itself")
     prints = any("print" in _names(g) for g in fingerprint.reached(f))  # which makes arrays of its own

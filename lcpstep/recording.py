@@ -58,9 +58,7 @@ class Kept:
         if np.ndim(keep) != 1 or len(times) == 0 or not (times[1:] > times[:-1]).all():
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
-            raise ValueError(
-                f"keep: expected times within the span {t_span}, got {times[0]:g} .. {times[-1]:g}"
-            )
+            raise ValueError(f"keep: expected times within the span {t_span}, got {times[0]} .. {times[-1]}")
         return cls(0, False, times)
 
     @property

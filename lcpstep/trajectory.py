@@ -133,7 +133,7 @@ class Trajectory(Answer):
         outside = ~((times >= self.t[0]) & (times <= self.t[-1]))
         if np.any(outside):
             raise ValueError(
-                f"t: expected times within [{self.t[0]:g}, {self.t[-1]:g}] s, got {times[outside][0]:g}"
+                f"t: expected times within [{self.t[0]}, {self.t[-1]}] s, got {times[outside][0]}"
             )
         q, v = self.dense(times)
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)

@@ -83,6 +83,19 @@ def imports(t, q, v, p, out):
     out[0] = -m.sqrt(64.0)
 
 
+def as_it_is(f):
+    @functools.wraps(f)
+    def wrapper(*arguments, **named):
+        return f(*arguments, **named)
+
+    return wrapper
+
+
+@as_it_is
+def decorated(t, q, v, p, out):
+    out[0] = -8.0
+
+
 def factorial(n):
     return 1 if n < 2 else n * factorial(n - 1)
 
@@ -101,7 +114,7 @@ COMPILED = {
 PLAIN = {
     "dictionary": (reads_a_dictionary, "'CONSTANTS'"), "import": (imports, "IMPORT_NAME"),
     "method": (Field().method, "is a method"), "object": (Field(), "an object of class Field"),
-    "recursion": (recurses, "factorial calls itself"),
+    "recursion": (recurses, "factorial calls itself"), "decorated": (decorated, "decorated takes any arguments by keyword"),
 }  # fmt: skip
 
 

@@ -101,7 +101,7 @@ class HybridTrajectory(Answer):
         times, s = np.atleast_1d(np.asarray(t, dtype=float)), self.pieces
         outside = ~((times >= s.t[0]) & (times <= s.t[-1]))
         if np.any(outside):
-            raise ValueError(f"t: expected times within [{s.t[0]:g}, {s.t[-1]:g}], got {times[outside][0]:g}")
+            raise ValueError(f"t: expected times within [{s.t[0]}, {s.t[-1]}], got {times[outside][0]}")
         return times, np.searchsorted(s.t, times, side="right") - 1
 
     def __repr__(self) -> str:
