@@ -114,7 +114,8 @@ COMPILED = {
 PLAIN = {
     "dictionary": (reads_a_dictionary, "'CONSTANTS'"), "import": (imports, "IMPORT_NAME"),
     "method": (Field().method, "is a method"), "object": (Field(), "an object of class Field"),
-    "recursion": (recurses, "factorial calls itself"), "decorated": (decorated, "decorated takes any arguments by keyword"),
+    "recursion": (recurses, "factorial calls itself"),
+    "decorated": (decorated, "decorated takes any arguments by keyword"),
 }  # fmt: skip
 
 
