@@ -27,6 +27,7 @@ BOUND = 2.0  # a quarter of a period in each step
 # How many of these have so much of the largest energy: else it has died away at once
 LEAST, SHARE = 8, 1e-3
 LOAD = 0.01  # of the energy of what springs bear at rest: less is no motion beside it
+GROWS = 4.0  # in a step: what no oscillation does
 LENGTH = 1e-6  # of a step: of times
 
 
@@ -54,10 +55,13 @@ def _skipped(run: Trajectory, system: LinearSystem, h: float) -> str:
     if len(k) < LEAST:
         return ""
     q, v, rest = run.q, run.v, np.mean(run.q[k], axis=0)
-    energy = 0.5 * (_energy(system, q[k] - rest, v[k]) + _energy(system, q[k + 1] - rest, v[k + 1]))
+    before, after = _energy(system, q[k] - rest, v[k]), _energy(system, q[k + 1] - rest, v[k + 1])
+    # What turns in a step is not what the step itself has made
+    energy = np.where(after > GROWS * before, before, 0.5 * (before + after))
     told = energy > SHARE * np.max(energy)
     total = float(np.sum(energy[told]))
-    if np.count_nonzero(told) < LEAST or not total > LOAD * float(np.sum(_energy(system, q[k], v[k])[told])):
+    dies_away = np.count_nonzero(told) < LEAST and not told[-1]  # and does not grow beyond all of the start
+    if dies_away or not total > LOAD * float(np.sum(_energy(system, q[k], v[k])[told])):
         return ""
     ratio = float(np.sum(_energy(system, q[k + 1] - q[k], v[k + 1] - v[k])[told])) / total
     if not ratio > BOUND:

@@ -97,6 +97,21 @@ def test_a_load_on_a_stiff_spring_is_where_the_spring_holds_it():
         assert (TOLD in run.doubt) is told
 
 
+@pytest.mark.parametrize(
+    ("stiff", "theta", "told"), [(1e4, 0.0, True), (1e4, 0.3, True), (-400.0, 0.5, False)]
+)
+def test_an_oscillation_that_grows_beyond_all_is_told_and_a_fall_is_not(stiff, theta, told):
+    """Steps of theta < 1/2 make (1 + (1 - theta)^2 a) / (1 + theta^2 a) of its energy, a = (h w)^2."""
+    h, scene = (
+        0.1 if told else 1e-3,
+        Scene(LinearSystem(1.0, K=stiff), 1e-3, 0.0, (0.0, 1.0 if not told else 10.0)),
+    )
+    run = simulate(scene, Moreau(h, theta=theta))
+    energy = run.v[:, 0] ** 2 + abs(stiff) * run.q[:, 0] ** 2
+    assert energy[-1] > 1e15 * energy[0]
+    assert (TOLD in run.doubt) is told
+
+
 def test_runs_that_are_not_asked():
     """Steps that damp it, that follow it in closed form, or are chosen; and states that are too far apart."""
     scene = oscillator(1e4, 0.1)
