@@ -45,9 +45,10 @@ class Moreau:
     Notes
     -----
     A contact is active in a step where g + (h/2) u <= 0 at its start. One that separates has no part in the blow of
-    another; what a blow makes approach again is struck next, in the same step (`theta_method.blows`). Order one in
-    the presence of impacts, whatever theta: an impact is moved to the end of its step. Linear scenes with sparse
-    matrices run without a dense one, by a solver of their own (`lcpstep.lcp.saddle`).
+    another; what a blow makes approach again is struck next, in the same step (`theta_method.blows`). Contacts that
+    approach in one step strike at once, whichever would close first. Order one in the presence of impacts, whatever
+    theta: an impact is moved to the end of its step. Linear scenes with sparse matrices run without a dense one, by a
+    solver of their own (`lcpstep.lcp.saddle`).
     """
 
     h: float = 1e-4

@@ -7,6 +7,7 @@ from scipy import sparse
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, energy, simulate
 from lcpstep.stepping import sparse_coupled
+from lcpstep.stepping.sparse_equations import Equations, Step
 
 MASSES, RESTITUTION, SPEED, NEAR = np.array([0.3, 2.0, 1.0, 5.0]), np.array([0.8, 0.6, 0.7]), 1.5, 1e-8
 
@@ -93,3 +94,11 @@ def test_a_pile_of_all_masses_comes_to_rest_where_it_lies():
     gain = 0.6 / (8.0 * 1.4) * np.sum(M) * (9.81 * 2e-3) ** 2  # of a step, at most: docs/large-systems.md
     assert np.max(np.diff(E)) < gain
     assert run.counts.lcp_calls < 20 * run.counts.steps
+
+
+def test_asking_a_sparse_step_whether_blows_follow_keeps_the_factors_of_its_contacts():
+    step = Step(Equations(beads("sparse")), 1e-2, 0.5)
+    chosen, d = np.arange(len(RESTITUTION)) > 0, step.saddle.proximal[0]
+    solver = step.saddle.factor(chosen, d)
+    np.testing.assert_allclose(step.without_contact(MASSES), 1.0, rtol=0, atol=1e-15)
+    assert step.saddle.factor(chosen, d) is solver
