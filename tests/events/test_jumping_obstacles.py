@@ -1,9 +1,11 @@
 """Obstacles whose velocity jumps at a corner, below several contacts or a general system: u- before it, u+ after."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, System
+from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 
 G, AT = 9.0, 0.3
@@ -113,3 +115,19 @@ def test_friction_changes_nothing_of_that(method, law):
     assert m.status is Status.DONE
     np.testing.assert_allclose(m.v[-1], [0.0, 0.4], rtol=0, atol=1e-6)
     np.testing.assert_allclose(m.q[-1], [0.0, 0.02], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("scene", ["friction", "joint"])
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
+def test_the_log_tells_the_velocity_before_the_jump(method, scene):
+    """What rested had u- = 0: with the jump in it the log would say that a contact with r = 0.5 did not rebound."""
+    asked = rough("moreau")
+    if scene == "joint":
+        asked = replace(
+            asked, contacts=replace(asked.contacts, friction=None), joints=LinearJoints([[1.0, 0.0]])
+        )
+    m = simulate(asked, method)
+    struck = m.impacts[m.impacts.kind == Kind.IMPACT]
+    np.testing.assert_allclose(struck.time, [AT], rtol=1e-12)
+    np.testing.assert_allclose(struck.impulse, [0.8], rtol=1e-9)
+    np.testing.assert_allclose([struck.before, struck.after], 0.0, rtol=0, atol=1e-12)
