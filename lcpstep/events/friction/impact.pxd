@@ -4,7 +4,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
-cdef double DEEP, STILL
+cdef double STILL
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
@@ -20,7 +20,7 @@ cdef void find_free(Rubbing s) noexcept nogil
 cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(hops=bint)
 cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-@cython.locals(slow=bint, elastic=bint, hidden=bint)
+@cython.locals(slow=bint)
 cdef bint is_over(Rubbing s, Py_ssize_t c, double u, double height) noexcept nogil
 @cython.locals(rough=bint)
 cdef void close(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -45,7 +45,6 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, min
 
 ROUNDS = 1000  # problems of impacts at one instant
-DEEP = 8.0  # roundings of a gap, at most, that a hop falls below its surface before that is seen
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
@@ -227,12 +226,12 @@ def is_over(s: Rubbing, c: int, u: float, height: float) -> bool:
     """Whether hops of contact c that begin with the speed u, and rise to this height, no longer matter.
 
     What other contacts make of the impacts that are left out is of the size of the speed, not of the height; so is
-    what elastic ones go on with for ever, but that falls so deep unseen in lower hops that they would never end.
+    what elastic ones would go on with for ever.
     """
-    elastic = s.model.restitution[c] >= 1.0
-    slow = u <= speed_tolerance(s, s.n_j + c) or (s.n_c == 1 and not elastic)
-    hidden = height <= (DEEP if elastic else 1.0) * rounding_of_gap(s, c)
-    return (slow or hidden) and height <= gap_tolerance(s, c)
+    slow = u <= speed_tolerance(s, s.n_j + c)
+    if s.model.restitution[c] < 1.0:
+        slow = slow or s.n_c == 1 or height <= rounding_of_gap(s, c)
+    return slow and height <= gap_tolerance(s, c)
 
 
 def close(s: Rubbing, c: int) -> None:
