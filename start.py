@@ -66,7 +66,8 @@ def set_up(checks: bool) -> None:
     checks : whether what the checks need is needed too
     """
     what = "checks" if checks else "dependencies"
-    fetched, built = is_done(what, "pyproject.toml"), is_done("built", *BUILD, *kernels())
+    fetched = any(is_done(note, "pyproject.toml") for note in {what, "checks"})  # which need those as well
+    built = is_done("built", *BUILD, *kernels())
     if not built:
         make_environment()
     with nullcontext() if fetched else pip_install("--quiet", *required(checks)) as fetching:

@@ -21,10 +21,8 @@ from lcpstep import EventDriven, Moreau, simulate
 
 H, GRAVITY, GAP = 1e-3, 9.81, 1e-3
 CASES = ("touching", "falling")
-FOLLOWED, LOOKS = (
-    100,
-    20,
-)  # bodies up to which a falling column is followed from impact to impact; states compared
+FOLLOWED = 100  # bodies up to which a falling column is followed from impact to impact
+LOOKS = 20  # states that are compared then
 
 
 def column(n: int, case: str, steps: int) -> Scene:

@@ -31,8 +31,8 @@ cdef void rates_ahead(
     Model m, double t, double shift, double* q, double* v, double* shifted, double* G, double* rate
 ) noexcept nogil
 cdef void obstacle(Model m, double t, double* q, double* v) noexcept nogil
-cdef bint varies(Model m) noexcept nogil
-cdef bint moves(Model m) noexcept nogil
+cpdef bint varies(Model m) noexcept nogil
+cpdef bint moves(Model m) noexcept nogil
 cdef void carry_obstacles(Model m, double t, double* q, double* v) noexcept nogil
 cdef double gap_rounding(Model m, double* G, double* q, Py_ssize_t c, double path) noexcept nogil
 cdef bint order_matters(

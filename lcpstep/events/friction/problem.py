@@ -68,6 +68,5 @@ def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
 def allow(s: Rubbing, n_a: int, sign: float) -> None:
     """Raise, or lower, the accelerations of the normals by their rounding."""
     for a in range(n_a):
-        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size_of_acceleration(
-            s.rows, row_of(s, a, n_a), s.a
-        )
+        size = size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
+        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size

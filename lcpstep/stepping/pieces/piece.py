@@ -159,7 +159,8 @@ def first_contact(plan: Plan, w: Work, rest: float, t_end: float, past: float, b
     for c in range(w.n_c):
         if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.rate[c], w.half[c], tau):
             zero = first_zero(w.gap[c], w.rate[c], w.half[c])
-            if min(zero, rest) < past or (min(zero, rest) == past and c <= but):
+            told = min(zero, rest)  # as it was told of before
+            if told < past or (told == past and c <= but):
                 continue
             if zero < tau or (zero == 0.0 and tau == 0.0 and w.rate[c] < w.rate[found]):
                 found, tau = c, zero

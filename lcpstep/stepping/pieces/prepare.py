@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.kernels.dynamics import moves, varies
 from lcpstep.kernels.model import Model
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
@@ -47,8 +48,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
     trapezoidal = m.linear and scene.n_j == 0
     stiff = is_stiff(m)
-    unforced = not m.force.given and m.omega == 0.0 and (not m.frame.given or m.carried)
-    moving, stops, most = m.motion.given or m.carried, turns(scene).stops, longest(scene, m, method)
+    stops, most = turns(scene).stops, longest(scene, m, method)
     constant = trapezoidal and m.flat
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     own = implicit(m, stiff, method, h)
@@ -64,8 +64,8 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         t_scale = max(t_scale, scene.period)
     return Plan({
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": trapezoidal and stiff,
-        "steady": trapezoidal and not stiff and unforced,
-        "plain": constant and not moving, "constant": constant, "small": n_q <= SMALL,
+        "steady": trapezoidal and not stiff and not varies(m),
+        "plain": constant and not moves(m), "constant": constant, "small": n_q <= SMALL,
         "slack": ROUNDING * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,

@@ -31,7 +31,7 @@ def glide(
 
     A step that makes a number infinite is left to `theta_step`, which says so.
     """
-    before = -1
+    before, s.next_force[0] = -1, s.force[0]  # which stays that unless it varies
     while before < s.steps < last and finite(s.g, 1) and finite(s.u, 1):
         before = s.steps
         if s.closed[0] == 0:
@@ -48,7 +48,6 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
     q, v, g, u, f, k = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0], s.steps
     left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
     driven, moving = varies(m), moves(m)
-    s.next_force[0] = f
     while k < last and g + half * u > slack:
         t = t0 + h * (k + 1 - first)
         if driven:
@@ -76,7 +75,6 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
 def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int) -> None:
     """Steps that have to do with the contact, up to the first that has not."""
     h, theta, driven, moving = plan.h, plan.theta, varies(m), moves(m)
-    s.next_force[0] = s.force[0]
     while s.steps < last and not record.full(EVENTS):
         q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, record.event
         if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= plan.slack:
