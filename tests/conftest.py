@@ -37,6 +37,14 @@ def pytest_collection_finish(session):
 
 
 @pytest.fixture
+def sparse_steps(monkeypatch):
+    """Sparse scenes take sparse steps however small they are."""
+    from lcpstep.stepping import sparse
+
+    monkeypatch.setattr(sparse, "FEW", 0)
+
+
+@pytest.fixture
 def folder(tmp_path, monkeypatch):
     """An empty folder to work in."""
     monkeypatch.chdir(tmp_path)

@@ -167,6 +167,7 @@ def test_friction_sticks_and_slides_on():
         assert apart(whole, rest) < 1e-12
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.moved
 def test_sparse_scenes_go_on_without_a_dense_matrix():
     dense = scenes.falling_gas(n=30, t_end=2.0)

@@ -121,6 +121,7 @@ def test_friction_dissipates_what_a_sliding_block_loses():
     assert e.friction[-1] == pytest.approx(0.5 * 2.0 * 2.0**2, rel=1e-3)  # all that was in the sliding
 
 
+@pytest.mark.usefixtures("sparse_steps")
 def test_a_sparse_system_has_the_same_balance():
     n = 20
     G = sparse.diags_array([np.ones(n), -np.ones(n - 1)], offsets=[0, -1]).tocsr()

@@ -96,7 +96,7 @@ WAYS = {
     "located, order 4": (Located(1e-3, order=4), scenes.bouncing_ball),
     "located by a tolerance": (Located(1e-3, tolerance=1e-6), scenes.bouncing_ball),
     "located, friction": (Located(1e-2), scenes.mass_on_belt),
-    "sparse": (Moreau(1e-3), lambda: column(10, drop=0.1)),
+    "sparse": (Moreau(1e-3), lambda: column(210, drop=0.1)),
     "closed form": (EventDriven(), scenes.bouncing_ball),
     "general": (EventDriven(), scenes.double_pendulum),
     "friction": (EventDriven(), scenes.mass_on_belt),

@@ -236,6 +236,7 @@ def test_names_folders_and_files_that_are_there(tmp_path):
         run.save(tmp_path / "file" / "run.nc")
 
 
+@pytest.mark.usefixtures("sparse_steps")
 def test_large_and_sparse_scenes(tmp_path):
     from scipy.sparse import eye_array
 

@@ -47,8 +47,8 @@ class Moreau:
     A contact is active in a step where g + (h/2) u <= 0 at its start. One that separates has no part in the blow of
     another; what a blow makes approach again is struck next, in the same step (`theta_method.blows`). Contacts that
     approach in one step strike at once, whichever would close first. Order one in the presence of impacts, whatever
-    theta: an impact is moved to the end of its step. Linear scenes with sparse matrices run without a dense one, by a
-    solver of their own (`lcpstep.lcp.saddle`).
+    theta: an impact is moved to the end of its step. Linear scenes with sparse matrices of more than 200
+    coordinates or contacts run without a dense one, by a solver of their own (`lcpstep.lcp.saddle`).
     """
 
     h: float = 1e-4
@@ -91,6 +91,8 @@ class Moreau:
     def by_sparse_steps(self, scene: Scene) -> type[SparseRun] | None:
         """The run by sparse steps, where they know all that is asked for; None where dense steps take the scene.
 
+        Those of few coordinates they do, unless a sparse solver is asked for by name.
+
         Raises LcpStepError where it is too large for those.
         """
         from lcpstep.model import LARGEST_DENSE
@@ -107,11 +109,10 @@ class Moreau:
             unknown = sparse_coupled.unknown(scene)
         if unknown and scene.n_q > LARGEST_DENSE:
             raise refused(unknown, scene)
-        if unknown:
+        few = self.lcp == "lemke" and max(scene.n_q, scene.n_c) <= sparse.FEW
+        if unknown or few:
             return None
-        if not self.beyond_contacts(scene):
-            return sparse.SparseRun
-        return sparse_coupled.CoupledRun if sparse_coupled.takes(scene) else None
+        return sparse_coupled.CoupledRun if self.beyond_contacts(scene) else sparse.SparseRun
 
 
 def is_sparse(scene: Scene) -> bool:

@@ -29,7 +29,7 @@ from lcpstep.lcp.factor import Patterned, Singular, Solve
 from lcpstep.lcp.newton import PATIENCE, STRICT
 from lcpstep.lcp.saddle import NOTHING, REFINED, ROUNDING
 from lcpstep.lcp.status import TOLERANCE
-from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, OPEN, SIGN, STICK, Path
+from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, GOLDEN, OPEN, SIGN, STICK, Path
 
 PROXIMAL = 1e-10  # d, relative to the mobility of a row
 SMALLEST = 1e-300
@@ -122,6 +122,16 @@ class Coupled:
         self.mobility[self.mobility == 0.0] = 1.0
         self.proximal = PROXIMAL * self.mobility
         self.kept = None
+
+    def of_joints(self) -> Any:
+        """Contacts (n_c,) whose normals the joints hold already: a velocity that these leave moves all other gaps.
+
+        Any velocity does, this one without a pattern.
+        """
+        v, none = np.modf(GOLDEN * np.arange(1.0, self.n_q + 1.0))[0] - 0.5, np.zeros(self.n_c, dtype=bool)
+        problem = Problem(self.R @ v, self.abs_R @ np.abs(v), none, none, np.zeros(self.n_c), 1.0)
+        x = self.settle(problem, np.zeros(self.n_c, dtype=int), np.zeros(self.n_r)).x
+        return np.abs(self.G @ (v + x)) <= CONTRADICTION * (abs(self.G) @ (np.abs(v) + np.abs(x)))
 
     def solve(self, problem: Problem, modes: Any, p: Any) -> Point:
         """The answer; modes (n_c,) and impulses p (n_r,): guesses of it."""

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
-FEW = 200  # coordinates up to which dense steps are fast enough, and know more
 CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next two: `row_impulses`
 CANCELLED = 0.1
 NO_APPROACH = 1e-11
@@ -66,7 +65,7 @@ class CoupledRun(SparseRun):
             self.tangent_restitution = friction.tangential(contacts.restitution)
         self.T, self.abs_T, self.frictional = T, abs(T), friction is not None
         self.joints, self.modes = JointRows(scene), np.zeros(n_c, dtype=np.int64)
-        self.rows_p = np.zeros(scene.n_j + 2 * n_c)
+        self.rows_p, self.of_joints = np.zeros(scene.n_j + 2 * n_c), np.zeros(n_c, dtype=bool)
         super().__init__(method, scene, kept)
 
     def plan_for(self, h: float) -> CoupledStep:
@@ -78,6 +77,8 @@ class CoupledRun(SparseRun):
         self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
+        J_start, _ = self.joints.at(t, self.q, self.v)
+        closed, active = active, self.bearing(step, active, J_start)
         v_free = self.v + step.without_contact(r)
         rough, sliding = active & self.stiction.rough, self.T @ self.v + self.stiction.slip(t)
         if rough.any() and not self.stiction.measure(t, self.q, sliding):
@@ -85,7 +86,6 @@ class CoupledRun(SparseRun):
         slip = self.stiction.slip(t_next)
         slow = self.slow(step, r, active, s_t)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
-        J_start, _ = self.joints.at(t, self.q, self.v)
         v, speed = self.v, np.max(np.abs(v_free))
         for _ in range(MAX_ITERATIONS):
             q = self.q + step.h * (step.theta * v + (1.0 - step.theta) * self.v)
@@ -107,11 +107,12 @@ class CoupledRun(SparseRun):
         else:
             return v, Status.NEWTON_FAILED
         most = max(np.max(np.abs(v)), speed, np.max(np.abs(self.v)))
-        left = np.abs(J @ v + J_t) - CONTRADICTION * (np.abs(J_t) + most * (abs(J) @ np.ones(len(v))))
-        if np.any(
-            left > (np.abs(data - J_start).max(initial=0.0) * most) ** 2
-        ):  # what joints turn by is granted
+        granted = (np.abs(data - J_start).max(initial=0.0) * most) ** 2  # what joints turn by
+        if np.any(missed(np.abs(J @ v + J_t), J, J_t, most) > granted):
             return v, Status.JOINTS_FAILED
+        G, idle = self.equations.G, closed & self.of_joints
+        if np.any(missed(s_t - G @ v, G, s_t, most)[idle] > granted):
+            return v, Status.LCP_FAILED
         problem, impact = self.problem(step, active, *known, Blows(active, slow))
         rebound = impact * self.tangent_restitution * sliding
         self.stiction.note(step.coupled, problem, point, self.T @ v + slip, rebound)
@@ -120,6 +121,17 @@ class CoupledRun(SparseRun):
         self.rows_p, self.p = p, np.maximum(p_N, 0.0)
         self.impulse += np.concatenate([self.p, *([p_T] if self.frictional else []), p_J])
         return v, Status.DONE
+
+    def bearing(self, step: Any, active: Any, J: Array) -> Any:
+        """The active contacts but those whose normals the joints hold: these bear nothing, and have no friction.
+
+        Joints that turn seldom come to hold a contact's normal: looked for at the start, and while they do.
+        """
+        known = self.taken > 0 and not (self.joints.turning and self.of_joints.any())
+        if self.joints.n > 0 and not known:
+            step.coupled.turn(J, J)
+            self.of_joints = step.coupled.of_joints()
+        return active & ~self.of_joints
 
     def strike(
         self, step: Any, blows: Blows, before: Before, rest: tuple[Array, Array, Array], modes: Any, p: Array
@@ -186,6 +198,11 @@ class CoupledRun(SparseRun):
         return super().why(code)
 
 
+def missed(rates: Array, rows: Any, known: Array, speed: float) -> Array:
+    """By how much rates of rows at velocities up to this speed are more than what contradictions leave of them."""
+    return rates - CONTRADICTION * (np.abs(known) + speed * (abs(rows) @ np.ones(rows.shape[1])))
+
+
 def unknown(scene: Scene) -> str:
     """What these steps do not know of a sparse scene's joints and friction, as in `lcpstep.refusals`; "" if all."""
     joints, contacts = scene.joints, scene.contacts
@@ -195,8 +212,3 @@ def unknown(scene: Scene) -> str:
     if friction is not None and callable(friction.tangent):
         return "sparse-tangents"
     return "sparse-joints" if isinstance(joints, Joints) and joints.pattern is None else ""
-
-
-def takes(scene: Scene) -> bool:
-    """Whether a sparse scene is large, and its joints and its friction are of the kind that these steps know."""
-    return scene.n_q > FEW and not unknown(scene)

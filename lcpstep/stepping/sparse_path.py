@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 OPEN, STICK, FORWARDS, BACKWARDS = range(4)  # modes; the last two slide
 SIGN = np.array([0.0, 0.0, 1.0, -1.0])  # of the sliding velocity
+GOLDEN = 0.6180339887498949  # its multiples have fractions without a pattern
 MARGIN = 1e-3  # of the largest rate: what the shifts leave each contact at the start
 PIVOTS = 5  # granted per contact; up to 1.5 were seen to be needed
 ENTERS, LEAVES, RIGHT, LEFT, TURNS = range(5)  # what ends a mode, in the order of the table above; two limits
@@ -53,7 +54,7 @@ class Path:
         c, mu = self.coupled, self.problem.mu
         p, rates = (values[0] for values in self.lines())
         least, slides = MARGIN * float(np.max(np.abs(self.problem.b), initial=0.0)) or 1.0, SIGN[self.modes]
-        uneven = least * (1.0 + np.modf(np.arange(1.0, 2.0 * c.n_c + 1.0) * 0.6180339887498949)[0])
+        uneven = least * (1.0 + np.modf(np.arange(1.0, 2.0 * c.n_c + 1.0) * GOLDEN)[0])
         closed, normal, tangent = self.modes != OPEN, uneven[: c.n_c], uneven[c.n_c :]
         sticks = (self.modes == STICK) & (mu > 0.0)
         holds = np.divide(np.abs(p[self.T]), mu, out=np.zeros(c.n_c), where=sticks)

@@ -6,7 +6,6 @@ from scipy import sparse
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, energy, simulate
-from lcpstep.stepping import sparse_coupled
 from lcpstep.stepping.sparse_equations import Equations, Step
 
 MASSES, RESTITUTION, SPEED, NEAR = np.array([0.3, 2.0, 1.0, 5.0]), np.array([0.8, 0.6, 0.7]), 1.5, 1e-8
@@ -52,10 +51,10 @@ def test_the_beads_meet_more_often_than_once_each():
     assert after_all_blows()[1] > len(RESTITUTION) + 1
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize("h", [1e-2, 1.3e-3])
 @pytest.mark.parametrize("way", ["", "friction", "joint", "sparse", "sparse friction"])
-def test_beads_that_nearly_touch_leave_as_after_one_blow_after_another(way, h, monkeypatch):
-    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+def test_beads_that_nearly_touch_leave_as_after_one_blow_after_another(way, h):
     run = simulate(beads(way), Moreau(h))
     expected, _ = after_all_blows()
     np.testing.assert_allclose(run.v[-1][: len(MASSES)], expected, rtol=0, atol=1e-12)

@@ -29,6 +29,7 @@ def test_beads_that_are_pushed_along_stay_together():
     assert np.all(run.impulse[1:] > 0.0)
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize(
     ("lcp", "made", "steps"),
     [("lemke", np.asarray, 20_000), ("qp", np.asarray, 800), ("lemke", sparse.csr_array, 800)],

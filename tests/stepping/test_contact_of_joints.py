@@ -62,6 +62,7 @@ def test_it_changes_nothing(method, kind, resting):
         assert np.min(beside.impulse) > -1e-9
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize("resting", [True, False])
 def test_nor_in_sparse_steps(resting):
     for seed in range(8):

@@ -71,9 +71,29 @@ def test_a_contact_of_the_joints_changes_nothing(method, mu_own):
         assert not np.any(beside.friction_impulse[:, own]), seed
 
 
+@pytest.mark.usefixtures("sparse_steps")
 def test_nor_in_sparse_steps():
     for seed in range(20):
         *scenes, _ = drawn(seed, 0.6, sparse.csr_array)
         beside, alone = (simulate(scene, Moreau(1e-2)) for scene in scenes)
         assert beside.status == alone.status == Status.DONE, (seed, beside.message)
         assert np.max(np.abs(beside.q[-1] - alone.q[-1])) < 1e-6 * (0.1 + np.max(np.abs(alone.q[-1]))), seed
+
+
+def comes_closer(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 0.1 * t, 0.1, 0.0
+
+
+@pytest.mark.usefixtures("sparse_steps")
+@pytest.mark.parametrize("made", [np.asarray, sparse.csr_array], ids=["dense", "sparse"])
+@pytest.mark.parametrize("rough", [True, False])
+def test_an_obstacle_that_pushes_against_joints_ends_the_run(made, rough):
+    friction = Coulomb(0.3, made(np.array([[0.0, 1.0]]))) if rough else None
+    across = made(np.array([[1.0, 0.0]]))
+    scene = Scene(
+        LinearSystem(made(np.eye(2)), force=np.array([0.0, 1.0])), np.zeros(2), np.zeros(2), (0.0, 0.1),
+        LinearContacts(across, motion=comes_closer, friction=friction), LinearJoints(across),
+    )  # fmt: skip
+    run = simulate(scene, Moreau(1e-2))
+    assert run.status == Status.LCP_FAILED
+    assert "obstacle of contact 0 closes in" in run.message or "contacts [0]" in run.message

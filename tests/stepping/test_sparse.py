@@ -9,6 +9,8 @@ from scipy import sparse
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, LcpStepError, Moreau, SimulationError, simulate
 
+pytestmark = pytest.mark.usefixtures("sparse_steps")
+
 
 def chain_gaps(n):
     """Rows of a floor under the first body and of each body on the one before."""

@@ -9,14 +9,10 @@ from scipy import sparse
 
 from lagrangian import Coulomb, Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import Moreau, SimulationError, energy, simulate
-from lcpstep.stepping import sparse_coupled
+from lcpstep.stepping.sparse_coupled import CoupledRun
 from lcpstep.trajectory import Status
 
-
-@pytest.fixture(autouse=True)
-def however_few_coordinates(monkeypatch):
-    """Scenes that dense steps can judge take these steps too."""
-    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+pytestmark = pytest.mark.usefixtures("sparse_steps")
 
 
 def made_dense(s):
@@ -241,8 +237,8 @@ def test_what_these_steps_do_not_know_takes_the_dense_ones():
     stronge = Coulomb(0.3, c.friction.tangent, law="stronge")
     impulsive = LinearContacts(c.G, friction=stronge)
     scene = Scene(flat.system, flat.q0, flat.v0, flat.t_span, impulsive, flat.joints, p=flat.p)
-    assert not sparse_coupled.takes(scene)
-    assert sparse_coupled.takes(flat)
+    assert Moreau(1e-3).by_sparse_steps(scene) is None
+    assert Moreau(1e-3).by_sparse_steps(flat) is CoupledRun
     assert simulate(scene, Moreau(1e-3)).status.name == "DONE"
 
 

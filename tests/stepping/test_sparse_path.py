@@ -6,7 +6,6 @@ from scipy import sparse
 
 from lagrangian import scenes
 from lcpstep import Moreau, energy, simulate, solve_lcp
-from lcpstep.stepping import sparse_coupled
 from lcpstep.stepping.sparse_coulomb import Coupled, Problem
 from lcpstep.stepping.sparse_path import OPEN, STICK, Path
 from lcpstep.stepping.sparse_updates import Lines
@@ -129,9 +128,9 @@ def test_contacts_that_cannot_all_be_met_end_no_path():
     assert not jaws.solve(closing, np.zeros(2, dtype=int), np.zeros(4)).solved
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.slow
 def test_paths_begin_from_the_step_before_rather_than_from_nothing(monkeypatch):
-    monkeypatch.setattr(sparse_coupled, "FEW", 0)
     follow, begun = Path.follow, []
 
     def seen(self):
@@ -145,9 +144,9 @@ def test_paths_begin_from_the_step_before_rather_than_from_nothing(monkeypatch):
     assert min(begun) > 0
 
 
+@pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize("restitution", shared([0.3, 0.5], 2))
-def test_a_chain_that_bounces_goes_on_while_it_comes_to_lie(monkeypatch, restitution):
-    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+def test_a_chain_that_bounces_goes_on_while_it_comes_to_lie(restitution):
     run = simulate(scenes.hinged_chain(n=40, restitution=restitution, t_end=0.6), Moreau(1e-3))
     assert run.status.name == "DONE"
     total = energy(run).total

@@ -64,6 +64,7 @@ def test_a_frame_that_sets_out_at_the_start_pushes_from_the_start(method, span):
     assert run.v[-1, 0] == pytest.approx(-PUSH * span, abs=1e-14)
 
 
+@pytest.mark.usefixtures("sparse_steps")
 def test_sparse_scenes_begin_alike():
     n = 3
 
