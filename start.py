@@ -4,6 +4,7 @@ python3 start.py          the cam-follower by every method: a table, how to read
 python3 start.py test     the checks: lint, types, import rules, tests
 """
 
+import functools
 import hashlib
 import os
 import re
@@ -15,13 +16,14 @@ import urllib.parse
 import urllib.request
 import venv
 from collections.abc import Iterable, Iterator
-from contextlib import nullcontext
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 LAST = 60  # lines of pip's that are shown where it fails
+OWN_INDEX = re.compile(r"\.(index-url|no-index|proxy)=")  # in what pip says of its configuration
 BUILD = "pyproject.toml", "setup.py", "ready.py", "ready_words.py"
 BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"], ["lint-imports"])
 
@@ -70,12 +72,13 @@ def set_up(checks: bool) -> None:
     built = is_done("built", *BUILD, *kernels())
     if not built:
         make_environment()
-    with nullcontext() if fetched else pip_install("--quiet", *required(checks)) as fetching:
+    with ThreadPoolExecutor(1) as beside:
+        fetching = None if fetched else beside.submit(fetch, *required(checks))
         if not built:
-            finish(pip_install("--verbose", "--no-deps", "--editable", "."))
+            pip_install("--no-deps", "--editable", ".")
             note_done("built", *BUILD, *kernels())
         if fetching is not None:
-            finish(fetching)
+            fetching.result()
             note_done(what, "pyproject.toml")
 
 
@@ -86,6 +89,7 @@ def make_environment() -> None:
         print("no C compiler here: the one in PyPI's ziglang is fetched, for this build alone", flush=True)
     if not (BIN / "python").exists() and not (BIN / "python.exe").exists():
         venv.create(ENVIRONMENT, symlinks=os.name != "nt")
+    pip()  # which is found before two ask for it at a time
 
 
 def required(checks: bool) -> list[str]:
@@ -120,22 +124,33 @@ def digest(*files: str) -> str:
     return hashlib.sha256(b"".join((ROOT / file).read_bytes() for file in files)).hexdigest()
 
 
-def install(*arguments: str) -> None:
-    """Run `pip install` for the environment, and wait for it."""
-    finish(pip_install("--verbose", *arguments))
+def fetch(*packages: str) -> None:
+    """Install for the environment what others have built: by uv, in a fifth of the time; where that fails by pip."""
+    with tempfile.TemporaryDirectory() as folder:
+        uv = find_uv(folder)
+        if uv is None or not succeeds(uv, "pip", "install", "--quiet", "--python", ENVIRONMENT, *packages):
+            pip_install(*packages)
 
 
-def pip_install(*arguments: str) -> subprocess.Popen:
-    """Start `pip install` for the environment; each file is compiled as it is first imported."""
+def find_uv(folder: str) -> str | None:
+    """A uv at hand, or one fetched into the folder; None where pip is led to packages in its own way."""
+    if OWN_INDEX.search(subprocess.run([*pip(), "config", "list"], capture_output=True, text=True).stdout):
+        return None
+    if shutil.which("uv") is None and succeeds(*pip(), "install", "--quiet", "--target", folder, "uv"):
+        return shutil.which("uv", path=str(Path(folder, "bin")))
+    return shutil.which("uv")
+
+
+def pip_install(*arguments: str) -> None:
+    """Run `pip install` for the environment; each file is compiled as it is first imported.
+
+    What it says is shown where it fails, else its warnings are of no use to anybody.
+    """
     later = [] if sys.dont_write_bytecode else ["--no-compile"]
-    return subprocess.Popen(
-        [*pip(), "install", *later, *arguments], cwd=ROOT, text=True, errors="replace",
+    process = subprocess.Popen(
+        [*pip(), "install", "--verbose", *later, *arguments], cwd=ROOT, text=True, errors="replace",
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
-
-
-def finish(process: subprocess.Popen) -> None:
-    """Wait for a `pip install`; what it says is shown where it fails, else its warnings are of no use to anybody."""
     said = list(shown(process.stdout))
     if process.wait() != 0:
         log = ENVIRONMENT / "setting-up.log"
@@ -144,17 +159,18 @@ def finish(process: subprocess.Popen) -> None:
         sys.exit(f"{''.join(said[-LAST:])}setting up failed: {words}; all of it: {log}")
 
 
-def pip() -> list:
+@functools.cache
+def pip() -> list[str | Path]:
     """A command that runs pip for the environment.
 
     Some systems ship Python without ensurepip: then an installed pip does it from outside, and failing that one
     is fetched from the package index.
     """
     python = BIN / "python"
-    ways = [[python, "-m", "pip"], [sys.executable, "-m", "pip", "--python", python]]
-    if not works(ways[0]):
-        subprocess.call([python, "-m", "ensurepip"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    way = next((way for way in ways if works(way)), None)
+    ways: list[list[str | Path]] = [[python, "-m", "pip"], [sys.executable, "-m", "pip", "--python", python]]
+    if not succeeds(*ways[0], "--version"):
+        succeeds(python, "-m", "ensurepip")
+    way = next((way for way in ways if succeeds(*way, "--version")), None)
     if way is None:
         with tempfile.TemporaryDirectory() as folder:
             wheel = fetch_pip(Path(folder))
@@ -183,9 +199,9 @@ def shown(lines: Iterable[str]) -> Iterator[str]:
         print("\r\x1b[K", end="", flush=True)
 
 
-def works(pip: list) -> bool:
-    """Whether a pip command runs."""
-    return subprocess.call([*pip, "--version"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0
+def succeeds(*words: str | Path) -> bool:
+    """Whether a command does what it is asked to."""
+    return subprocess.call(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) == 0
 
 
 def fetch_pip(folder: Path) -> Path:

@@ -39,7 +39,7 @@ def set_up(environment: Path) -> None:
     start.ENVIRONMENT = environment
     start.BIN = environment / start.BIN.name
     venv.create(environment, clear=True)
-    start.install(*lowest())
+    start.fetch(*lowest())
 
 
 if __name__ == "__main__":

@@ -128,6 +128,19 @@ def test_a_log_of_the_building_that_nobody_watches_is_not_written_over(capsys):
     assert capsys.readouterr().out == ""
 
 
+def test_packages_come_by_pip_where_it_has_an_index_of_its_own_or_uv_fails(tmp_path, monkeypatch):
+    monkeypatch.setattr(start, "pip", lambda: [sys.executable, "-m", "pip"])
+    asked = []
+    monkeypatch.setattr(start, "pip_install", lambda *packages: asked.append(packages))
+    monkeypatch.setenv("PIP_INDEX_URL", "https://packages.example/simple")
+    assert start.find_uv(str(tmp_path)) is None
+    start.fetch("numpy")
+    monkeypatch.delenv("PIP_INDEX_URL")
+    monkeypatch.setattr(start, "find_uv", lambda folder: sys.executable)  # which knows no `pip install`
+    start.fetch("scipy")
+    assert asked == [("numpy",), ("scipy",)]
+
+
 def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
     """pip and build ask for it several times, each time in a process of its own."""
     for name in ("setup.py", "ready.py", "ready_words.py", "pyproject.toml", "README.md", "LICENSE"):
