@@ -10,7 +10,16 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
-    from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN, ROUNDING
+    from lcpstep.stepping.pieces.codes import (
+        CORNER,
+        FINISHED,
+        GROUND,
+        LCP_FAILED,
+        NOBODY,
+        NOT_FINITE,
+        OPEN,
+        ROUNDING,
+    )
     from lcpstep.stepping.pieces.impulses import strike, zero_speeds
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
@@ -124,3 +133,18 @@ def remeasure(m: Model, plan: Plan, w: Work) -> None:
                 w.gap[c] = g
             if abs(u - w.rate[c]) > ROUNDING * speed:
                 w.rate[c] = u
+
+
+def struck_at_start(w: Work) -> int:
+    """The contact that comes nearer fastest of those that touch at the very start, where others rest; or NOBODY.
+
+    These take part in its impact: there was no time in which the forces could have parted them.
+    """
+    first = NOBODY
+    if w.closed_now == 0:
+        return first
+    for c in range(w.n_c):
+        touches = w.status[c] == OPEN and w.grounded[c] == GROUND and w.gap[c] == 0.0
+        if touches and w.rate[c] < 0.0 and (first == NOBODY or w.rate[c] < w.rate[first]):
+            first = c
+    return first

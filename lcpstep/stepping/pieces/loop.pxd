@@ -34,8 +34,6 @@ cdef class Steps(Stepwise):
 
 
 cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
-@cython.locals(first=Py_ssize_t, touches=bint)
-cdef Py_ssize_t struck_at_start(Work w) noexcept nogil
 @cython.locals(code=Py_ssize_t)
 cdef Py_ssize_t end_step(Plan plan, Work w, Record record, double t, double stop) noexcept nogil
 cdef void begin_step(Model m, Plan plan, Work w) noexcept nogil

@@ -33,7 +33,7 @@ if not cython.compiled:
         TOO_MANY_EVENTS,
     )
     from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
-    from lcpstep.stepping.pieces.event import remeasure
+    from lcpstep.stepping.pieces.event import remeasure, struck_at_start
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.impulses import zero_speeds
     from lcpstep.stepping.pieces.jointed import turn_onto_joints
@@ -243,21 +243,6 @@ class Steps(Stepwise):
     def strike(self, t: float, c: int) -> int:
         """The event of contact c at w.sigma, or that of a corner, and what it changes."""
         return NOT_FINITE
-
-
-def struck_at_start(w: Work) -> int:
-    """The contact that comes nearer fastest of those that touch at the very start, where others rest; or NOBODY.
-
-    These take part in its impact: there was no time in which the forces could have parted them.
-    """
-    first = NOBODY
-    if w.closed_now == 0:
-        return first
-    for c in range(w.n_c):
-        touches = w.status[c] == OPEN and w.grounded[c] == GROUND and w.gap[c] == 0.0
-        if touches and w.rate[c] < 0.0 and (first == NOBODY or w.rate[c] < w.rate[first]):
-            first = c
-    return first
 
 
 def end_step(plan: Plan, w: Work, record: Record, t: float, stop: float) -> int:
