@@ -15,13 +15,17 @@ NEEDS = {
     "ex35_proof": "flint",
     "ex37_in_another_program": "fmpy",
 }
-SLOW = {  # films, a study, and diagrams
+SLOW = {  # films, a study, diagrams, and basins
+    "ex05_kept_and_sent",
     "ex03_own_mechanism",
     "ex06_cam_film",
     "ex26_double_pendulum_film",
     "ex32_work_precision",
+    "ex41_chapter_2_flips",
     "ex43_chapter_4_bifurcation_diagram",
+    "ex44_chapter_4_basins",
     "ex45_chapter_5_corner_impact",
+    "ex46_chapter_6_border_collisions",
 }
 LARGEST = 2_000_000  # of a picture or film [bytes]
 
@@ -206,12 +210,12 @@ def test_an_example_says_what_it_shows(name):
     [
         "README.md",
         pytest.param("docs/index.md", marks=pytest.mark.slow),
-        "docs/first-five-minutes.md",
+        pytest.param("docs/first-five-minutes.md", marks=pytest.mark.slow),
         "docs/large-systems.md",
         "docs/tutorial.md",
         "docs/symbolic.md",
         "docs/hybrid-systems.md",
-        "docs/seeing-and-keeping.md",
+        pytest.param("docs/seeing-and-keeping.md", marks=pytest.mark.slow),
         pytest.param("docs/accuracy.md", marks=pytest.mark.slow),
         pytest.param("docs/attractors.md", marks=pytest.mark.slow),
     ],

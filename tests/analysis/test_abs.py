@@ -63,7 +63,12 @@ def test_the_time_in_a_held_state_is_an_integral(model):
 
 
 @pytest.mark.parametrize(
-    "settings", [{"model": "slip"}, {"model": "constant"}, WET], ids=["slip", "constant", "wet"]
+    "settings",
+    [
+        pytest.param({"model": "slip"}, id="slip"),
+        pytest.param({"model": "constant"}, id="constant", marks=pytest.mark.slow),
+        pytest.param(WET, id="wet", marks=pytest.mark.slow),
+    ],
 )
 def test_the_cycle_vanishes_where_the_threshold_meets_the_top_of_the_isocline(settings):
     scene = hybrid_abs(**settings)

@@ -42,6 +42,7 @@ def test_bifurcation_draws_a_window_and_leaves_no_parts(capsys, tmp_path):
     assert run(capsys, *arguments, "--overwrite")[0] == DONE
 
 
+@pytest.mark.slow
 def test_bifurcation_compares_two_methods_in_a_picture_a_file_and_a_table(capsys, tmp_path):
     status, out, _ = run(
         capsys, "bifurcation", "cam-follower", "--window", "690-735", "--points", 4, "--drop", 100, "--keep", 10,

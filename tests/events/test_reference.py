@@ -51,6 +51,7 @@ SCENES = [
         System(1, 1.0, sticking),
         lambda: oscillator(**STICKING),
         id="sticking",
+        marks=pytest.mark.slow,
     ),
     pytest.param(
         ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 1.0),

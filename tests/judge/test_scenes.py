@@ -38,6 +38,11 @@ def new(findings):
 LONG = {  # of these
     "ends of chattering that thousands of impacts interrupt",
     "contacts beside a joint, pressed by forces that begin at zero",
+    "bowl, short",
+    "a joint and a contact whose normals become parallel",
+    "a bowl that shrinks around a body in its middle",
+    "chattering on a table",
+    "beads at rest on each other between walls that set out",
     "a light mass on a rod that the heavy one lets go through a dead point",
 }
 KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE | OTHER

@@ -232,6 +232,7 @@ def asked_of_a_bowl(times):
     return calls[0], run
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
 def test_states_asked_for_ahead_of_many_short_steps_are_made_once():
     (few, run), (many, more) = asked_of_a_bowl([1.0, 2.0]), asked_of_a_bowl(np.linspace(1.75, 2.0, 500))

@@ -80,6 +80,7 @@ def test_a_level_bar_lands_on_both_ends_at_once():
     assert np.all(m.v[-1] == 0.0)
 
 
+@pytest.mark.slow
 def test_blocks_of_mass_ratio_a_million_million_collide_three_million_times_without_loss():
     # one step: the Delassus matrix of the blocks rounds the inverse of the heavy mass at the fourth digit
     scene = scenes.galperin(6)
