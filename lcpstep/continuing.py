@@ -6,7 +6,7 @@ its joints. The smallest change of the position in the metric of the mass that r
     minimise dq^T M dq / 2    with    g_J + G_J dq = 0  on joints,  g + G dq >= 0  on contacts,
 
 is repeated for curved gaps until all hold. Velocities change by the smallest dv for which joints have no rate, and
-contacts that rest neither. Source: as of `lcpstep.stepping.projection`.
+contacts that rest neither. Source: as of `lcpstep.stepping.theta_method.repair`.
 """
 
 from __future__ import annotations

@@ -39,7 +39,7 @@ class Status(IntEnum):
 class Kind(IntEnum):
     """What happened at a contact."""
 
-    IMPACT = 0  # velocity jump
+    IMPACT = 0  # velocity jump; of `Moreau` the first step in which a contact bears
     ACCUMULATION = 1  # infinitely many impacts end here (complete chattering)
     STICK = 2  # the contact stays closed from here on
     RELEASE = 3  # a closed contact opens
@@ -86,7 +86,7 @@ class Trajectory(Answer):
     status : Status   DONE, or why the run ended early; `message` says it in words
     doubt : what is wrong with a run although it is DONE; also part of `message`, and "" where nothing is known
     audit : lcpstep.audit.Audit   what could be shown to be free of unnoticed events; None where it was not asked for
-    counts : Counts   steps, complementarity problems solved, force evaluations, events
+    counts : Counts   steps, complementarity problems solved (by methods that step), force evaluations, events
     joint_impulse : (n, n_j)   impulse of each joint since the state before [N s]
     friction_impulse : (n, n_c)   impulse of each contact's friction since the state before [N s]; no columns
         where the scene has none

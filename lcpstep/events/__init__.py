@@ -3,7 +3,9 @@
 `driven` is the method, and says which kind of run a scene asks for:
 
     flight      one linear degree of freedom above a flat obstacle, in closed form
+    arcs        one contact with friction under a constant force, in closed form
     general     any number of contacts and joints
+    friction    the same with friction; rows of both: `rows`
     hybrid      modes, guards and resets
 
 Each has its `run`, from a scene to a trajectory, and its `loop`, the kernel over events. What they share lies here

@@ -32,7 +32,7 @@ class Moreau:
     projected : put positions back onto joints and out of obstacles at the end of every step
     tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
         tolerance * (1 + size of the motion) over the span, in the scene's units. Steps are short where something
-        strikes; contacts that close slower than the tolerance resolves do not rebound. Takes "lemke" and dense scenes
+        strikes; contacts that close slower than the tolerance resolves do not rebound. Takes "lemke" and dense steps
         only; a tolerance that cannot be met ends the run with the status STEP_TOO_SMALL
 
     Raises
@@ -91,7 +91,7 @@ class Moreau:
     def by_sparse_steps(self, scene: Scene) -> type[SparseRun] | None:
         """The run by sparse steps, where they know all that is asked for; None where dense steps take the scene.
 
-        Those of few coordinates they do, unless a sparse solver is asked for by name.
+        Dense steps take few coordinates too, unless a sparse solver is asked for by name.
 
         Raises LcpStepError where it is too large for those.
         """

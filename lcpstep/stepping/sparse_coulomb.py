@@ -11,8 +11,8 @@ A contact is open, sticks, or slides either way; for given modes all this is one
     [ T        mu s    d   ]        rows of other impulses say what they are: p_N = 0, or p_T + s mu p_N = 0
 
 solved by refinement down to rounding. Contacts whose answer does not fit their mode change it, all together as long
-as that makes headway; then those that are in doubt get their modes by Lemke's method, from a small dense problem in
-which the others keep theirs. The answer is judged by its residuals before it is accepted.
+as that makes headway; then modes are found along a path (`sparse_path`), which is Lemke's method begun from a guess.
+The answer is judged by its residuals before it is accepted.
 
 Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353; M. Hintermueller, K. Ito, K. Kunisch,
 SIAM J. Optim. 13 (2003) 865; `kernels.coulomb` for the law and its linear complementarity problem.

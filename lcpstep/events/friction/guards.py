@@ -1,7 +1,7 @@
 """What ends the modes of contacts with friction, and when, as kernels.
 
 A guard acts where it falls through zero: the gap of an open contact; the normal force of a closed one; the sliding
-velocity of one that slides, times its sign; mu lambda_N -+ lambda_T of one that sticks. Along the dense output each
+velocity of one that slides, times its sign; mu_s lambda_N -+ lambda_T of one that sticks. Along the dense output each
 is a polynomial on parts short enough, whose first root is found from its Bernstein coefficients
 (`events.hybrid.roots`): none that comes in a pair within a step is missed.
 """

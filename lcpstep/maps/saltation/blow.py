@@ -26,7 +26,7 @@ STEP = 1e-4  # of differences
 
 
 class Blow:
-    """The impact between two pieces of a `tangent.Walk`."""
+    """The impact between two pieces of a `rubbing.Walk`."""
 
     def __init__(self, walk: Any, before: Any, after: Any, events: Any) -> None:
         self.s, self.n, self.t = walk.s, walk.n, float(after.t)

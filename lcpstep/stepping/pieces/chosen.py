@@ -3,7 +3,7 @@
 What is held from all sides, bodies between walls without clearance or a point that three planes hold, has an answer
 only as far as what is asked for agrees:
 
-    y^T b >= 0   where   y > 0,   W y = 0.
+    y^T b >= 0   where   y >= 0,   W y = 0.
 
 Of bodies at rest every b is rounding, and so is the sign of such a sum. Where there is no answer, contacts are let
 close by what rounding may make of b, before it counts as none.

@@ -48,10 +48,8 @@ if not cython.compiled:
         respond,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import release, stick
+    from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
     from lcpstep.stepping.pieces.times import within
-
-UNTOLD = 1e-4  # of a step: contacts whose hops are shorter are closed anyhow
 
 
 def endless(plan: Plan, w: Work) -> bool:
@@ -66,7 +64,7 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
     now = t + w.sigma
     if not meet(m, plan, w, now, span):
         return LCP_FAILED
-    if matters(m, w, span > UNTOLD * plan.h):
+    if matters(m, w, span > SHORT_TOGETHER * plan.h):
         w.cut += 1
     for i in range(n):
         w.v[i] += span * w.free[i]

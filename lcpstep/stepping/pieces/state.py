@@ -105,10 +105,10 @@ class Work:
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
     impulse         since the last kept state; those of the n_j joints follow
     p               impulses of the event at hand, or forces of closed contacts, by contact; in
-                    `impulses.choose_connected` 1 for contacts still to be looked at
+                    `sequences.choose_connected` 1 for contacts still to be looked at
     b, z            of the complementarity problem at hand, and its solution
     residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
-    before          gap velocity just before a corner
+    before          gap velocity before the impact or corner at hand
     impulse_from    impulses at the base of a piece within which states are kept
     since, next_zero     time since the start of the step to which gap and gap velocity belong, and of the next zero
     turned, turns   time since the start of the step at which a contact last struck, closed or opened, and how often

@@ -1,4 +1,5 @@
-"""Steps of one size of systems with planar friction, every slip, stick and impact at its own time within the step.
+"""Steps of systems with planar friction or joints, every slip, stick and impact at its own time within the step.
 
-Modes, impacts and what decides about them are those of `events.friction`; the motion between is that of `strides`.
+They are of one size, or chosen by a tolerance (`paced`). Modes, impacts and what decides about them are those of
+`events.friction`; the motion between is that of `strides`.
 """

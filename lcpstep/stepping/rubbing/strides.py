@@ -28,7 +28,7 @@ ARRIVAL = 4  # place of the rates at the end of a step, after those at its stage
 
 
 class Strides(Smooth):
-    """A motion with friction by steps of one size.
+    """A motion with friction or joints by steps, of one size or not.
 
     order                2 or 4
     h, t_start, n_steps  steps: their size, or the largest, when the first begins, how many there are of one size
