@@ -42,11 +42,33 @@ def factoriser(W: Any) -> Factoriser:
         return Tridiagonal(W)
     if k <= NARROW:
         return Banded(W, None)
+    order, k = narrow_order(W)
+    return General(W) if order is None else Banded(W[order][:, order], order)
+
+
+def narrow_order(W: Any) -> tuple[Any, int]:
+    """An order in which a CSR matrix is a narrow band, or None, and its half bandwidth then."""
     from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+    natural = np.arange(W.shape[0]), half_bandwidth(W)
+    if natural[1] <= NARROW:
+        return natural
     order = reverse_cuthill_mckee(abs(W), symmetric_mode=False)  # it adds the transpose: nothing may cancel
-    permuted = W[order][:, order]
-    return Banded(permuted, order) if half_bandwidth(permuted) <= NARROW else General(W)
+    k = half_bandwidth(W[order][:, order])
+    return (order if k <= NARROW else None), k
+
+
+def banded(storage: Any, k: int) -> Solve:
+    """Solver for a band of half bandwidth k in LAPACK's storage, transposed (n, 3 k + 1).
+
+    Storage and right-hand sides are overwritten.
+    """
+    from scipy.linalg import lapack
+
+    lu, pivots, info = lapack.dgbtrf(storage.T, k, k, overwrite_ab=True)
+    if info != 0:
+        raise Singular
+    return lambda rhs: lapack.dgbtrs(lu, k, k, rhs, pivots, overwrite_b=True)[0]
 
 
 class Patterned:
@@ -77,18 +99,14 @@ class Patterned:
         return self._banded(values) if self.k <= NARROW else self._sparse(values)
 
     def _banded(self, values: Any) -> Solve:
-        from scipy.linalg import lapack
-
         k, n = self.k, self.n
         storage = np.zeros((n, 3 * k + 1))
         storage.ravel()[self.flat] = values
-        lu, pivots, info = lapack.dgbtrf(storage.T, k, k, overwrite_ab=True)
-        if info != 0:
-            raise Singular
+        within = banded(storage, k)
 
         def solve(rhs: Any) -> Any:
             x = np.empty(rhs.shape)
-            x[self.order] = lapack.dgbtrs(lu, k, k, rhs[self.order], pivots)[0]
+            x[self.order] = within(rhs[self.order])
             return x
 
         return solve
@@ -184,8 +202,6 @@ class Banded:
 
     def factor(self, active: Any, d: Any) -> Solve:
         """See Factoriser."""
-        from scipy.linalg import lapack
-
         k, n = self.k, len(active)
         inside, shift = active[self.order], d[self.order]
         storage = np.zeros((n, 3 * k + 1))  # LAPACK's form, transposed; k more rows for the fill-in
@@ -196,13 +212,11 @@ class Banded:
             for offset in range(2 * k + 1):
                 storage[:, k + offset] *= inside & padded[offset : offset + n]
         storage[:, 2 * k] += np.where(inside, shift, 1.0)
-        lu, pivots, info = lapack.dgbtrf(storage.T, k, k, overwrite_ab=True)
-        if info != 0:
-            raise Singular
+        within = banded(storage, k)
 
         def solve(rhs: Any) -> Any:
             x = np.empty(n)
-            x[self.order] = lapack.dgbtrs(lu, k, k, np.where(inside, rhs[self.order], 0.0), pivots)[0]
+            x[self.order] = within(np.where(inside, rhs[self.order], 0.0))
             return x
 
         return solve

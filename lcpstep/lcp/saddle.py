@@ -12,48 +12,51 @@ of the rows a with z > 0 and a small proximal diagonal D, which has factors for 
 found as in `newton`: exchanges of the set a from a guess, and where they do not settle an interior point, whose
 matrix has D = w / z on all rows. Residuals are formed from A, G, r and c, never from W.
 
+Where A falls into blocks, as for bodies that only contacts connect, what no row with w < 0 reaches is left out of all
+this: it moves by x = A^-1 r (`part`). The vectors of what is left are worked on by kernels (`attempt`).
+
 Sources: M. Hintermueller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2003) 865; S. J. Wright, Primal-Dual Interior-Point
 Methods (1997), chapter 8; M. Benzi, G. H. Golub, J. Liesen, Acta Numerica 14 (2005) 1, sections 3 and 8.
 """
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from lcpstep.lcp.factor import Factoriser, General, Singular, Solve, factoriser
+from lcpstep.lcp.attempt import Attempt
+from lcpstep.lcp.factor import Singular, Solve, banded, factoriser, narrow_order
 from lcpstep.lcp.interior import BACK_OFF, SMALLEST, STEPS, longest
-from lcpstep.lcp.newton import PATIENCE, PROXIMAL, REFINEMENTS, STRICT
+from lcpstep.lcp.newton import PATIENCE, PROXIMAL, REFINEMENTS
+from lcpstep.lcp.part import Part
+from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.lcp.status import TOLERANCE
 
 PENALTY = (1e-11, 1e-9)  # d where x is found first: its rounding and its error fall alike in a refinement
-ROUNDING = 4 * 2.2e-16  # of the terms that x is what they leave
-NOTHING = 1e-20  # of the largest terms: as small as what proximal steps leave of a z that is zero
 REFINED = 4e-16  # relative residual below which another refinement is idle
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
     """Right-hand sides r (n,) and c (m,); c_size (m,): the size of the terms that c is a sum of; rows (m,): those
-    whose z may be positive. The others have z = 0, whatever their w.
+    whose z may be positive. The others have z = 0, whatever their w. free (n,): A^-1 r, if it is known.
     """
 
     r: Any
     c: Any
     c_size: Any
     rows: Any
+    free: Any = None
 
 
 class Point(NamedTuple):
-    """Solution or attempt: x (n,), z and w (m,), the size of the terms of A x - r - G^T z and of w, its residual."""
+    """Solution or attempt: x (n,), z (m,), and its relative residual."""
 
     x: Any
     z: Any
-    w: Any
-    size_x: Any
-    size_w: Any
     residual: float
 
     @property
@@ -63,195 +66,206 @@ class Point(NamedTuple):
 
 
 class Saddle:
-    """The matrices A and G, factorised for one set of rows after another; the last factors are kept."""
+    """The matrices A and G, and the part of the last problem, factorised for the rows that were chosen last."""
 
     def __init__(self, A: Any, G: Any) -> None:
         from scipy.sparse import block_array, csr_array
+        from scipy.sparse.csgraph import connected_components
 
         self.A, self.G = csr_array(A), csr_array(G)
         self.m, self.n = self.G.shape
-        self.G_T = self.G.T.tocsr()
-        self.abs_A, self.abs_G, self.abs_G_T = abs(self.A), abs(self.G), abs(self.G_T)
+        G_T = self.G.T.tocsr()
+        self.A_rows, self.G_rows, self.G_columns = SparseRows(self.A), SparseRows(self.G), SparseRows(G_T)
         self.diagonal = np.abs(self.A.diagonal())
         self.diagonal[self.diagonal == 0.0] = 1.0
-        self.W_scale = self.G.power(2) @ (1.0 / self.diagonal)  # sizes of the diagonal of W
-        self.W_scale[self.W_scale == 0.0] = 1.0
-        K = block_array([[self.A, -self.G_T], [self.G, None]], format="csr") if self.m else self.A
+        mobility = self.G.power(2) @ (1.0 / self.diagonal)
+        mobility[mobility == 0.0] = 1.0
+        K = block_array([[self.A, -G_T], [self.G, None]], format="csr") if self.m else self.A
         K.sort_indices()
-        narrow = factoriser(K)
-        self.factors: Factoriser = Penalised(self) if isinstance(narrow, General) else narrow
-        self.proximal = PENALTY if isinstance(narrow, General) else PROXIMAL
+        order, self.half_bandwidth = narrow_order(K)
+        self.narrow = order is not None
+        self.proximal = PROXIMAL if self.narrow else PENALTY
+        n_blocks, block = connected_components(self.A, directed=False)
+        self.of_blocks = self.A.diagonal() if n_blocks == self.n else None  # all there is of blocks of one
+        order = order if self.narrow else np.arange(self.n + self.m)
+        self.part = Part(self.A_rows, self.G_rows, self.G_columns, block, order)
+        self.attempt = Attempt(self.part, self.diagonal, mobility)
         self.systems = 0
         self.kept: tuple[bytes, float, Solve] | None = None
 
     def solve(self, problem: Problem, chosen: Any, z: Any) -> Point:
         """The solution; chosen (m,): rows whose z may well be positive, z (m,): a guess of it."""
         with np.errstate(all="ignore"):  # a diverging attempt may overflow; its residual tells
-            point = self.exchange(problem, chosen & problem.rows, z, self.proximal[0])
-            if point.solved or not problem.rows.any():
-                return point
-            try:
-                z, positive = self.interior_point(problem)
-            except Singular:  # A itself
-                return point
-            candidates = [point] + [self.exchange(problem, positive, z, d) for d in self.proximal]
+            free = self.free(problem.r) if problem.free is None else problem.free
+            if self.part.choose(problem.rows.view(np.uint8), self.G_rows.times(free) + problem.c):
+                self.kept = None
+            point = Point(np.array(free), np.zeros(self.m), 0.0)
+            if self.part.m > 0:
+                x, z, residual = self.solve_part(problem, free, chosen, z)
+                point.x[self.coordinates], point.z[self.rows] = x, z
+                point = point._replace(residual=residual)
+            return point if np.isfinite(point.x).all() else point._replace(residual=np.inf)
+
+    def free(self, r: Any) -> Any:
+        """A^-1 r; not a number where A is singular."""
+        if self.of_blocks is not None:
+            return r / self.of_blocks
+        try:
+            x = self.A_solve(r)
+        except Singular:
+            return np.full(self.n, np.nan)
+        return x + self.A_solve(r - self.A_rows.times(x))
+
+    @functools.cached_property
+    def A_solve(self) -> Solve:
+        """Solver for A alone."""
+        return factoriser(self.A).factor(np.ones(self.n, dtype=bool), np.zeros(self.n))
+
+    @property
+    def coordinates(self) -> Any:
+        """Those of the part."""
+        return self.part.lists["coordinates"][: self.part.n]
+
+    @property
+    def mobility(self) -> Any:
+        """Sizes of the diagonal of W in the part."""
+        return self.attempt.arrays["mobility"][: self.part.m]
+
+    @property
+    def rows(self) -> Any:
+        """Those of the part."""
+        return self.part.lists["rows"][: self.part.m]
+
+    def solve_part(self, problem: Problem, free: Any, chosen: Any, z: Any) -> Point:
+        """The solution of the part."""
+        a, rows = self.attempt, self.rows
+        a.pose(problem.r, problem.c, problem.c_size)
+        point = self.exchange(chosen[rows], z[rows], self.proximal[0])
+        if point.solved:
+            return point
+        try:
+            z, positive = self.interior_point(free[self.coordinates])
+        except Singular:  # A itself
+            return point
+        candidates = [point] + [self.exchange(positive, z, d) for d in self.proximal]
         return min(candidates, key=lambda p: p.residual)
 
-    def exchange(self, problem: Problem, chosen: Any, z: Any, proximal: float) -> Point:
+    def exchange(self, chosen: Any, z: Any, proximal: float) -> Point:
         """Exchange rows, from those chosen, until z and w have the right signs or no headway is made."""
-        fewest, patience, best = self.m + 1, PATIENCE, None
+        a, n, m = self.attempt, self.part.n, self.part.m
+        marks, numbers = a.marks[:m], a.arrays
+        marks[:] = chosen
+        fewest, patience, best = m + 1, PATIENCE, Point(np.zeros(n), np.zeros(m), np.inf)
         while patience >= 0 and fewest > 0:
             try:
-                solve = self.factor(chosen, proximal)
+                solve = self.factor(marks, proximal)
             except Singular:
                 break
-            point = self.settle(problem, chosen, np.where(chosen, z, 0.0), solve)
-            best = point if best is None or point.residual < best.residual else best
-            leaves = chosen & (point.z < 0.0)
-            if leaves.any():
-                leaves &= self.shares(point) > STRICT
-            enters = problem.rows & ~chosen & (point.w < -STRICT * point.size_w)
-            wrong = int(np.count_nonzero(leaves) + np.count_nonzero(enters))
+            numbers["z"][:m] = z
+            self.settle(solve)
+            if a.residual < best.residual:
+                best = Point(numbers["x"][:n].copy(), numbers["z"][:m].copy(), a.residual)
+            wrong = a.exchange()
             patience = PATIENCE if wrong < fewest else patience - 1
             fewest = min(fewest, wrong)
-            chosen = (chosen & ~leaves) | enters
-        return best or self.judged(problem, np.zeros(self.n), np.zeros(self.m))
+        return best
 
     def factor(self, chosen: Any, proximal: float) -> Solve:
         """Solver for the rows chosen; the one used last is kept."""
-        key = np.packbits(chosen).tobytes()
+        key = chosen.tobytes()
         if self.kept is None or self.kept[:2] != (key, proximal):
-            d = np.concatenate([np.zeros(self.n), proximal * self.W_scale])
-            self.kept = (key, proximal, self.with_diagonal(chosen, d))
+            self.kept = (
+                key,
+                proximal,
+                self.with_diagonal(chosen, proximal * self.attempt.arrays["mobility"]),
+            )
         return self.kept[2]
 
     def with_diagonal(self, chosen: Any, d: Any) -> Solve:
         """Factors of the matrix with the rows chosen and d on its diagonal."""
         self.systems += 1
-        return self.factors.factor(np.concatenate([np.ones(self.n, dtype=bool), chosen]), d)
+        if not self.narrow:
+            return penalised(self.part, chosen, d)
+        k = self.half_bandwidth
+        storage = np.zeros((self.part.n + self.part.m, 3 * k + 1))
+        self.part.fill(chosen, d, k, storage)
+        return banded(storage, k)
 
-    def settle(self, problem: Problem, chosen: Any, z: Any, solve: Solve) -> Point:
+    def settle(self, solve: Solve) -> None:
         """Proximal steps towards A x = r + G^T z and, on the rows chosen, G x + c = 0, down to rounding."""
-        x, before, scale = np.zeros(self.n), np.inf, 0.0
-        defect_x, defect_w = problem.r + self.G_T @ z, np.where(chosen, -problem.c, 0.0)
+        a, before = self.attempt, np.inf
+        defect = a.arrays["defect"][: self.part.n + self.part.m]
+        a.begin()
         for _ in range(REFINEMENTS):
-            change = solve(np.concatenate([defect_x, defect_w]))
-            x, z = x + change[: self.n], z + change[self.n :]
-            defect_x = problem.r + self.G_T @ z - self.A @ x
-            defect_w = np.where(chosen, -(self.G @ x + problem.c), 0.0)
-            size_x, size_w = self.sizes(problem, x, z)
-            # of the first answer: x may be nothing but rounding in the end
-            scale = scale or float(np.max(size_w, initial=0.0)) or 1.0
-            error = max(largest(defect_x, size_x), float(np.max(np.abs(defect_w), initial=0.0)) / scale)
+            error = a.change(solve(defect))
             if not REFINED < error < 0.5 * before:
                 break
             before = error
-        return self.judged(problem, x, z)
+        a.judge()
 
-    def sizes(self, problem: Problem, x: Any, z: Any) -> tuple[Any, Any]:
-        """Sizes of the terms that each row of the two equations is a sum of."""
-        size_x = np.abs(problem.r) + self.abs_A @ np.abs(x) + self.abs_G_T @ np.abs(z)
-        size_x = np.maximum(size_x, NOTHING * np.max(size_x))  # tails of a wave end in denormal numbers
-        return size_x, self.abs_G @ np.abs(x) + problem.c_size
+    def interior_point(self, x: Any) -> tuple[Any, Any]:
+        """Approximate z by Mehrotra's predictor and corrector, and the rows where it outweighs w; see `interior`.
 
-    def judged(self, problem: Problem, x: Any, z: Any) -> Point:
-        """The point with its relative residual. What the rounding of x makes of w counts as zero."""
-        size_x, size_w = self.sizes(problem, x, z)
-        w = self.G @ x + problem.c
-        rounding = ROUNDING * (self.abs_G @ (size_x / self.diagonal))
-        w = np.sign(w) * np.maximum(np.abs(w) - rounding, 0.0)
-        raw = Point(x, z, w, size_x, np.where(size_w > 0.0, size_w, 1.0), np.inf)
-        if not (np.all(np.isfinite(size_x)) and np.all(np.isfinite(size_w))):
-            return raw
-        share, relative = self.shares(raw), w / raw.size_w
-        defect = largest(problem.r + self.G_T @ z - self.A @ x, size_x)
-        violation = np.where(z < 0.0, share, np.minimum(share, np.abs(relative)))
-        violation = np.where(problem.rows, np.maximum(violation, -relative), 0.0)
-        residual = max(defect, float(np.max(violation, initial=0.0)))
-        return raw._replace(residual=residual)
-
-    def shares(self, point: Point) -> Any:
-        """Largest part that each |z| has in a row of A x = r + G^T z."""
-        inverse = np.divide(1.0, point.size_x, out=np.zeros(self.n), where=point.size_x > 0.0)
-        weighted = np.append(self.abs_G.data * inverse[self.abs_G.indices], 0.0)
-        felt = np.maximum.reduceat(weighted, self.abs_G.indptr[:-1]) if self.m else np.zeros(0)
-        return np.where(np.diff(self.abs_G.indptr) > 0, felt, 1.0) * np.abs(point.z)
-
-    def interior_point(self, problem: Problem) -> tuple[Any, Any]:
-        """Approximate z by Mehrotra's predictor and corrector, and the rows where it outweighs w; see `interior`."""
-        rows = problem.rows
-        chosen, count = np.flatnonzero(rows), np.count_nonzero(rows)
-        x = self.factor(np.zeros(self.m, dtype=bool), self.proximal[0])(
-            np.concatenate([problem.r, np.zeros(self.m)])
-        )[: self.n]
-        root = np.sqrt(self.W_scale)
-        level = float(np.max(np.abs(self.G @ x + problem.c)[rows] / root[rows])) or 1.0
-        z, w = np.where(rows, level / root, 0.0), np.where(rows, level * root, 1.0)
+        x : the answer without rows
+        """
+        a, lists, n, m = self.attempt, self.part.lists, self.part.n, self.part.m
+        at_x, at_w, rows = lists["x_place"][:n], lists["w_place"][:m], np.ones(m, dtype=np.uint8)
+        root, rhs = np.sqrt(self.mobility), np.zeros(n + m)
+        a.put(x, np.zeros(m))
+        level = float(np.max(np.abs(a.arrays["w"][:m]) / root)) or 1.0
+        if not np.isfinite(level):
+            raise Singular
+        z, w = level / root, level * root
         for _ in range(STEPS):
-            mu = float(z[chosen] @ w[chosen]) / count
-            defect_x = problem.r + self.G_T @ z - self.A @ x
-            defect = np.where(rows, self.G @ x + problem.c - w, 0.0)
-            size_x, size_w = self.sizes(problem, x, z)
-            size = np.max(size_w + self.abs_G @ (size_x / self.diagonal))
+            size, mu = a.put(x, z), float(z @ w) / m
+            defect_x, defect = a.arrays["defect"][at_x], a.arrays["w"][:m] - w
             if mu <= SMALLEST * level**2 and np.max(np.abs(defect)) <= SMALLEST * size:
                 break
-            ratio = w / np.where(rows, z, 1.0)
+            ratio = w / z
             try:
-                solve = self.with_diagonal(rows, np.concatenate([np.zeros(self.n), ratio]))
+                solve = self.with_diagonal(rows, ratio)
             except Singular:
                 break
-            dz = solve(np.concatenate([defect_x, np.where(rows, -defect - w, 0.0)]))[self.n :]
+            rhs[at_x], rhs[at_w] = defect_x, -defect - w
+            dz = solve(rhs)[at_w]
             dw = -w - ratio * dz
-            reach = min(longest(z[chosen], dz[chosen]), longest(w[chosen], dw[chosen]))
-            ahead = float((z + reach * dz)[chosen] @ (w + reach * dw)[chosen])
-            centre = (ahead / (count * mu)) ** 3
-            target = (centre * mu - dz * dw) / np.where(rows, z, 1.0)
-            change = solve(np.concatenate([defect_x, np.where(rows, target - w - defect, 0.0)]))
-            dx, dz = change[: self.n], change[self.n :]
+            reach = min(longest(z, dz), longest(w, dw))
+            ahead = float((z + reach * dz) @ (w + reach * dw))
+            centre = (ahead / (m * mu)) ** 3
+            target = (centre * mu - dz * dw) / z
+            rhs[at_x], rhs[at_w] = defect_x, target - w - defect
+            change = solve(rhs)
+            dx, dz = change[at_x], change[at_w]
             dw = target - w - ratio * dz
-            reach = min(
-                1.0, BACK_OFF * min(longest(z[chosen], dz[chosen], 2.0), longest(w[chosen], dw[chosen], 2.0))
-            )
+            reach = min(1.0, BACK_OFF * min(longest(z, dz, 2.0), longest(w, dw, 2.0)))
             if not reach > 0.0 or not np.isfinite(change).all():
                 break
-            x, z = x + reach * dx, z + reach * dz
-            w = np.where(rows, w + reach * dw, 1.0)
-        return z, rows & (z * root > w / root)
+            x, z, w = x + reach * dx, z + reach * dz, w + reach * dw
+        return z, z * root > w / root
 
 
-class Penalised:
-    """Factors for a graph without a narrow band: x from A + G_a^T D^-1 G_a, which needs no exchange of rows.
+def penalised(part: Part, chosen: Any, d: Any) -> Solve:
+    """Solver for a graph without a narrow band: x from A + G_a^T D^-1 G_a, which needs no exchange of rows.
 
     A matrix with zeros on its diagonal would need them, and fill in.
     """
+    from scipy.sparse import diags_array
+    from scipy.sparse.linalg import splu
 
-    def __init__(self, saddle: Saddle) -> None:
-        self.saddle = saddle
+    n, m, rows = part.n, part.m, np.flatnonzero(chosen)
+    inverse, G = 1.0 / d[rows], part.G.matrix(m, n)[rows]
+    H = (part.A.matrix(n, n) + G.T @ diags_array(inverse) @ G).tocsc()
+    mode = {"SymmetricMode": True}
+    try:
+        lu = splu(H, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=mode)
+    except RuntimeError:
+        raise Singular from None
 
-    def factor(self, active: Any, d: Any) -> Solve:
-        """See Factoriser."""
-        from scipy.sparse import diags_array
-        from scipy.sparse.linalg import splu
+    def solve(rhs: Any) -> Any:
+        rhs_x, rhs_w = rhs[:n], rhs[n:][rows]
+        x = lu.solve(rhs_x + G.T @ (inverse * rhs_w))
+        z = np.zeros(m)
+        z[rows] = inverse * (rhs_w - G @ x)
+        return np.concatenate([x, z])
 
-        s, chosen = self.saddle, np.flatnonzero(active[self.saddle.n :])
-        inverse, G = 1.0 / d[s.n :][chosen], s.G[chosen]
-        H = (s.A + G.T @ diags_array(inverse) @ G).tocsc()
-        mode = {"SymmetricMode": True}
-        try:
-            lu = splu(H, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=mode)
-        except RuntimeError:
-            raise Singular from None
-
-        def solve(rhs: Any) -> Any:
-            rhs_x, rhs_w = rhs[: s.n], rhs[s.n :][chosen]
-            x = lu.solve(rhs_x + G.T @ (inverse * rhs_w))
-            z = np.zeros(s.m)
-            z[chosen] = inverse * (rhs_w - G @ x)
-            return np.concatenate([x, z])
-
-        return solve
-
-
-def largest(defect: Any, size: Any) -> float:
-    """The largest defect next to the size of its row's terms."""
-    return float(np.max(np.abs(defect) / np.where(size > 0.0, size, 1.0), initial=0.0))
+    return solve

@@ -26,3 +26,8 @@ class Status(IntEnum):
     INFEASIBLE = INFEASIBLE
     MAX_ITERATIONS = MAX_ITERATIONS
     FAILED = FAILED
+
+
+# Of saddle point problems, A x = r + G^T z:
+ROUNDING = 4 * 2.2e-16  # of the terms that x is what they leave
+NOTHING = 1e-20  # of the largest terms: as small as what proximal steps leave of a z that is zero

@@ -114,7 +114,8 @@ class SparseRun(StepRun):
     def gaps(self, t: float, q: Array, v: Array) -> tuple[Array, Array]:
         """Gaps and gap velocities."""
         s, s_t = self.equations.obstacle(t, q, v)
-        return self.equations.G @ q + self.equations.offset - s, self.equations.G @ v - s_t
+        G = self.equations.G_rows
+        return G.times(q) + self.equations.offset - s, G.times(v) - s_t
 
     def step(self, step: Step, t: float, t_next: float) -> Status:
         """One step from t to t_next."""
@@ -131,7 +132,7 @@ class SparseRun(StepRun):
             self.refused = np.flatnonzero(active)
             return status
         q = self.q + step.h * (theta * v + (1.0 - theta) * self.v)
-        happened = self.log(t_next, e.G @ v - s_t)
+        happened = self.log(t_next, e.G_rows.times(v) - s_t)
         self.keep_times(step.h, t, t_next, q, v)
         self.q, self.v, self.F, self.t = q, v, F_next, t_next
         self.g, self.u = self.gaps(t_next, q, v)
@@ -148,7 +149,7 @@ class SparseRun(StepRun):
         active = gap <= self.slack
         in_doubt = np.flatnonzero((self.closed > 0) & ~active)
         if len(in_doubt):
-            size = step.saddle.abs_G[in_doubt] @ np.abs(self.q)
+            size = self.equations.G_rows.sizes(self.q)[in_doubt]
             active[in_doubt] = gap[in_doubt] <= (RESTING + RESOLUTION * self.taken) * size
         return active
 
@@ -156,37 +157,44 @@ class SparseRun(StepRun):
         self, step: Any, r: Array, active: Any, s_t: Array, t: float, t_next: float
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
-        e, v, u, push, p = self.equations, self.v, self.u, r, np.zeros(len(s_t))
-        blows = Blows(active, self.slow(step, r, active, s_t))
+        e, v, u, p = self.equations, self.v, self.u, np.zeros(len(s_t))
+        push, free = r, step.without_contact(r)
+        blows = Blows(active, self.slow(step, free, active, s_t))
         while blows.follows(u):
-            point = self.contact(step, push, blows, v, s_t, blows.rebound(u, e.restitution))
+            point = self.contact(step, push, free, blows, v, s_t, blows.rebound(u, e.restitution))
             if not point.solved:
                 return self.v, Status.LCP_FAILED
             v, p = v + point.x, p + np.maximum(point.z, 0.0)
-            u, push = e.G @ v - s_t, np.zeros(len(v))
+            u, push = e.G_rows.times(v) - s_t, np.zeros(len(v))
+            free = push
         self.p, self.active = p, active
         self.impulse += p
         return step.at_rest(v, r, p), Status.DONE
 
-    def slow(self, step: Step, r: Array, active: Any, s_t: Array) -> float:
-        """Speed beyond which contacts strike or separate, by `Blows`; -1 where they do not do both."""
+    def slow(self, step: Step, free: Array, active: Any, s_t: Array) -> float:
+        """Speed beyond which contacts strike or separate, by `Blows`; -1 where they do not do both.
+
+        free : change of the velocity without contact
+        """
         if not opens_and_closes(self.u[active], 0.0):
             return -1.0
-        e, v_free = self.equations, self.v + step.without_contact(r)
-        speeds = forced(step, self.u, e.G @ v_free - s_t, self.v, v_free, self.q)
+        e, v_free = self.equations, self.v + free
+        speeds = forced(step, self.u, e.G_rows.times(v_free) - s_t, self.v, v_free, self.q)
         most = float(np.max(speeds[active]))
         return most if opens_and_closes(self.u[active], most) else -1.0
 
-    def contact(self, step: Step, r: Array, blows: Blows, v: Array, s_t: Array, rebound: Array) -> Point:
+    def contact(
+        self, step: Step, r: Array, free: Array, blows: Blows, v: Array, s_t: Array, rebound: Array
+    ) -> Point:
         """Change of the velocity v and impulses: those of the step before are tried first, in its first blow."""
         e, saddle = self.equations, step.saddle
-        active, size = blows.chosen, saddle.abs_G @ np.abs(v) + np.abs(s_t) + np.abs(rebound)
+        active, size = blows.chosen, e.G_rows.sizes(v) + np.abs(s_t) + np.abs(rebound)
         self.problems += bool(active.any())
-        c, likely, guess = e.G @ v - s_t + rebound, (self.p > 0.0) | ~self.active, self.p
+        c, likely, guess = e.G_rows.times(v) - s_t + rebound, (self.p > 0.0) | ~self.active, self.p
         if blows.taken > 1:
             size = np.maximum(size, LEFT_OVER * np.max(size))
             likely, guess = likely | (c < 0.0), np.zeros(len(c))
-        return saddle.solve(Problem(r, c, size, active), likely, guess)
+        return saddle.solve(Problem(r, c, size, active, free), likely, guess)
 
     def log(self, t: float, u: Array) -> bool:
         """Note impacts, the beginning of lasting contact, and its end; whether there was any."""

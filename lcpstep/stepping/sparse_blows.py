@@ -23,8 +23,8 @@ def opens_and_closes(u: Array, slow: float) -> bool:
 
 def forced(step: Any, u: Array, rate: Array, v: Array, v_free: Array, q: Array) -> Array:
     """How far the forces of a step move each gap velocity from u to `rate`, its rounding, and what moves nothing."""
-    abs_G, speed = step.saddle.abs_G, max(np.max(np.abs(v)), np.max(np.abs(v_free)))
-    return np.abs(rate - u) + ROUNDING * step.steepest * speed + RESOLUTION / step.h * (abs_G @ np.abs(q))
+    speed, unmoved = max(np.max(np.abs(v)), np.max(np.abs(v_free))), step.saddle.G_rows.sizes(q)
+    return np.abs(rate - u) + ROUNDING * step.steepest * speed + RESOLUTION / step.h * unmoved
 
 
 class Blows:

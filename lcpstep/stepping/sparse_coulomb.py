@@ -27,8 +27,8 @@ import numpy as np
 
 from lcpstep.lcp.factor import Patterned, Singular, Solve
 from lcpstep.lcp.newton import PATIENCE, STRICT
-from lcpstep.lcp.saddle import NOTHING, REFINED, ROUNDING
-from lcpstep.lcp.status import TOLERANCE
+from lcpstep.lcp.saddle import REFINED
+from lcpstep.lcp.status import NOTHING, ROUNDING, TOLERANCE
 from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, GOLDEN, OPEN, SIGN, STICK, Path
 
 PROXIMAL = 1e-10  # d, relative to the mobility of a row

@@ -79,12 +79,13 @@ class CoupledRun(SparseRun):
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
         J_start, _ = self.joints.at(t, self.q, self.v)
         closed, active = active, self.bearing(step, active, J_start)
-        v_free = self.v + step.without_contact(r)
+        free = step.without_contact(r)
+        v_free = self.v + free
         rough, sliding = active & self.stiction.rough, self.T @ self.v + self.stiction.slip(t)
         if rough.any() and not self.stiction.measure(t, self.q, sliding):
             return self.v, Status.NOT_FINITE
         slip = self.stiction.slip(t_next)
-        slow = self.slow(step, r, active, s_t)
+        slow = self.slow(step, free, active, s_t)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
         v, speed = self.v, np.max(np.abs(v_free))
         for _ in range(MAX_ITERATIONS):
@@ -147,7 +148,7 @@ class CoupledRun(SparseRun):
             if not point.solved:
                 return point, Status.JOINTS_FAILED if point.joints > CONTRADICTION else Status.LCP_FAILED
             modes, p, v = point.modes, point.p, before.v + point.x
-            before = Before(v, self.equations.G @ v - rest[1], self.T @ v + rest[2])
+            before = Before(v, self.equations.G_rows.times(v) - rest[1], self.T @ v + rest[2])
             if whole is not None:
                 added = {
                     "x": whole.x + point.x,
@@ -173,8 +174,8 @@ class CoupledRun(SparseRun):
     ) -> tuple[Array, Array, bool]:
         """Rates of normals and tangents with what restitution adds, sizes of terms; is there an impact?"""
         e, v, u, rough = self.equations, before.v, before.u, active & self.stiction.rough
-        speeds, b = np.abs(v), [e.G @ v - s_t, self.T @ v + slip]
-        sizes = [step.saddle.abs_G @ speeds + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
+        speeds, b = np.abs(v), [e.G_rows.times(v) - s_t, self.T @ v + slip]
+        sizes = [e.G_rows.sizes(v) + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
         if rough.any():
             b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
         slow = np.abs(b[0] - u) + ROUNDING * step.steepest * np.max(np.abs(self.v))

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Harmonic, Joints, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.function import Function
-from lcpstep.lcp.factor import Solve, factoriser
 from lcpstep.lcp.saddle import Saddle
+from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.model import c_functions
 
 Array = NDArray[np.float64]
@@ -34,6 +34,7 @@ class Equations:
         G: Any = np.zeros((0, n_q)) if contacts is None else contacts.G
         self.G = csr_array(G)
         self.G.sum_duplicates()
+        self.G_rows, self.K_rows = SparseRows(self.G), SparseRows(self.K)
         self.offset = np.zeros(0) if contacts is None else np.array(contacts.offset)
         self.restitution = np.zeros(0) if contacts is None else np.array(contacts.restitution)
         self.p = np.array(scene.p)
@@ -132,32 +133,26 @@ class Step:
         e, self.h, self.theta = equations, h, theta
         A = e.M + h * theta * e.C + (h * theta) ** 2 * e.K
         self.saddle = Saddle(A, e.G)
-        self.B = h * e.C + h * h * theta * e.K
+        self.B = SparseRows(h * e.C + h * h * theta * e.K)
         self.diagonal = A.diagonal()
 
     def free(self, e: Equations, q: Array, v: Array, F: Array, F_next: Array) -> Array:
         """Right-hand side r without contact."""
         average = self.theta * F_next + (1.0 - self.theta) * F
-        return self.h * (average - e.K @ q) - self.B @ v
+        return self.h * (average - e.K_rows.times(q)) - self.B.times(v)
 
     def without_contact(self, r: Array) -> Array:
         """Change of the velocity, A^-1 r."""
-        return self.A_solve(r)
-
-    @functools.cached_property
-    def A_solve(self) -> Solve:
-        """Solver for A alone; beside that of the saddle, which keeps its factors for the next contacts."""
-        A = self.saddle.A
-        return factoriser(A).factor(np.ones(A.shape[0], dtype=bool), np.zeros(A.shape[0]))
+        return np.asarray(self.saddle.free(r))
 
     @functools.cached_property
     def steepest(self) -> Array:
         """The largest entry of each row of G."""
-        abs_G = self.saddle.abs_G
+        abs_G = abs(self.saddle.G)
         return abs_G.max(axis=1).toarray().ravel() if self.saddle.m else np.zeros(0)
 
     def at_rest(self, v: Array, r: Array, p: Array) -> Array:
         """The velocities, zero where contact forces hold them there up to rounding."""
-        pressed = self.saddle.abs_G_T @ p
+        pressed = self.saddle.G_columns.sizes(p)
         size = (pressed + np.abs(r)) / np.abs(self.diagonal)
         return np.where((pressed > 0.0) & (np.abs(v) <= REST * size), 0.0, v)

@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from lcpstep import solve_lcp
+from lcpstep.lcp import saddle as compiled
 from lcpstep.lcp.saddle import Problem, Saddle
+from tests.uncompiled import kernels
 
 
 def solved(A, G, r, c, chosen=False):
@@ -88,3 +90,51 @@ def test_what_has_no_solution_is_refused():
     assert not solved(np.eye(1), [[1.0], [-1.0]], np.zeros(1), np.array([-1.0, -1.0])).solved
     assert not solved(np.eye(1), [[0.0]], np.zeros(1), np.array([-1.0])).solved
     assert not solved(np.zeros((2, 2)), np.eye(2), -np.ones(2), np.zeros(2)).solved
+    assert not solved(np.eye(2), np.eye(2), np.zeros(2), np.array([np.nan, 1.0])).solved
+    assert not solved(np.eye(2), np.eye(2), np.array([np.nan, 0.0]), np.ones(2)).solved
+
+
+def chain(n):
+    """Rows of a floor and of the gaps between n bodies."""
+    return sparse.diags_array([np.ones(n), -np.ones(n - 1)], offsets=[0, -1]).tocsr()
+
+
+@pytest.mark.parametrize("springs", [0.0, 1.0])
+def test_what_nothing_strikes_is_left_out_and_the_answer_is_that_of_the_whole(springs):
+    n, rng = 400, np.random.default_rng(2)
+    G = chain(n)
+    A = (sparse.diags_array(rng.uniform(0.5, 2.0, n)) + springs * (G.T @ G)).tocsr()
+    saddle, c = Saddle(A, G), rng.uniform(0.1, 1.0, n)
+    c[[100, 103, 300]] = -1.0
+    rows = np.ones(n, dtype=bool)
+    rows[[90, 110, 320]] = False  # these hold nothing together
+    c[[90, 320]] = -1.0  # nor do they count
+    point = saddle.solve(Problem(np.zeros(n), c, np.abs(c), rows), c < 0.0, np.zeros(n))
+    assert point.solved
+    reached = np.flatnonzero(rows) if springs else np.r_[91:110, 111:320]
+    np.testing.assert_array_equal(np.sort(saddle.rows), reached)
+    z = np.zeros(n)
+    z[rows] = solve_lcp(
+        (G @ sparse.linalg.spsolve(A.tocsc(), G.T.tocsc())).toarray()[np.ix_(rows, rows)], c[rows]
+    ).z
+    np.testing.assert_allclose(point.z, z, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(A @ point.x, G.T @ z, rtol=0, atol=1e-12)
+    nothing = saddle.solve(Problem(np.zeros(n), np.abs(c), np.abs(c), rows), rows, np.zeros(n))
+    assert (len(saddle.rows), nothing.x.any(), nothing.z.any(), nothing.residual) == (0, False, False, 0.0)
+
+
+@pytest.mark.parametrize("springs", [0.0, 1.0])
+def test_kernels_give_the_same_bits_uncompiled(springs, monkeypatch):
+    n, rng = 40, np.random.default_rng(3)
+    G = chain(n)
+    A, r, c = (sparse.eye_array(n) + springs * (G.T @ G)).tocsr(), rng.normal(size=n), rng.normal(size=n)
+    answers = [solved(A, G, r, c, True)]
+    plain = kernels("lcpstep.lcp")
+    monkeypatch.setattr(compiled, "Part", plain.part.Part)
+    monkeypatch.setattr(compiled, "Attempt", plain.attempt.Attempt)
+    monkeypatch.setattr(compiled, "SparseRows", plain.sparse_rows.SparseRows)
+    answers.append(solved(A, G, r, c, True))
+    assert answers[0].z.any()
+    np.testing.assert_array_equal(answers[0].x, answers[1].x)
+    np.testing.assert_array_equal(answers[0].z, answers[1].z)
+    assert answers[0].residual == answers[1].residual

@@ -6,6 +6,7 @@ from scipy import sparse
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, energy, simulate
+from lcpstep.lcp.saddle import Problem
 from lcpstep.stepping.sparse_equations import Equations, Step
 
 MASSES, RESTITUTION, SPEED, NEAR = np.array([0.3, 2.0, 1.0, 5.0]), np.array([0.8, 0.6, 0.7]), 1.5, 1e-8
@@ -97,7 +98,11 @@ def test_a_pile_of_all_masses_comes_to_rest_where_it_lies():
 
 def test_asking_a_sparse_step_whether_blows_follow_keeps_the_factors_of_its_contacts():
     step = Step(Equations(beads("sparse")), 1e-2, 0.5)
-    chosen, d = np.arange(len(RESTITUTION)) > 0, step.saddle.proximal[0]
-    solver = step.saddle.factor(chosen, d)
+    n, rates = len(RESTITUTION), -np.ones(len(RESTITUTION))
+    problem, none = Problem(np.zeros(n + 1), rates, np.ones(n), np.ones(n, dtype=bool)), np.zeros(n)
+    first = step.saddle.solve(problem, rates < 0.0, none)
+    factorised = step.saddle.systems
     np.testing.assert_allclose(step.without_contact(MASSES), 1.0, rtol=0, atol=1e-15)
-    assert step.saddle.factor(chosen, d) is solver
+    again = step.saddle.solve(problem, first.z > 0.0, none)
+    assert step.saddle.systems == factorised > 0
+    np.testing.assert_array_equal(first.z, again.z)
