@@ -96,6 +96,19 @@ def test_a_pile_of_all_masses_comes_to_rest_where_it_lies():
     assert run.counts.lcp_calls < 20 * run.counts.steps
 
 
+@pytest.mark.parametrize(("gap", "stiffness", "seed"), [(1e-3, 30.0, 1), (1e-3, 300.0, 0), (3e-4, 300.0, 2)])
+def test_what_falls_onto_a_pile_at_rest_is_struck_beside_the_rounding_of_its_rates(gap, stiffness, seed):
+    n, h = 14, 1e-4
+    G, v0 = np.eye(n) - np.eye(n, k=-1), 0.2 * np.random.default_rng(seed).normal(size=n)
+    system = LinearSystem(np.eye(n), K=stiffness * (G[1:].T @ G[1:]), force=np.full(n, -9.81))
+    scene = Scene(system, gap * np.arange(1, n + 1), v0, (0.0, 0.06), LinearContacts(G, restitution=0.4))
+    run = simulate(scene, Moreau(h), keep=20)
+    assert run.status.name == "DONE"
+    truth = simulate(scene, EventDriven(), keep=run.t)
+    sunk = h * np.max(np.abs(v0))  # twice what a contact may be entered by
+    np.testing.assert_allclose(run.q, truth.q, rtol=0, atol=n * sunk)
+
+
 def test_asking_a_sparse_step_whether_blows_follow_keeps_the_factors_of_its_contacts():
     step = Step(Equations(beads("sparse")), 1e-2, 0.5)
     n, rates = len(RESTITUTION), -np.ones(len(RESTITUTION))

@@ -14,6 +14,7 @@ cdef Py_ssize_t impulses(
 cdef bint pose(Model m, Plan plan, State s, Rows c, Py_ssize_t n_a, double t_next, bint rebounds) noexcept nogil
 cdef bint leave_out_what_bears_nothing(Rows c, Py_ssize_t n_a) noexcept nogil
 cdef bint loads_nothing(State s, Rows c, Py_ssize_t n_a) noexcept nogil
+cdef void forget_tiny(double* rate, Py_ssize_t n) noexcept nogil
 cdef double size_of_rate(Rows c, double* v, Py_ssize_t i, Py_ssize_t n_q) noexcept nogil
 cdef void without_joints(bint linear, Plan plan, State s, Rows c, Py_ssize_t n_a) noexcept nogil
 @cython.locals(impact=bint)

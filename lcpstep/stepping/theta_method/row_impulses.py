@@ -47,9 +47,11 @@ def impulses(
             return NEED_LCP
         s.problems += 1
         if not solved and not solve(m, s, c, n_a, c.n_f, impact):
-            impact = pose(m, plan, s, c, n_a, t_next, False)
+            forget_tiny(c.problem.rate, n_a + c.n_f)
             if not solve(m, s, c, n_a, c.n_f, impact):
-                return LCP_FAILED
+                impact = pose(m, plan, s, c, n_a, t_next, False)
+                if not solve(m, s, c, n_a, c.n_f, impact):
+                    return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + c.n_f, n_k, c.p, c.n)
@@ -194,6 +196,14 @@ def round_off(c: Rows, v: Doubles, n_k: int, n_q: int) -> None:
     for k in range(n_k):
         if not abs(c.problem.rate[k]) > NO_APPROACH * size_of_rate(c, v, c.problem.ids[k], n_q):
             c.problem.rate[k] = 0.0
+
+
+def forget_tiny(rate: Doubles, n: int) -> None:
+    """Rates of what lies at rest, next to those of a blow, are zero: no solver finds impulses for both."""
+    least = ROUNDING * largest(rate, 0.0, n)
+    for k in range(n):
+        if abs(rate[k]) <= least:
+            rate[k] = 0.0
 
 
 def size_of_rate(c: Rows, v: Doubles, i: int, n_q: int) -> float:
