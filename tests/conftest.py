@@ -39,9 +39,10 @@ def pytest_collection_finish(session):
 @pytest.fixture
 def sparse_steps(monkeypatch):
     """Sparse scenes take sparse steps however small they are."""
-    from lcpstep.stepping import sparse
+    from lcpstep.stepping import sparse, sparse_coupled
 
     monkeypatch.setattr(sparse, "FEW", 0)
+    monkeypatch.setattr(sparse_coupled, "FEW", 0)
 
 
 @pytest.fixture

@@ -47,8 +47,8 @@ class Moreau:
     A contact is active in a step where g + (h/2) u <= 0 at its start. One that separates has no part in the blow of
     another; what a blow makes approach again is struck next, in the same step (`theta_method.blows`). Contacts that
     approach in one step strike at once, whichever would close first. Order one in the presence of impacts, whatever
-    theta: an impact is moved to the end of its step. Linear scenes with sparse matrices of more than 200
-    coordinates or contacts run without a dense one, by a solver of their own (`lcpstep.lcp.saddle`).
+    theta: an impact is moved to the end of its step. Linear scenes with sparse matrices of more than 100 coordinates
+    or contacts (200 with joints or friction) run without a dense one, by their own solver (`lcpstep.lcp.saddle`).
     """
 
     h: float = 1e-4
@@ -98,21 +98,22 @@ class Moreau:
         from lcpstep.model import LARGEST_DENSE
         from lcpstep.stepping import sparse, sparse_coupled
 
-        unknown = ""
+        unknown, beyond = "", self.beyond_contacts(scene)
         if self.tolerance is not None:
             unknown = "sparse-tolerance"
         elif self.lcp not in sparse.SOLVERS:
             unknown = "sparse-solver"
         elif self.projected:
             unknown = "sparse-projected"
-        elif self.beyond_contacts(scene):
+        elif beyond:
             unknown = sparse_coupled.unknown(scene)
         if unknown and scene.n_q > LARGEST_DENSE:
             raise refused(unknown, scene)
-        few = self.lcp == "lemke" and max(scene.n_q, scene.n_c) <= sparse.FEW
+        most = sparse_coupled.FEW if beyond else sparse.FEW
+        few = self.lcp == "lemke" and max(scene.n_q, scene.n_c) <= most
         if unknown or few:
             return None
-        return sparse_coupled.CoupledRun if self.beyond_contacts(scene) else sparse.SparseRun
+        return sparse_coupled.CoupledRun if beyond else sparse.SparseRun
 
 
 def is_sparse(scene: Scene) -> bool:

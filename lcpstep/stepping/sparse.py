@@ -40,7 +40,7 @@ Array = NDArray[np.float64]
 LEFT_OVER = 1e-4  # of the largest rate in a step: what its first blows have left has the digits of that
 BUFFER = 1 << 20  # numbers in the buffer of kept states
 LOOKS = 50  # steps between two reports of progress
-FEW = 200  # coordinates and contacts up to which dense steps are as fast or, being compiled, faster, and know more
+FEW = 100  # coordinates and contacts up to which dense steps are faster, being compiled, and know more
 SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may ask for its own solver
 
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
+FEW = 200  # as of `sparse`
 CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next two: `row_impulses`
 CANCELLED = 0.1
 NO_APPROACH = 1e-11
