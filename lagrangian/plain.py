@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 JITCLASS = "numba.experimental.jitclass"
+TYPED = "numba.typed."
 BOXES = "numba.experimental.jitclass.boxing"  # module of the objects of compiled classes
 LOCK = threading.RLock()  # what is collected may be so within
 
@@ -94,7 +95,7 @@ class Replaced:
     Parameters
     ----------
     module, name : of the class, which is looked at only where it has been imported
-    instead : f(x, arguments, keywords) in the place of x.method(*arguments, **keywords)
+    instead : f(usual, x, arguments, keywords) in the place of usual(x, *arguments, **keywords), which is the method
     method : its name
     """
 
@@ -128,7 +129,7 @@ class Replaced:
         """In the place of the class's own, which serves all but callbacks."""
 
         def method(x: Any, *given: Any, **named: Any) -> Any:
-            return self.instead(x, given, named) if LOCAL.depth else usual(x, *given, **named)
+            return self.instead(usual, x, given, named) if LOCAL.depth else usual(x, *given, **named)
 
         return method
 
@@ -147,12 +148,14 @@ def _boxed(cls: type) -> Replaced:
     return BOXED[cls]
 
 
-def _by_python(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    """A function of `numba.njit`."""
+def _by_python(usual: Callable[..., Any], f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
+    """A function of `numba.njit`; typed lists and dictionaries look at indices themselves, and have no Python."""
+    if f.py_func.__module__.startswith(TYPED):
+        return usual(f, *given, **named)
     return f.py_func(*given, **named)
 
 
-def _one_by_one(f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
+def _one_by_one(_: Callable[..., Any], f: Any, given: tuple[Any, ...], named: dict[str, Any]) -> Any:
     """A function of `numba.vectorize`, which takes numbers and arrays, and maybe one to fill after these."""
     inside = f._dispatcher.py_func
     takes = inside.__code__.co_argcount
@@ -177,7 +180,7 @@ def name_of(x: Any) -> str:
 def _refused(maker: str) -> Callable[..., Any]:
     """In the place of what cannot be replaced."""
 
-    def refuse(x: Any, *_: Any) -> Any:
+    def refuse(_: Callable[..., Any], x: Any, *__: Any) -> Any:
         raise Unchecked(name_of(x), maker)
 
     return refuse

@@ -29,6 +29,7 @@ from lagrangian import (
     System,
 )
 from lagrangian.checks import ReadOnly
+from lagrangian.parameters import Values
 from lagrangian.pickling import Pickled
 from lagrangian.sparse import is_sparse
 from lcpstep import functions
@@ -126,7 +127,8 @@ class Describer:
             raise LcpStepError(f"{place}: arrays of {x.dtype} cannot be saved")
         if x.size:
             self.arrays[place] = np.ascontiguousarray(x)
-        return {"array": place, "dtype": x.dtype.str, "shape": list(x.shape)}
+        mark = {"parameters": True} if isinstance(x, Values) else {}
+        return {"array": place, "dtype": x.dtype.str, "shape": list(x.shape)} | mark
 
 
 class Builder:
@@ -183,8 +185,10 @@ class Builder:
             return np.array(tree["texts"], dtype=tree["dtype"])[self._array(tree["codes"])]
         dtype, shape = np.dtype(tree["dtype"]), tuple(tree["shape"])
         if 0 in shape:
-            return np.empty(shape, dtype)
-        return np.ascontiguousarray(self.arrays[tree["array"]].astype(dtype, copy=False).reshape(shape))
+            x = np.empty(shape, dtype)
+        else:
+            x = np.ascontiguousarray(self.arrays[tree["array"]].astype(dtype, copy=False).reshape(shape))
+        return x.view(Values) if tree.get("parameters") else x
 
 
 SPARSE = ("data", "indices", "indptr")

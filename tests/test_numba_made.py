@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+from numba import typed
 
 from lagrangian.plain import REPLACED, InPython, python
 from lcpstep import Moreau, SimulationError, simulate
@@ -40,6 +41,20 @@ def test_what_cannot_be_checked_is_refused_by_name(name):
     force, said = REFUSED[name]
     with pytest.raises((ValueError, SimulationError), match=rf"^system\.force: .*{said}"):
         simulate(falling(force), Moreau(1e-2))
+
+
+@pytest.mark.slow
+def test_a_typed_list_is_read_and_its_indices_are_checked():
+    heavy = typed.List([8.0])
+
+    def from_list(t, q, v, p, out):
+        out[0] = -heavy[0 if t < 0.3 else 10**7]
+
+    assert simulate(falling(from_list, t_end=0.25), Moreau(1e-2)).q[-1, 0] == pytest.approx(0.75, abs=1e-12)
+    with pytest.raises(
+        SimulationError, match=r"^system\.force: .*t = 0\.3.*IndexError: list index out of range"
+    ):
+        simulate(falling(from_list), Moreau(1e-2))
 
 
 def test_outside_of_callbacks_all_is_as_numba_has_made_it():

@@ -61,6 +61,20 @@ def test_a_loaded_run_is_equal_to_the_last_bit_and_runs_again(tmp_path):
         assert same(pickle.loads(pickle.dumps(back)), run)
 
 
+def test_a_loaded_scene_takes_new_parameters_as_it_did_before(tmp_path):
+    named = scenes.impact_oscillator(t_end=0.3)
+    for k, scene in enumerate((named, replace(named, p=np.array(named.p)))):
+        back = load(simulate(scene, EventDriven(1e-6, 1e-6)).save(tmp_path / f"{k}.nc")).scene
+        for old in (scene, back):
+            new = {**old.parameters, "omega": 3.0}
+            assert replace(old, parameters=new, p=None).p[1] == 3.0
+            if k == 0:  # p are the parameters', and others say nothing of where p comes from
+                with pytest.raises(ValueError, match="expected p=None"):
+                    replace(old, parameters=new)
+            else:
+                assert replace(old, parameters=new).p[1] == 2.0
+
+
 def test_the_motion_in_closed_form_comes_back_with_a_ready_scene(tmp_path):
     for scene in (
         scenes.elastic_ball(bounces=3),
