@@ -91,8 +91,15 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     forces = force_noise(s)
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
+        s.lands[c] = 0.0
         if s.mode[c] == OPEN:
-            s.band[k] = max(rounding_of_gap(s, c) + no_gap(s, i), -2.0 * s.value[k])  # deeper than it is now
+            u, alpha = (
+                product(s.R, s.v, i, s.n_q) + s.rate[i],
+                product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i],
+            )
+            noise = rounding_of_gap(s, c) + no_gap(s, c, u, alpha)
+            s.band[k] = max(noise, -2.0 * s.value[k])  # deeper than it is now
+            s.lands[c] = low_flight(u, alpha, s.band[k])
         else:
             none = NOISE * speed_tolerance(s, i) / s.W[i * s.n_r + i]
             s.band[k] = forces + none
@@ -105,11 +112,19 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     return True
 
 
-def no_gap(s: Rubbing, i: int) -> float:
-    """The gap of row i that is none where all its terms vanish: little beside a hop that begins."""
-    least, u = NOISE * gap_tolerance(s, i - s.n_j), product(s.R, s.v, i, s.n_q) + s.rate[i]
-    alpha = product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
+def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
+    """The gap of contact c that is none where all its terms vanish: little beside a hop that begins."""
+    least = NOISE * gap_tolerance(s, c)
     return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
+
+
+def low_flight(u: float, alpha: float, band: float) -> float:
+    """How long a hop takes, from its speed and acceleration, that does not rise out of the band of its gap; else 0.
+
+    Of so low a hop gaps tell but rounding: seen below its band, a body would land too fast, each time.
+    """
+    half = 0.5 * alpha
+    return 0.0 if u <= 0.0 or half >= 0.0 or u * u > -4.0 * half * band else -u / half
 
 
 def first_event(s: Rubbing, h: float) -> int:
@@ -134,6 +149,8 @@ def first_event(s: Rubbing, h: float) -> int:
             place = first_fall(s, g)
             if place != NONE and a + (b - a) * place < s.found:
                 s.guard, s.found, s.risen = g, a + (b - a) * place, rises(s, g, place)
+                if g % GUARDS == 0 and not s.risen and s.lands[g // GUARDS] > 0.0:
+                    s.found = min(s.found, s.lands[g // GUARDS] / h)
                 _, slope, _ = taylor(s.scan.c, place, s.scan.half)
                 s.slope = slope * parts / h
         if not fine:  # the same place again, more finely
@@ -144,6 +161,8 @@ def first_event(s: Rubbing, h: float) -> int:
             return s.guard
         arm(s)
         part += 1
+    for c in range(s.n_c):
+        s.lands[c] = max(s.lands[c] - h, 0.0)
     return -1
 
 

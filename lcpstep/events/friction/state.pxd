@@ -31,7 +31,7 @@ cdef class Rubbing(RungeKutta):
     cdef Doubles rate, bias, gap, velocity, x, change, multiplier, impulse, account, instant, paces
     cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
-    cdef Doubles owed
+    cdef Doubles owed, lands
     cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, tried
     cdef Doubles value, band, samples
     cdef Indices armed

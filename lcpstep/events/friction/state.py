@@ -66,6 +66,7 @@ class Rubbing(RungeKutta):
     counted, total : (n_r,)      impulses of this step that have been counted; all of it
     value, band : (3 n_c,)       guards, each acts where it falls through zero; rounding of them
     armed : (3 n_c,)             whether each has been above its band since the modes began
+    lands : (n_c,)               when an open contact lands whose hop stays within the band of its gap; 0 where none
     risen                        the guard found has been above its band before it falls through zero
     jams                         how often it did;  rounds    problems of impacts at this instant
     problem                      the complementarity problem at hand, of an impact or of forces
@@ -144,7 +145,7 @@ class Rubbing(RungeKutta):
         self.P = after(self.bent, r) if n_j > 0 else self.R
         self.MP = after(self.bent, r + r * n) if n_j > 0 else self.MR
         self.effects = after(self.bent, r + 2 * r * n)
-        self.per_contact = np.zeros(9 * n_c)
+        self.per_contact = np.zeros(10 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking
         self.tangential = doubles(self.given)
@@ -155,6 +156,7 @@ class Rubbing(RungeKutta):
         self.before = after(self.direction, 5 * n_c)
         self.owed = after(self.direction, 6 * n_c)
         self.slip = after(self.direction, 8 * n_c)
+        self.lands = after(self.direction, 9 * n_c)
         self.marks = np.zeros(10 * n_c, dtype=np.intp)
         self.mode = indices(self.marks)
         self.was_mode = indices_after(self.mode, n_c)

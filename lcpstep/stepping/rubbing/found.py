@@ -18,7 +18,7 @@ from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import renew_rates
-    from lcpstep.events.friction.guards import first_fall, read
+    from lcpstep.events.friction.guards import first_fall, low_flight, read
     from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
@@ -204,14 +204,12 @@ def elevate(s: Strides, least: int) -> None:
 def low_hop(s: Strides, g: int, h: float) -> float:
     """When the gap of guard g, which begins within its band, comes down again if it does not rise out of it; else 0.
 
-    Of so low a hop gaps tell but rounding: steps would come back to its beginning, or bodies land too fast.
+    Steps would come back to its beginning.
     """
-    c, u = g // GUARDS, s.begin_slope[g]
-    if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1 or u <= 0.0:
+    c = g // GUARDS
+    if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1:
         return 0.0
-    half = 0.5 * s.begin_bend[c]
-    rises = half >= 0.0 or u * u > -4.0 * half * s.band[g]
-    return 0.0 if rises else min(-u / half, h)
+    return min(low_flight(s.begin_slope[g], s.begin_bend[c], s.band[g]), h)
 
 
 def locate(s: Strides, g: int, h: float) -> float:
