@@ -90,3 +90,38 @@ def test_forces_of_the_others_do_not_pull():
         runs = [simulate(scene, method) for method in (EventDriven(), Located(0.1, order=4))]
         assert np.min(runs[0].impulse) >= -1e-12
         assert np.max(np.abs(runs[0].q[-1] - runs[1].q[-1])) < 1e-9
+
+
+@pytest.mark.parametrize("seed", [5, 9, 12, 42, 54])
+def test_light_bodies_beside_heavy_ones_stay_at_rest_on_it(seed):
+    """`Located` of order 2 had ended with LCP_FAILED by speeds that are rounding of what joints take in a step."""
+    rng = np.random.default_rng(seed)
+    J = rng.normal(size=(2, 3))
+    G = np.vstack([0.3 * J[1], rng.normal(size=(2, 3))])
+    system = LinearSystem(np.diag([146.0, 1.0, 0.04]), force=rng.normal(size=3) * 10.0 ** rng.integers(3))
+    beside, alone = (
+        Scene(
+            system,
+            np.zeros(3),
+            np.zeros(3),
+            (0.0, 1.0),
+            LinearContacts(rows, restitution=0.5),
+            LinearJoints(J),
+        )
+        for rows in (G, G[1:])
+    )
+    run, truth = simulate(beside, Located(1e-2)), simulate(alone, EventDriven())
+    assert run.status is Status.DONE
+    np.testing.assert_allclose(run.q[-1], truth.q[-1], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(run.impulse.sum(axis=0)[0], 0.0, atol=1e-12)
+
+
+def test_a_wall_that_moves_against_the_joints_ends_the_run():
+    def pushed(t, q, v, p, out):
+        out[0] = np.array([1e-6 * t, 1e-6, 0.0])
+
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, 1.0]), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0),
+        LinearContacts([[1.0, 0.0]], motion=pushed), LinearJoints([[1.0, 0.0]]),
+    )  # fmt: skip
+    assert simulate(scene, Located(1e-2)).status is Status.LCP_FAILED
