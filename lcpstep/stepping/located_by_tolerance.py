@@ -28,6 +28,7 @@ if not cython.compiled:
         STOPPED,
         TOO_MANY_EVENTS,
     )
+    from lcpstep.stepping.pieces.times import driven_by
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -88,7 +89,8 @@ class Attempts(Parts):
     def depth(self) -> float:
         """How deep a gap may have been below zero unseen: what its quadratic is wrong by, if it comes that near.
 
-        By what the start lay within obstacles, which both runs take it out of, it is not.
+        By what the start lay within obstacles, which both runs take it out of, it is not; nor by what an obstacle
+        goes in the rounding of a time.
         """
         deepest, t = 0.0, self.half.time
         if not self.rough:
@@ -100,9 +102,10 @@ class Attempts(Parts):
             g, u, a = self.saved.gap[c], self.saved.rate[c], self.one.half[c]
             begins = g if g != 0.0 else self.w.gap_try[c]
             lifted = sunk * largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
+            lifted += driven_by(self.w, c, self.now())
             error = max(0.0, abs(begins + t * (u + t * a) - self.half.gap[c]) - lifted)
             lowest = min(min(g, self.one.gap[c]), self.half.gap[c])
-            if a > 0.0 > u:
+            if a > 0.0 > u > -4.0 * a * t:  # it is lowest within the step
                 lowest = min(lowest, g - 0.25 * u * u / a)
             if lowest < NEAR * error:
                 deepest = max(deepest, error)

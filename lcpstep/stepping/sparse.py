@@ -30,7 +30,7 @@ from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, largest
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, UNTOLD, largest
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -150,7 +150,8 @@ class SparseRun(StepRun):
         in_doubt = np.flatnonzero((self.closed > 0) & ~active)
         if len(in_doubt):
             size = self.equations.G_rows.sizes(self.q)[in_doubt]
-            active[in_doubt] = gap[in_doubt] <= (RESTING + RESOLUTION * self.taken) * size
+            late = UNTOLD * np.abs(self.t * (self.equations.G @ self.v - self.u)[in_doubt])
+            active[in_doubt] = gap[in_doubt] <= self.slack + (RESTING + RESOLUTION * self.taken) * size + late
         return active
 
     def velocity(

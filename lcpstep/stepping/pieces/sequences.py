@@ -132,9 +132,14 @@ def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool
 
 
 def unresolved(plan: Plan, w: Work, c: int, hop: float, t: float) -> bool:
-    """Whether a hop is no higher than its obstacle goes in what time t is rounded by.
+    """Whether a hop is no higher than obstacles, its own or one that the body rests on, carry it in a rounding of t.
 
     By events of closed contacts beside it, and by ends of steps, it is cut into pieces, each of which begins with a
     gap that is wrong by so much: far from time zero such hops may be thrown up again for ever.
     """
-    return not plan.exact and 0.25 * hop * hop * -w.half[c] <= driven_by(w, c, t)
+    wrong = driven_by(w, c, t)
+    for d in range(w.n_c):
+        if w.status[d] == CLOSED and w.gap_t[d] != 0.0:
+            share = abs(w.W[c * w.n_c + d])
+            wrong += share / w.W[d * w.n_c + d] * driven_by(w, d, t) if share > 0.0 else 0.0
+    return not plan.exact and 0.25 * hop * hop * -w.half[c] <= wrong

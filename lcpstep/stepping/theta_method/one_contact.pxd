@@ -5,7 +5,7 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t EVENTS, IMPACT, NO_EVENT, RELEASE, STICK
-cdef double RESOLUTION, RESTING
+cdef double RESOLUTION, RESTING, UNTOLD
 
 cdef void glide(
     Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint free

@@ -5,13 +5,13 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t FINISHED, JOINTS_FAILED, MAX_ITERATIONS, NEWTON_FAILED, NO_EVENT, NOT_FINITE, RELEASE
-cdef double RESOLUTION, RESTING
+cdef double RESOLUTION, RESTING, UNTOLD
 
 cdef Py_ssize_t take_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, bint external, bint solved
 ) noexcept nogil
-cdef void predict_active(Model m, Plan plan, State s, Rows c) noexcept nogil
-cdef double drifted(Model m, Plan plan, State s, Rows c, Py_ssize_t i) noexcept nogil
+cdef void predict_active(Model m, Plan plan, State s, Rows c, double t) noexcept nogil
+cdef double drifted(Model m, Plan plan, State s, Rows c, Py_ssize_t i, double t) noexcept nogil
 @cython.locals(entered=bint)
 cdef bint closes_again(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil
 @cython.locals(hold=bint)

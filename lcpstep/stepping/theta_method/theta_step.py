@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.stepping.steps import RESOLUTION, RESTING
+from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
 from lcpstep.stepping.theta_method.codes import (
     FINISHED,
     JOINTS_FAILED,
@@ -76,7 +76,7 @@ def take_step(
     `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
     """
     if not solved:
-        predict_active(m, plan, s, c)
+        predict_active(m, plan, s, c, t)
     code = step(m, plan, s, c, t, t_next, external, solved)
     while c.projected and code == FINISHED and closes_again(m, plan, s, c, t_next):
         code = step(m, plan, s, c, t, t_next, external, False)
@@ -88,21 +88,22 @@ def take_step(
     return project(m, plan, s, c, t_next) if c.projected else FINISHED
 
 
-def predict_active(m: Model, plan: Plan, s: State, c: Rows) -> None:
+def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     """Contacts with g + (h/2) u <= 0, up to rounding, are active: first of the rows that take part."""
     n_a = 0
     for i in range(c.n_c):
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
-        if gap <= plan.slack or (s.closed[i] > 0 and gap <= drifted(m, plan, s, c, i)):
+        if gap <= plan.slack or (s.closed[i] > 0 and gap <= plan.slack + drifted(m, plan, s, c, i, t)):
             c.problem.ids[n_a] = i
             n_a += 1
     s.active = n_a
 
 
-def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int) -> float:
+def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int, t: float) -> float:
     """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have gone far.
 
-    It rounds velocities too, to what the impulses of the last step, which cancel, have each made of them.
+    It rounds velocities too, to what the impulses of the last step, which cancel, have each made of them; and times,
+    so that an obstacle has moved for a little longer or shorter than the body on it.
     """
     size, n, G = 0.0, s.n_q, m.G if m.flat else c.H
     for j in range(n):
@@ -111,7 +112,7 @@ def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int) -> float:
             if c.p[k] > 0.0:
                 pushed += abs(plan.X[k * n + j]) * c.p[k]
         size += abs(G[i * n + j]) * (abs(s.q[j]) + plan.h * pushed)
-    return (RESTING + RESOLUTION * s.steps) * size
+    return (RESTING + RESOLUTION * s.steps) * size + UNTOLD * abs(t * c.H_t[i])
 
 
 def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool:
