@@ -1,4 +1,8 @@
-"""When a guard acts that is known to act within a step: its root, by steps that end there, as kernels."""
+"""When a guard acts that is known to act within a step: its root, by steps that end there, as kernels.
+
+A force that jumps at a time that is no corner of the scene takes its guard through zero without a root: halving finds
+the time, and the modes are decided by the force beyond it.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from lcpstep.kernels.dop853 import STAGES
 if not cython.compiled:
     from lcpstep.events.friction.guards import UNKNOWN, look, look_at_stage
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after, min
 
@@ -37,7 +41,36 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         tau = min(tau + change, longest)
     if not s.complete(t0, tau):
         return UNKNOWN
-    return creep(s, g, tau, change, longest) if abs(change) <= NEAR * tau else tau
+    if abs(change) <= NEAR * tau:
+        tau = creep(s, g, tau, change, longest)
+    return close_in(s, g, tau, min(h, longest)) if tau != UNKNOWN and jumps(s, g, tau) else tau
+
+
+def jumps(s: Rubbing, g: int, tau: float) -> bool:
+    """Whether guard g is far from zero where its slope says that it is zero: a force has jumped."""
+    return abs(s.value[g]) > s.band[g] and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
+
+
+def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
+    """The same by halving, down to the rounding of the time, just after the jump; where it has none, tau."""
+    t0, low, high = s.clock.t0, 0.0, longest
+    if s.value[g] < 0.0:
+        high = tau
+    else:
+        low = tau
+    falls = s.step(t0, high) and look_at_stage(s, STAGES, t0 + high, s.y_new) and s.value[g] < 0.0
+    while falls and high - low > 2.0 * RESOLUTION * (abs(t0) + high):
+        middle = 0.5 * (low + high)
+        if not (s.step(t0, middle) and look_at_stage(s, STAGES, t0 + middle, s.y_new)):
+            return UNKNOWN
+        if s.value[g] < 0.0:
+            high = middle
+        else:
+            low = middle
+    tau = high if falls else tau
+    if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new) and s.complete(t0, tau)):
+        return UNKNOWN
+    return tau
 
 
 def missing(s: Rubbing, g: int) -> float:

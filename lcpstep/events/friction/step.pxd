@@ -10,6 +10,8 @@ cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef void change_pace(Rubbing s) noexcept nogil
 cdef bint of_force(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t arrive(Rubbing s, Py_ssize_t g) noexcept nogil
+@cython.locals(some=bint)
+cdef bint changes(Rubbing s) noexcept nogil
 cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil
 cdef void meet(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -80,12 +80,25 @@ def arrive(s: Rubbing, g: int) -> int:
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     if of_force(s, g):
-        s.next = OBEY
+        s.next = OBEY if changes(s) else SETTLE
     elif s.mode[c] == OPEN:
         meet(s, c)
     else:
         stop(s, c)
     return DONE
+
+
+def changes(s: Rubbing) -> bool:
+    """Whether the modes that `look_ahead` has found are others than those at hand; else the state itself decides.
+
+    A force that jumps may do so later than its guard's polynomial has seen it.
+    """
+    some = False
+    for c in range(s.n_c):
+        some = some or s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
+    if not some:
+        find_standing(s)
+    return some
 
 
 def look_ahead(s: Rubbing, h: float) -> int:
