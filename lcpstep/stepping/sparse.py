@@ -150,7 +150,7 @@ class SparseRun(StepRun):
         in_doubt = np.flatnonzero((self.closed > 0) & ~active)
         if len(in_doubt):
             size = self.equations.G_rows.sizes(self.q)[in_doubt]
-            late = UNTOLD * np.abs(self.t * (self.equations.G @ self.v - self.u)[in_doubt])
+            late = UNTOLD * np.abs(self.t * (self.equations.G_rows.times(self.v) - self.u)[in_doubt])
             active[in_doubt] = gap[in_doubt] <= self.slack + (RESTING + RESOLUTION * self.taken) * size + late
         return active
 

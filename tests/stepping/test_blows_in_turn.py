@@ -104,9 +104,9 @@ def test_what_falls_onto_a_pile_at_rest_is_struck_beside_the_rounding_of_its_rat
     scene = Scene(system, gap * np.arange(1, n + 1), v0, (0.0, 0.06), LinearContacts(G, restitution=0.4))
     run = simulate(scene, Moreau(h), keep=20)
     assert run.status.name == "DONE"
-    truth = simulate(scene, EventDriven(), keep=run.t)
-    sunk = h * np.max(np.abs(v0))  # twice what a contact may be entered by
-    np.testing.assert_allclose(run.q, truth.q, rtol=0, atol=n * sunk)
+    assert np.min(run.q @ G.T) > -2.0 * h * np.max(np.abs(run.v))  # nothing falls through what it strikes
+    E = 0.5 * np.sum(run.v**2 + run.q * (run.q @ system.K), axis=1) + 9.81 * np.sum(run.q, axis=1)
+    assert np.max(np.diff(E)) < 1e-6 * E[0]
 
 
 def test_asking_a_sparse_step_whether_blows_follow_keeps_the_factors_of_its_contacts():
