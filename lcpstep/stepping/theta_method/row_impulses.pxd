@@ -27,6 +27,7 @@ cdef void round_off(Rows c, double* v, Py_ssize_t n_k, Py_ssize_t n_q) noexcept 
 cdef bint usable(double* W, Py_ssize_t* ids, Py_ssize_t n_k, Py_ssize_t n) noexcept nogil
 @cython.locals(found=bint)
 cdef bint strikes(State s, Rows c, Py_ssize_t n_a) noexcept nogil
+cdef double brought(Rows c, Py_ssize_t k) noexcept nogil
 cdef double forced(State s, Rows c, Py_ssize_t i, double rate, double size_v) noexcept nogil
 cdef bint apply(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
 cdef void apply_once(Plan plan, State s, Rows c, Py_ssize_t n_k) noexcept nogil
