@@ -1,8 +1,8 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
 
-cdef double DIFFERENCE, REACH, BENT, SMOOTH, LOST, TOGETHER, SAME_OUTCOME
-cdef Py_ssize_t SHORTENINGS, TURNS
+cdef double DIFFERENCE, REACH, BENT, SMOOTH, LOST
+cdef Py_ssize_t SHORTENINGS
 
 cdef void external_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
 cdef void total_force(Model m, double t, double* q, double* v, double* out) noexcept nogil
@@ -34,10 +34,3 @@ cdef void obstacle(Model m, double t, double* q, double* v) noexcept nogil
 cpdef bint varies(Model m) noexcept nogil
 cpdef bint moves(Model m) noexcept nogil
 cdef void carry_obstacles(Model m, double t, double* q, double* v) noexcept nogil
-cdef double gap_rounding(Model m, double* G, double* q, Py_ssize_t c, double path) noexcept nogil
-cdef bint order_matters(
-    double W_c, double W_d, double W_cd, double r_c, double r_d, double u_c, double u_d
-) noexcept nogil
-cdef (double, double) in_turn(
-    double W_c, double W_d, double W_cd, double r_c, double r_d, double u_c, double u_d
-) noexcept nogil

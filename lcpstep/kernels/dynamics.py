@@ -24,8 +24,6 @@ REACH = (
     2.125  # of these steps: what differences keep from the ends of a smooth interval, where rates may jump
 )
 BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
-TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
-SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
 
 
 def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
@@ -255,51 +253,3 @@ def carry_obstacles(m: Model, t: float, q: Doubles, v: Doubles) -> None:
             for j in range(m.n_q):
                 own += m.G[c * m.n_q + j] * m.frame_now[3 * j + k]
             m.motion_now[3 * c + k] = own
-
-
-def gap_rounding(m: Model, G: Doubles, q: Doubles, c: int, path: float) -> float:
-    """What rounding may leave of gap c where it is closed: of its terms, and of the way by which it has come.
-
-    Of contacts whose gaps are as small at one instant it is not known which came first; where that matters
-    (`order_matters`) they strike together. A moving obstacle's place must be known (`gaps`).
-    """
-    size = path
-    if m.flat:
-        size += abs(m.offset[c])
-        if moves(m):
-            size += abs(m.motion_now[3 * c])
-    for j in range(m.n_q):
-        size += abs(G[c * m.n_q + j] * q[j])
-    return TOGETHER * size
-
-
-def order_matters(
-    W_c: float, W_d: float, W_cd: float, r_c: float, r_d: float, u_c: float, u_d: float
-) -> bool:
-    """Whether the impacts of two contacts, taken in turn, leave other speeds where the other one is first.
-
-    It does not for elastic bodies of one mass that meet, which exchange their speeds; it does for most.
-    """
-    if W_cd == 0.0:
-        return False
-    c, d = in_turn(W_c, W_d, W_cd, r_c, r_d, u_c, u_d)
-    other_d, other_c = in_turn(W_d, W_c, W_cd, r_d, r_c, u_d, u_c)
-    return abs(c - other_c) + abs(d - other_d) > SAME_OUTCOME * (abs(u_c) + abs(u_d))
-
-
-def in_turn(
-    W_c: float, W_d: float, W_cd: float, r_c: float, r_d: float, u_c: float, u_d: float
-) -> tuple[float, float]:
-    """Speeds after the impacts of two contacts in turn, the first one's at first."""
-    slow = SAME_OUTCOME * (abs(u_c) + abs(u_d))
-    for _ in range(TURNS):
-        if u_c < -slow:
-            p = -(1.0 + r_c) * u_c / W_c
-            u_c, u_d = -r_c * u_c, u_d + W_cd * p
-        if not u_d < -slow:
-            break
-        p = -(1.0 + r_d) * u_d / W_d
-        u_d, u_c = -r_d * u_d, u_c + W_cd * p
-        if not u_c < -slow:
-            break
-    return u_c, u_d

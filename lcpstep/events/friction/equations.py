@@ -17,7 +17,8 @@ if not cython.compiled:
         size_of,
     )
     from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.dynamics import gap_rounding, gaps
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.together import gap_rounding
     from lcpstep.kernels.vectors import largest, product
     from lcpstep.pointers import Doubles, abs, after, max
 

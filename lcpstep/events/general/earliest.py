@@ -19,7 +19,8 @@ if not cython.compiled:
     from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import measure_biases, measure_rates
     from lcpstep.kernels.clock import NOISE, RESOLUTION
-    from lcpstep.kernels.dynamics import gap_rounding, gaps
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.together import gap_rounding
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs, max, min
 

@@ -24,10 +24,10 @@ if not cython.compiled:
     from lcpstep.events.general.parabolas import polish, synchronise
     from lcpstep.events.general.state import JUMP, Mechanism
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.dynamics import order_matters
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.together import order_matters
     from lcpstep.pointers import abs, max
 
 ROUNDS = 100_000  # problems of impacts at one instant

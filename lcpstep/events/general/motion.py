@@ -9,7 +9,8 @@ if not cython.compiled:
     from lcpstep.events.general.equations import gap_tolerance, measure_on, speed_tolerance
     from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import size_of
-    from lcpstep.kernels.dynamics import gap_rates, gap_rounding
+    from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.together import gap_rounding
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rounding, order_matters
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.together import gap_rounding, order_matters
     from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import Doubles, abs, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen

@@ -9,10 +9,11 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rounding, gaps, moves, obstacle
+    from lcpstep.kernels.dynamics import gaps, moves, obstacle
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.together import gap_rounding
     from lcpstep.kernels.vectors import copy, distance, product
     from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.pieces.codes import (
