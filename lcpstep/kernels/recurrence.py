@@ -15,6 +15,7 @@ if not cython.compiled:
 
 RETURNS = 2.0**-40  # relative deviation from proportion
 FOR_EVER = 1.0 - 2.0**-30  # of rho: nothing is lost
+GROWN = 2.0**-30  # of the speeds: by as much more they do not return, but where they have been measured anew
 CERTAIN = 2.0**-7  # of 1 - rho: what the speeds' rounding may leave of it, for the sum to be known
 
 
@@ -32,7 +33,7 @@ def proportion(pushed: Doubles, before: Doubles, now: Doubles, noise: Doubles, n
             if abs(before[c]) > most:
                 most = abs(before[c])
                 ratio = now[c] / before[c]
-    if not ratio > 0.0:
+    if not ratio > 0.0 or (ratio - 1.0) * most > GROWN * most + rounding:
         return 0.0
     for c in range(n):
         if pushed[c] > 0.0 and abs(now[c] - ratio * before[c]) > RETURNS * ratio * most + noise[c]:
