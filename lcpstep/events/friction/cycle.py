@@ -10,10 +10,10 @@ import cython
 from lcpstep.events.friction.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import apply, measure_velocities
-    from lcpstep.events.friction.held import hold_joints, hold_modes, stop_rows
-    from lcpstep.events.friction.on_joints import rubs
+    from lcpstep.events.friction.equations import apply, measure_velocities, rubs
+    from lcpstep.events.friction.held import hold_modes, stop_rows
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.rows.held import hold_joints
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import CERTAIN, FOR_EVER, left, proportion
     from lcpstep.kernels.tally import Tally
@@ -76,7 +76,7 @@ def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> 
     for k in range(pushed):
         apply(s, s.n_j + k, rest * s.turn_impulse[k])
     if not hold_modes(s):
-        hold_joints(s)
+        hold_joints(s.rows)
     stop_rows(s)
     measure_velocities(s, s.v)
     look_back(s)

@@ -4,7 +4,6 @@ from lcpstep.events.friction.state cimport Rubbing
 cdef Py_ssize_t LEANS, SLIDES, STICKS
 
 cdef bint measure_rows(Rubbing s, double t, double* y) noexcept nogil
-cdef void renew_rates(Rubbing s, double t, double* y) noexcept nogil
 @cython.locals(sticks=bint)
 cdef bint measure_friction(Rubbing s, double t, double* y) noexcept nogil
 cdef bint measure(Rubbing s, double t, double* y) noexcept nogil
@@ -18,3 +17,4 @@ cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil
 @cython.locals(own=bint)
 cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil
+cdef bint rubs(Rubbing s, Py_ssize_t c) noexcept nogil

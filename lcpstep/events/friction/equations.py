@@ -11,11 +11,12 @@ if not cython.compiled:
     from lcpstep.events.rows.equations import (
         free_motion,
         least_effect,
-        measure_biases,
-        measure_rates,
+        renew_biases,
+        renew_rates,
         respond,
         size_of,
     )
+    from lcpstep.events.rows.on_joints import can_bear
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.together import gap_rounding
@@ -28,19 +29,10 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
 
     False where a coefficient of friction is none.
     """
-    renew_rates(s, t, y)
-    if not s.measured or s.moving:
-        measure_biases(s.rows, t, y, after(y, s.n_q))
-    if not s.measured:
-        respond(s.rows)
-        s.measured = s.constant
+    renew_rates(s.rows, t, y, after(y, s.n_q))
+    renew_biases(s.rows, t, y, after(y, s.n_q))
+    respond(s.rows)
     return measure_friction(s, t, y)
-
-
-def renew_rates(s: Rubbing, t: float, y: Doubles) -> None:
-    """Rows and their rates, unless these are known and never change."""
-    if not s.measured or s.moving:
-        measure_rates(s.rows, t, y, after(y, s.n_q))
 
 
 def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -55,6 +47,11 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
         if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0
     return s.coefficients.measure(s.clock.inside(t), q, s.slip)
+
+
+def rubs(s: Rubbing, c: int) -> bool:
+    """Whether contact c may have friction: one whose normal the joints hold already bears nothing to rub with."""
+    return s.coefficients.rough[c] == 1 and can_bear(s.rows, c)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:

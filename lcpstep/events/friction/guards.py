@@ -19,15 +19,14 @@ if not cython.compiled:
         gap_tolerance,
         measure_friction,
         measure_gaps,
-        renew_rates,
         rounding_of_gap,
+        rubs,
         speed_tolerance,
     )
     from lcpstep.events.friction.held import right_hand_side
-    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
-    from lcpstep.events.rows.equations import size_of
+    from lcpstep.events.rows.equations import renew_rates, size_of
     from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import copy, largest, product
@@ -46,13 +45,13 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
     if not right_hand_side(s, t, y, s.dy):
         return False
     if s.rows.n_held == 0:
-        renew_rates(s, t, y)
+        renew_rates(s.rows, t, y, after(y, s.n_q))
     return read(s, t, y)
 
 
 def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
     """The same at a stage of the step at hand, where the forces are known."""
-    renew_rates(s, t, y)
+    renew_rates(s.rows, t, y, after(y, s.n_q))
     copy(s.multiplier, after(s.loads, stage * s.n_r), s.n_r)
     return measure_friction(s, t, y) and read(s, t, y)
 

@@ -1,25 +1,16 @@
 cimport cython
 from lcpstep.events.friction.state cimport Rubbing
 
-cdef Py_ssize_t LEANS, STICKS, SLIDES, REFINEMENTS
-cdef double DEPENDENT
+cdef Py_ssize_t LEANS, STICKS, SLIDES
 
 cdef double pull(Rubbing s, Py_ssize_t i) noexcept nogil
-cdef Py_ssize_t other(Rubbing s, Py_ssize_t i) noexcept nogil
-cdef double entry(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
-cdef Py_ssize_t first_between(Rubbing s, Py_ssize_t i, Py_ssize_t k) noexcept nogil
-cdef bint hold(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef bint hold_row(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef bint leans(Rubbing s, Py_ssize_t i) noexcept nogil
-cdef void hold_joints(Rubbing s) noexcept nogil
 cdef void accelerate_on_joints(Rubbing s) noexcept nogil
 cdef void accelerate_as_held(Rubbing s) noexcept nogil
 cdef bint hold_modes(Rubbing s) noexcept nogil
+cdef bint hold_modes_again(Rubbing s) noexcept nogil
 cdef void hold_leaning(Rubbing s) noexcept nogil
-cdef bint hold_again(Rubbing s) noexcept nogil
-cdef void solve_held(Rubbing s, double* x) noexcept nogil
-cdef void push(Rubbing s, Py_ssize_t i, double x, double* a) noexcept nogil
-cdef void constrain(Rubbing s, double* a, double* bias) noexcept nogil
-cdef bint nothing(double* x, Py_ssize_t n) noexcept nogil
 cdef bint right_hand_side(Rubbing s, double t, double* y, double* dy) noexcept nogil
 cdef void accelerate(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef void map_forces(Rubbing s) noexcept nogil

@@ -26,15 +26,16 @@ if not cython.compiled:
         measure,
         measure_velocities,
         rounding_of_gap,
+        rubs,
         speed_tolerance,
     )
-    from lcpstep.events.friction.held import constrain, hold_joints, hold_modes, stop_rows
+    from lcpstep.events.friction.held import hold_modes, stop_rows
     from lcpstep.events.friction.keep import put_on_account
-    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.parting import approaches, let_go, rejoin
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of
+    from lcpstep.events.rows.held import constrain, hold_joints
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
@@ -99,7 +100,7 @@ def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic:
         if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
             s.mode[c] = SLIDES
     s.coefficients.use(s.problem.mu)
-    hold_joints(s)
+    hold_joints(s.rows)
     n_a, n_f = list_unknowns(s)
     fill(s, n_a, n_f)
     if not find_impulses(s, n_a, n_f, plastic):
@@ -117,7 +118,7 @@ def strike_with(
     """
     for a in range(n_a + n_f):
         apply(s, row_of(s, a, n_a), s.problem.impulse[a])
-    hold_joints(s)
+    hold_joints(s.rows)
     stop_rows(s)
     measure_velocities(s, s.v)
     for a in range(n_a):
@@ -167,7 +168,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
         s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
     s.coefficients.use(s.problem.mu)
-    hold_joints(s)
+    hold_joints(s.rows)
     n_a, n_f = list_unknowns(s)
     fill(s, n_a, n_f)
     for a in range(n_a):
@@ -211,7 +212,7 @@ def still(s: Rubbing, i: int) -> float:
 def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     """Close a contact whose hops no longer matter; whether there was one. Modes must be obeyed, `v` measured."""
     copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
+    constrain(s.rows, s.a, s.bias)
     for c in range(s.n_c):
         i = s.n_j + c
         u, alpha = s.velocity[i], product(s.R, s.a, i, s.n_q) + s.bias[i]
@@ -261,7 +262,7 @@ def slides_on(s: Rubbing, i: int, slip: float) -> bool:
     if not hold_modes(s):
         return False
     copy(s.dv, s.v, s.n_q)
-    constrain(s, s.dv, s.rate)
+    constrain(s.rows, s.dv, s.rate)
     return (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
 
 

@@ -93,7 +93,7 @@ def progress(s: Rubbing, record: Record, tally: Tally) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
     t = s.clock.t0
     code = s.proceed(record, tally)
-    if code == DONE and s.n_kept < s.n_j and come_apart(s):
+    if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
         code = JOINTS_FAILED
     moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
     tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= moment else 0
@@ -149,7 +149,7 @@ def seek_modes(s: Rubbing, t: float) -> int:
     """New modes at the base state just measured, or a little later where it leaves them open; a status."""
     longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
     code = decide(s)
-    if s.n_kept < s.n_j and contradict(s):
+    if s.rows.n_kept < s.n_j and contradict(s):
         return JOINTS_FAILED
     if code == DONE and opens_any(s):
         code = reconsider(s, t, longest)

@@ -29,18 +29,18 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 
 if not cython.compiled:
     from lcpstep.events.friction.bracing import braced
-    from lcpstep.events.friction.equations import force_noise
+    from lcpstep.events.friction.equations import force_noise, rubs
     from lcpstep.events.friction.held import (
         accelerate_as_held,
         accelerate_on_joints,
-        constrain,
         hold_modes,
     )
-    from lcpstep.events.friction.on_joints import acceleration_on_joints, can_bear, rubs
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.events.rows.held import constrain
+    from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import motion_of
     from lcpstep.kernels.record import Record
@@ -69,7 +69,7 @@ def decide(s: Rubbing) -> int:
             return DONE
         fill(s, n_a, n_f)
         for a in range(n_a + n_f):
-            s.problem.rate[a] = acceleration_on_joints(s, row_of(s, a, n_a))
+            s.problem.rate[a] = acceleration_on_joints(s.rows, row_of(s, a, n_a), s.a)
         code = find_forces(s, n_a, n_f)
         if code != DONE:
             return code
@@ -111,7 +111,7 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
-        if s.free[c] == 0 and can_bear(s, c) and s.problem.mobility[a * m + a] <= 0.0:
+        if s.free[c] == 0 and can_bear(s.rows, c) and s.problem.mobility[a * m + a] <= 0.0:
             jams = a
     if jams >= 0:
         s.culprit = s.problem.ids[jams]
@@ -173,7 +173,7 @@ def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
     One whose normal the joints hold never has: nothing decides about it.
     """
-    if not can_bear(s, s.problem.ids[a]):
+    if not can_bear(s.rows, s.problem.ids[a]):
         return False
     push = s.problem.mobility[a * (n_a + n_f) + a] * s.problem.impulse[a]
     free = is_nothing(s, a, s.problem.rate[a], n_a, n_f)
@@ -248,7 +248,7 @@ def is_carried(s: Rubbing, i: int) -> bool:
     a, still = s.dv, s.shifted_rate
     copy(a, after(s.MR, i * s.n_q), s.n_q)
     clear(still, s.n_r)
-    constrain(s, a, still)
+    constrain(s.rows, a, still)
     return abs(product(s.R, a, i, s.n_q)) <= EDGE * s.W[i * s.n_r + i]
 
 

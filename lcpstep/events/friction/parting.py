@@ -13,9 +13,10 @@ from lcpstep.kernels.status import DONE
 
 if not cython.compiled:
     from lcpstep.events.friction.equations import measure
-    from lcpstep.events.friction.held import constrain, hold_modes
+    from lcpstep.events.friction.held import hold_modes
     from lcpstep.events.friction.modes import decide
     from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.rows.held import constrain
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs
 
@@ -24,7 +25,7 @@ def part_before(s: Rubbing) -> None:
     """Mark the contacts that have opened so shortly before an impact that their speed is still but rounding."""
     hold_modes(s)
     copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
+    constrain(s.rows, s.a, s.bias)
     for c in range(s.n_c):
         i = s.n_j + c
         rises = s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[i]) <= s.terms[c]

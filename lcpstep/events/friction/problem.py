@@ -1,4 +1,4 @@
-"""The complementarity problem of closed contacts with friction, on the joints (`on_joints`), as kernels.
+"""The complementarity problem of closed contacts with friction, on the joints (`rows.on_joints`), as kernels.
 
 The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
 contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.
@@ -11,7 +11,7 @@ import cython
 from lcpstep.events.friction.codes import OPEN
 
 if not cython.compiled:
-    from lcpstep.events.friction.on_joints import rubs
+    from lcpstep.events.friction.equations import rubs
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.kernels.clock import NOISE

@@ -20,15 +20,15 @@ cdef class Rubbing(RungeKutta):
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
     cdef Scan scan
-    cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_kept, n_nodes
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_r, n_nodes
     cdef public Py_ssize_t next, culprit, jams, rounds
     cdef readonly bint in_turn, yields
     cdef readonly double t_end, scan_length
     cdef Py_ssize_t guard, paced
     cdef double found, slope
-    cdef bint constant, moving, plain, measured, mapped, risen
-    cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S, L, P, MP, bent
-    cdef Doubles rate, bias, gap, velocity, x, change, multiplier, impulse, account, instant, paces
+    cdef bint constant, plain, mapped, risen
+    cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S
+    cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, account, instant, paces
     cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
     cdef Doubles owed, lands

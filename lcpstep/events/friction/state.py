@@ -35,13 +35,12 @@ class Rubbing(RungeKutta):
 
     rows, clock, model           the rows of joints, contacts and tangents, which are the clock as well; the system
     t_end, scan, scan_length     end of the span; the polynomials of guards; longest interval between looks at them
-    constant, moving, measured   M and the rows never change; flat obstacles move; constant rows are known
+    constant                     M, the rows and coefficients of friction never change
     plain                        no function of the user's is in it
     next                         what comes next: BEGIN, MOVE, JUMP, SETTLE or OBEY
     q, v : (n_q,)                state at the base time
     a : (n_q,)                   acceleration with constraints
-    a_free, force, R, MR, W, rate, bias   of `rows`, of which W is the Delassus matrix D
-    P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   the same, and `bias`, on the joints held, see `on_joints`
+    a_free, force, R, MR, W, rate, bias   of `rows`, of which W is the Delassus matrix D;  S, change   of `rows`
     gap, velocity : (n_r,)       of rows at the state last measured
     mu, mu_s : (n_c,)            coefficients of friction of what slides and of what sticks, from `coefficients`
     slip : (n_c,)                sliding velocities that these depend on
@@ -57,8 +56,6 @@ class Rubbing(RungeKutta):
     terms : (2 n_c,)             rounding of gap and sliding velocities, at the impacts of one instant
     owed : (2 n_c,)              impulses of normals and tangents that the end of chattering has taken on account
     paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
-    n_kept                       joints among the rows held, which come first
-    x : (n_r,), L : (n_r, n_r)   multipliers of the rows held, factors of their matrix
     effect : (n_q + n_r,)        `a`, and `multiplier` : (n_r,) by row, under forces and biases, where rows and masses
         never change;  effects : (n_q + n_r, n_q + n_r)   what each of these does alone;  mapped   whether it is known
     impulse : (n_r,)             contacts, tangents, joints, since the last kept state
@@ -95,43 +92,38 @@ class Rubbing(RungeKutta):
         nodes: Any,
         weights: Any,
     ) -> None:
-        contacts, joints, tangents = rows.model, rows.joints, rows.tangents
+        contacts = rows.model
         n, n_c, n_j, r = rows.n_q, rows.n_c, rows.n_j, rows.n_r
         RungeKutta.__init__(self, 2 * n, n, rows.rtol, rows.atol)
         self.rows, self.clock, self.model = rows, rows, contacts
         self.n_q, self.n_c, self.n_j, self.n_r = n, n_c, n_j, r
         self.t_end, self.scan_length, self.next = t_end, scan_length, BEGIN
-        self.constant = contacts.flat and tangents.flat and joints.flat and not contacts.mass.given
-        self.constant = self.constant and not coefficients.varies
-        self.moving = contacts.motion.given or joints.motion.given or tangents.motion.given
+        self.constant = rows.fixed and not coefficients.varies
         ours = contacts.linear and not (contacts.force.given or contacts.frame.given or contacts.moded)
-        self.plain = ours and self.constant and not self.moving
-        self.measured = self.mapped = False
+        self.plain = ours and self.constant and not rows.moving
+        self.mapped = False
         self.in_turn, self.yields, self.jams, self.rounds = in_turn, yields, 0, 0
         self.scan, self.problem = Scan(), ContactProblem(np.zeros(n_c), True, r, False)
         self.coefficients = coefficients
         self.coefficients.use(self.problem.mu)
-        self.n_kept, self.culprit, self.guard, self.found, self.slope = 0, -1, -1, -1.0, 0.0
+        self.culprit, self.guard, self.found, self.slope = -1, -1, -1.0, 0.0
         self.risen = False
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(8 * n + 2 * r * n + 2 * r * r + (13 + ALL) * r + 1 + (n + r + 1) * (n + r))
+        self.table = np.zeros(8 * n + (10 + ALL) * r + 1 + (n + r + 1) * (n + r))
         self.q, self.v = self.y, after(self.y, n)
         self.a_free, self.force = self.rows.a_free, self.rows.force
         self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D
         self.rate, self.bias, self.shifted_rate = self.rows.rate, self.rows.bias, self.rows.near
+        self.change, self.S = self.rows.change, self.rows.S
         self.a = doubles(self.table)
         self.dy = after(self.a, n)
         self.seen = after(self.dy, 2 * n)
         self.dv = after(self.seen, 2 * n)
-        self.S = after(self.dv, 2 * n) if n_j > 0 else self.W
-        self.L = after(self.dv, 2 * n + r * r)
-        self.gap = after(self.L, r * r)
+        self.gap = after(self.dv, 2 * n)
         self.velocity = after(self.gap, r)
-        self.x = after(self.velocity, r)
-        self.change = after(self.x, r)
-        self.impulse = after(self.change, r)
+        self.impulse = after(self.velocity, r)
         self.account = after(self.impulse, r)
         self.instant = after(self.account, r)
         self.paces, self.paced = after(self.instant, r), 0
@@ -141,10 +133,7 @@ class Rubbing(RungeKutta):
         self.doubt = after(self.loads, ALL * r)
         self.effect = after(self.doubt, r)
         self.multiplier = after(self.effect, n)
-        self.bent = after(self.multiplier, r)
-        self.P = after(self.bent, r) if n_j > 0 else self.R
-        self.MP = after(self.bent, r + r * n) if n_j > 0 else self.MR
-        self.effects = after(self.bent, r + 2 * r * n)
+        self.effects = after(self.multiplier, r)
         self.per_contact = np.zeros(10 * n_c)
         self.given = np.array(tangential, dtype=float)
         self.mu, self.mu_s = self.coefficients.sliding, self.coefficients.sticking

@@ -20,7 +20,8 @@ if not cython.compiled:
     from lcpstep.events.friction.moments import locate
     from lcpstep.events.friction.parting import part_before
     from lcpstep.events.friction.state import GUARDS, Rubbing
-    from lcpstep.events.friction.surfaces import find_touching, lift, project
+    from lcpstep.events.friction.surfaces import find_touching, lift
+    from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy
@@ -162,7 +163,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
     if tau > 0.0 and s.rows.n_held > 0:
-        project(s, t)
+        project(s.rows, t, s.q, s.v)
 
 
 def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
@@ -173,7 +174,7 @@ def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
         copy(s.dy, s.y, 2 * s.n_q)
         copy(s.y, s.seen, 2 * s.n_q)
         if s.rows.n_held > 0:
-            project(s, t)
+            project(s.rows, t, s.q, s.v)
         keep(s, record, t, s.y)
         copy(s.y, s.dy, 2 * s.n_q)
     else:

@@ -1,4 +1,4 @@
-"""Positions and velocities on the rows held, and on the surfaces that contacts have come to, as kernels."""
+"""Positions on the surfaces that contacts have come to, and joints that come apart, as kernels."""
 
 from __future__ import annotations
 
@@ -9,46 +9,18 @@ from lcpstep.events.friction.codes import OPEN
 if not cython.compiled:
     from lcpstep.events.friction.equations import (
         gap_tolerance,
-        measure_friction,
-        measure_gaps,
-        renew_rates,
         rounding_of_gap,
     )
-    from lcpstep.events.friction.held import constrain, hold_again, nothing, push, solve_held
     from lcpstep.events.friction.state import Rubbing
-    from lcpstep.events.rows.equations import respond
-    from lcpstep.events.rows.held import contradiction, parted
-    from lcpstep.kernels.acceleration import factor_mass
+    from lcpstep.events.rows.held import constrain, contradiction, parted
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.vectors import clear, copy, product
-    from lcpstep.pointers import Doubles, abs, after
+    from lcpstep.pointers import abs, after
 
 FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
 TOGETHER = 1e-3  # of the tolerance of a gap
 LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
-
-
-def project(s: Rubbing, t: float) -> bool:
-    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero.
-
-    The impulses that take the velocities are left in `change`; False where rows have become dependent.
-    """
-    for _ in range(2):
-        measure_gaps(s, t, s.y)
-        if is_on_rows(s) or not take_rows(s, t):
-            break
-        for m in range(s.rows.n_held):
-            i = s.rows.row[m]
-            s.change[m] = -s.gap[i] if i < s.n_j + s.n_c else 0.0
-        push_by_change(s, s.q)
-    if not take_rows(s, t):
-        return False
-    for m in range(s.rows.n_held):
-        i = s.rows.row[m]
-        s.change[m] = -product(s.R, s.v, i, s.n_q) - s.rate[i]
-    push_by_change(s, s.v)
-    return True
 
 
 def contradict(s: Rubbing) -> bool:
@@ -66,36 +38,6 @@ def come_apart(s: Rubbing) -> bool:
     return i >= 0
 
 
-def is_on_rows(s: Rubbing) -> bool:
-    """Whether the gaps of all rows held are exactly zero."""
-    zero = True
-    for m in range(s.rows.n_held):
-        i = s.rows.row[m]
-        zero = zero and (i >= s.n_j + s.n_c or s.gap[i] == 0.0)
-    return zero
-
-
-def take_rows(s: Rubbing, t: float) -> bool:
-    """Rows, rates and factors of the rows held at the base state; False where these have become dependent."""
-    if s.constant:
-        renew_rates(s, t, s.y)
-        return True
-    if not factor_mass(s.model, s.clock.inside(t), s.q, s.v, s.rows.M):
-        return False
-    renew_rates(s, t, s.y)
-    respond(s.rows)
-    return measure_friction(s, t, s.y) and hold_again(s)
-
-
-def push_by_change(s: Rubbing, x: Doubles) -> None:
-    """X <- x + M^-1 C^T z with R M^-1 C^T z = `change`."""
-    if nothing(s.change, s.rows.n_held):
-        return
-    solve_held(s, s.change)
-    for m in range(s.rows.n_held):
-        push(s, s.rows.row[m], s.change[m], x)
-
-
 def lift(s: Rubbing, c: int) -> None:
     """Put q onto the surface of contact c, which it misses by no more than the tolerance.
 
@@ -110,7 +52,7 @@ def lift(s: Rubbing, c: int) -> None:
         if s.rows.n_held > 0:
             copy(s.dv, way, n)
             clear(s.shifted_rate, s.n_r)
-            constrain(s, s.dv, s.shifted_rate)
+            constrain(s.rows, s.dv, s.shifted_rate)
             u = product(s.R, s.dv, i, n)
             if abs(u) > FREE * speed:
                 way, speed = s.dv, u

@@ -19,13 +19,13 @@ from lcpstep.events.general.ends import ACCUMULATION
 
 if not cython.compiled:
     from lcpstep.events.general.equations import gap_tolerance, measure_again, speed_tolerance
-    from lcpstep.events.general.held import constrain, hold_contacts, right_hand_side, solve_held
+    from lcpstep.events.general.held import hold_contacts, right_hand_side
     from lcpstep.events.general.impact import apply, speed_noise
     from lcpstep.events.general.parabolas import accumulation
     from lcpstep.events.general.problem import CHECKED
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.events.rows.equations import measure_biases, measure_rates
-    from lcpstep.events.rows.held import is_held
+    from lcpstep.events.rows.equations import renew_biases, renew_rates
+    from lcpstep.events.rows.held import constrain, is_held, solve_held
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
@@ -61,7 +61,7 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
                 s.contact.closed[c] = 0
         hold_contacts(s)
         copy(s.trial, s.a_free, s.n_q)
-        constrain(s, s.trial)
+        constrain(s, s.trial, s.bias)
         return False
     for c in range(n_c):
         T, u, alpha = s.contact.rest[c], s.contact.speed[c], s.contact.curve[c]
@@ -83,7 +83,7 @@ def find_stop(s: Mechanism) -> None:
     for m in range(s.n_held):
         i = s.row[m]
         s.change[m] = 0.0 if i < n_j else -s.contact.speed[i - n_j]
-    solve_held(s, s.n_held, s.change)
+    solve_held(s, s.change)
 
 
 def stop(s: Mechanism) -> None:
@@ -105,7 +105,7 @@ def let_go_pulling(s: Mechanism) -> None:
         pulls = False
         hold_contacts(s)
         copy(s.trial, s.a_free, s.n_q)
-        constrain(s, s.trial)
+        constrain(s, s.trial, s.bias)
         rounding = CHECKED * largest(s.held, 0.0, s.n_held)
         for m in range(s.n_held):
             c = s.row[m] - s.n_j
@@ -129,7 +129,7 @@ def throws_off(s: Mechanism) -> bool:
             x, force, unit = s.change[m], max(s.held[m], 0.0), s.trial
             clear(unit, s.n_held)
             unit[m] = 1.0
-            solve_held(s, s.n_held, unit)
+            solve_held(s, unit)
             low = x * x <= 2.0 * force * unit[m] * gap_tolerance(s, c)
             if not low and x > speed_noise(s, c) * unit[m]:
                 return True
@@ -167,7 +167,7 @@ def hand_on(s: Mechanism) -> None:
         if s.contact.owed[c] < 0.0 and p < 0.0 and s.contact.closed[c] == 1 and not is_held(s, n_j + c):
             for m in range(s.n_held):
                 s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
-            solve_held(s, s.n_held, s.change)
+            solve_held(s, s.change)
             for m in range(s.n_held):
                 share, i = p * s.change[m], s.row[m]
                 d = i - n_j
@@ -269,8 +269,8 @@ def later(s: Mechanism, c: int, T: float) -> float:
         v[j] = s.v[j] + T * s.a[j]
     curve = nan
     if right_hand_side(s, s.t0 + T, q, dy):
-        measure_biases(s, s.t0 + T, q, v)
-        measure_rates(s, s.t0 + T, q, v)
+        renew_biases(s, s.t0 + T, q, v)
+        renew_rates(s, s.t0 + T, q, v)
         curve = product(s.R, after(dy, n), s.n_j + c, n) + s.contact.bias[c]
     measure_again(s, s.t0)
     return curve

@@ -46,7 +46,7 @@ def recurrence(s: Mechanism) -> float:
 def sum_up(s: Mechanism, record: Record, tally: Tally, ratio: float) -> None:
     """Take the impacts that are left as one: the contacts that they strike are closed."""
     n_j, n_c, rest = s.n_j, s.n_c, ratio / (1.0 - ratio)
-    s.n_held = n_j + n_c
+    s.n_held, s.on_joints = n_j + n_c, False
     for i in range(n_j + n_c):
         turn = s.joint.turn_impulse[i] if i < n_j else s.contact.turn_impulse[i - n_j]
         s.row[i], s.change[i] = i, rest * turn

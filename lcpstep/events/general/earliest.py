@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.events.general.held import note, right_hand_side
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.events.rows.equations import measure_biases, measure_rates
+    from lcpstep.events.rows.equations import renew_biases, renew_rates
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.together import gap_rounding
@@ -188,8 +188,8 @@ def observe(s: Mechanism, tau: float) -> bool:
     if s.n_c > 0:
         gaps(s.model, t, s.q, s.v, s.contact.gap)
         if s.n_held == 0:
-            measure_biases(s, t, s.q, s.v)
-        measure_rates(s, t, s.q, s.v)
+            renew_biases(s, t, s.q, s.v)
+        renew_rates(s, t, s.q, s.v)
     note(s, s.a)
     known = True
     for c in range(s.n_c):

@@ -9,8 +9,8 @@ if not cython.compiled:
     from lcpstep.events.rows.equations import (
         free_motion,
         least_effect,
-        measure_biases,
-        measure_rates,
+        renew_biases,
+        renew_rates,
         respond,
     )
     from lcpstep.kernels.dynamics import gaps
@@ -23,8 +23,8 @@ def measure(s: Mechanism, t: float) -> bool:
     if not free_motion(s, t, q, v, s.a_free):
         return False
     measure_gaps(s, t)
-    measure_biases(s, t, q, v)
-    measure_rates(s, t, q, v)
+    renew_biases(s, t, q, v)
+    renew_rates(s, t, q, v)
     respond(s)
     for i in range(n_j):
         s.joint.speed[i] = product(s.R, v, i, s.n_q) + s.joint.rate[i]

@@ -15,17 +15,14 @@ from lcpstep.kernels.status import DONE, JOINTS_FAILED
 if not cython.compiled:
     from lcpstep.events.general.held import (
         accelerate,
-        constrain,
-        hold,
-        hold_joints,
         joints_own,
         note,
-        solve_held,
     )
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import Mechanism
     from lcpstep.events.rows.equations import size_of, size_of_acceleration
-    from lcpstep.events.rows.held import contradiction
+    from lcpstep.events.rows.held import constrain, contradiction, hold, hold_joints, solve_held
+    from lcpstep.events.rows.on_joints import acceleration_on_joints
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs
@@ -41,7 +38,7 @@ def contact_forces(s: Mechanism, t: float) -> int:
     n_c, n_j, a = s.n_c, s.n_j, s.a
     hold_joints(s)
     copy(a, s.a_free, s.n_q)
-    constrain(s, a)
+    constrain(s, a, s.bias)
     if n_j > 0:
         s.culprit = contradiction(s, a)
         if s.culprit >= 0:
@@ -52,7 +49,8 @@ def contact_forces(s: Mechanism, t: float) -> int:
         s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
         s.contact.multiplier[c] = 0.0
         if s.contact.closed[c] == 1 and not joints_own(s, c):
-            s.contact.member[s.n_members], s.contact.b[s.n_members] = c, s.contact.curve[c]
+            s.contact.member[s.n_members] = c
+            s.contact.b[s.n_members] = acceleration_on_joints(s, n_j + c, a)
             s.contact.noise[s.n_members] = 0.5 * NOISE * size_of(s, s.n_j + c, s.contact.bias[c], s.a_free)
             s.n_members += 1
     solved = True
@@ -134,7 +132,7 @@ def passed_on(s: Mechanism, c: int) -> float:
             hold(s, s.n_j + d)
     for m in range(s.n_held):
         s.change[m] = s.D[s.row[m] * s.n_r + i]
-    solve_held(s, s.n_held, s.change)
+    solve_held(s, s.change)
     for m in range(s.n_held):
         size += abs(s.change[m]) * size_of(s, s.row[m], s.bias[s.row[m]], acting)
     return size
@@ -158,13 +156,13 @@ def unload(s: Mechanism) -> None:
                     shifting = True
                     for m in range(k):
                         s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
-                    solve_held(s, k, s.change)
+                    solve_held(s, s.change)
                     share, leaves = force[c], c
-                    for m in range(s.n_held_joints, k):
+                    for m in range(s.n_kept, k):
                         d = s.row[m] - n_j
                         if force[d] + share * s.change[m] < 0.0:
                             share, leaves = force[d] / -s.change[m], d
-                    for m in range(s.n_held_joints, k):
+                    for m in range(s.n_kept, k):
                         force[s.row[m] - n_j] += share * s.change[m]
                     force[c] -= share
                     force[leaves], s.contact.loaded[leaves] = 0.0, 0

@@ -8,7 +8,6 @@ cdef void gather(Mechanism s) noexcept nogil
 @cython.locals(solved=bint)
 cdef bint solve_law(Mechanism s, bint rebounds) noexcept nogil
 cdef double impulses(Mechanism s) noexcept nogil
-cdef double missing_speeds(Mechanism s) noexcept nogil
 cdef void list_impulses(Mechanism s) noexcept nogil
 cdef bint separates(Mechanism s) noexcept nogil
 cdef void apply(Mechanism s) noexcept nogil

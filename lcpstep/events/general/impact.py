@@ -13,13 +13,13 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.held import REFINEMENTS, hold, hold_joints, joints_own, solve_held
+    from lcpstep.events.general.held import joints_own
     from lcpstep.events.general.problem import CHECKED, solve_contacts
     from lcpstep.events.general.state import Mechanism
-    from lcpstep.kernels.acceleration import inverse_mass
+    from lcpstep.events.rows.held import add_column, constrain, hold, hold_joints
     from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.vectors import clear, largest, product
-    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.pointers import abs, max, min
 
 
 def strike(s: Mechanism) -> bool:
@@ -71,7 +71,7 @@ def solve_law(s: Mechanism, rebounds: bool) -> bool:
         if s.contact.z[a] < 0.0:
             if not solved and s.contact.z[a] < -CHECKED * most:
                 return False
-            s.contact.z[a] = s.change[s.n_held_joints + a] = 0.0
+            s.contact.z[a] = s.change[s.n_kept + a] = 0.0
     if not solved and not separates(s):
         return False
     apply(s)
@@ -81,56 +81,35 @@ def solve_law(s: Mechanism, rebounds: bool) -> bool:
 def impulses(s: Mechanism) -> float:
     """Impulses of the members, of which `z` is a guess, and of the joints into `change`; returns the largest.
 
-    They give the loaded members the speeds of the law; corrected with the residual of M (v+ - v-) = R^T p itself.
+    They give the loaded members the speeds of the law.
     """
-    n_j, k = s.n_j, s.n_members
+    n_j, k, dv = s.n_j, s.n_members, s.trial
+    clear(dv, s.n_q)
+    clear(s.near, s.n_r)
     hold_joints(s)
-    k_j = s.n_held_joints
-    clear(s.change, s.n_r)
-    clear(s.held, s.n_r)
     for a in range(k):
-        s.held[n_j + s.contact.member[a]] = s.contact.z[a]  # by row, not by place in the list of rows held
+        i = n_j + s.contact.member[a]
+        s.near[i] = s.contact.b[a]
+        add_column(s, s.MR, i, s.contact.z[a], dv)
     for a in range(k):
         if s.contact.loaded[s.contact.member[a]] == 1:
             hold(s, n_j + s.contact.member[a])
-    h, before = s.n_held, inf
-    for _ in range(REFINEMENTS if k + k_j > 1 else 0):  # one impulse alone loses no digits
-        error = missing_speeds(s)
-        if error == 0.0 or not error < 0.5 * before:
-            break
-        before = error
-        solve_held(s, h, s.change)
-        for m in range(h):
-            s.held[s.row[m]] += s.change[m]
+    clear(s.held, s.n_held)
+    if k + s.n_kept > 1:  # one impulse alone loses no digits
+        constrain(s, dv, s.near)
+    clear(s.further, s.n_r)
+    for m in range(s.n_held):
+        s.further[s.row[m]] = s.held[m]
     for a in range(k):
-        s.contact.z[a] = s.held[n_j + s.contact.member[a]]
+        s.contact.z[a] = s.contact.z[a] + s.further[n_j + s.contact.member[a]]
     list_impulses(s)
     return largest(s.contact.z, 0.0, k)
 
 
-def missing_speeds(s: Mechanism) -> float:
-    """What the impulses `held` leave missing of the law's speeds, on the rows held, into `change`; the largest."""
-    dv, h, k_j = s.work, s.n_held, s.n_held_joints
-    for j in range(s.n_q):
-        dv[j] = 0.0
-        for i in range(s.n_r):
-            if s.held[i] != 0.0:
-                dv[j] += s.R[i * s.n_q + j] * s.held[i]
-    inverse_mass(s.model, s.M, s.trial, dv)
-    for m in range(h):
-        s.change[m] = -product(s.R, dv, s.row[m], s.n_q)
-    for a in range(s.n_members):
-        for m in range(k_j, h):
-            if s.row[m] == s.n_j + s.contact.member[a]:
-                s.change[m] -= s.contact.b[a]
-    return largest(s.change, 0.0, h)
-
-
 def list_impulses(s: Mechanism) -> None:
     """The impulses of joints and members, in this order, into `change`, for `apply`."""
-    n_j, k_j, k = s.n_j, s.n_held_joints, s.n_members
-    for m in range(k_j):
-        s.change[m] = s.held[s.row[m]]
+    n_j, k_j, k = s.n_j, s.n_kept, s.n_members
+    copy(s.change, s.held, k_j)
     for a in range(k):
         s.row[k_j + a], s.change[k_j + a] = n_j + s.contact.member[a], s.contact.z[a]
     s.n_held = k_j + k

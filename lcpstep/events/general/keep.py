@@ -5,9 +5,9 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.held import project
     from lcpstep.events.general.motion import state_at
     from lcpstep.events.general.state import Mechanism
+    from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
 
 
@@ -16,7 +16,7 @@ def keep_wanted(s: Mechanism, record: Record) -> None:
     t = record.awaited()
     state_at(s, t - s.t0)
     if s.n_held > 0 and not s.constant and t > s.t0:
-        project(s, t)
+        project(s, t, s.q, s.v)
     keep(s, record, t)
     record.next_time += 1
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.general.held import solve_held
     from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import press, rebase, state_at
     from lcpstep.events.general.state import JUMP, Mechanism
+    from lcpstep.events.rows.held import push_by_change
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -96,7 +96,4 @@ def polish(s: Mechanism) -> None:
             s.change[m] = -product(s.R, x, i, s.n_q)
             if turn < 2:
                 s.change[m] -= s.joints.offset[i] if i < n_j else s.model.offset[i - n_j]
-        solve_held(s, k, s.change)
-        for m in range(k):
-            for j in range(s.n_q):
-                x[j] += s.MR[s.row[m] * s.n_q + j] * s.change[m]
+        push_by_change(s, x)

@@ -1,10 +1,10 @@
 """The complementarity problem of a set of closed contacts, as kernels; joints are eliminated from it.
 
-    0 <= W z + b  complementary to  z >= 0,      W = D_cc - D_cj D_jj^-1 D_jc
+    0 <= W z + b  complementary to  z >= 0
 
-W is the Delassus matrix of the contacts on the joints; z are impulses (`impact`) or forces (`forces`). Opposite
-contacts can make it a problem without an answer by as little as rounding of b; then b is lifted by it. Source: V.
-Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 5.
+W is the Delassus matrix of the contacts on the joints, see `rows.on_joints`; z are impulses (`impact`) or forces
+(`forces`). Opposite contacts can make it a problem without an answer by as little as rounding of b; then b is lifted
+by it. Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 5.
 """
 
 from __future__ import annotations
@@ -44,17 +44,8 @@ def solve_contacts(s: Mechanism) -> bool:
 
 
 def contact_matrix(s: Mechanism) -> None:
-    """W of the member contacts; the joints must be the rows held."""
-    n_j, k_j, k = s.n_j, s.n_held_joints, s.n_members
+    """W of the member contacts on the joints, which must have been held."""
+    k = s.n_members
     for a in range(k):
-        i = n_j + s.contact.member[a]
-        for m in range(k_j):  # the rows of the Cholesky factor that follow the joints'
-            total = s.D[i * s.n_r + s.row[m]]
-            for j in range(m):
-                total -= s.L[(k_j + a) * s.n_r + j] * s.L[m * s.n_r + j]
-            s.L[(k_j + a) * s.n_r + m] = total / s.L[m * s.n_r + m]
-        for b in range(a + 1):
-            total = s.D[i * s.n_r + n_j + s.contact.member[b]]
-            for m in range(k_j):
-                total -= s.L[(k_j + a) * s.n_r + m] * s.L[(k_j + b) * s.n_r + m]
-            s.W[a * k + b] = s.W[b * k + a] = total
+        for b in range(k):
+            s.W[a * k + b] = s.S[(s.n_j + s.contact.member[a]) * s.n_r + s.n_j + s.contact.member[b]]

@@ -46,6 +46,6 @@ cdef class Mechanism(Rows):
     cdef double length, found, seen_to, slope
     cdef bint bare, parallel, relieved
     cdef readonly Py_ssize_t event_contact
-    cdef Py_ssize_t guards, next, event_kind, n_nodes, n_held_joints
-    cdef Doubles nodes, weights, q0, v0, q, v, dy, a, trial, L, held, change, doubt, impulse, W, turned
+    cdef Py_ssize_t guards, next, event_kind, n_nodes
+    cdef Doubles nodes, weights, q0, v0, q, v, dy, a, trial, impulse, W, turned
     cdef Indices kept

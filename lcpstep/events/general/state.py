@@ -137,11 +137,7 @@ class Mechanism(Rows):
     contact, joint    rows at q, v;  left, right  of contacts at the ends of an interval of the scan
     before            of contacts where the interval before it began
     start             of contacts at the base time of a step
-    L : (n_r, n_r)    Cholesky factor of the Delassus matrix of the rows held
-    held              their multipliers;  n_held_joints  how many are joints
     kept              rows held, while others are tried
-    doubt             relative error of the diagonal of L, in units of rounding
-    change            work space by row
     bracket, turn     in which a root, or a turn, is sought
     W                 matrix of the problem of the n_members members of it
     turned : (n_c, n_q)  Jacobian of the contacts beside the state
@@ -182,9 +178,9 @@ class Mechanism(Rows):
         self.parallel = self.relieved = False
         self.watched = isinstance(smooth, Motion)
         self.watch, self.guards, self.slope = smooth if self.watched else None, ENTERED, 0.0
-        self.event_contact = self.event_kind = self.n_held_joints = self.n_members = 0
+        self.event_contact = self.event_kind = self.n_members = 0
         self.culprit = -1
-        self.numbers = np.zeros(9 * n + r * r + 4 * r + n_c * n_c + n_c * n)
+        self.numbers = np.zeros(9 * n + r + n_c * n_c + n_c * n)
         self.q0 = self.smooth.y
         self.v0 = after(self.smooth.y, n)
         self.q = doubles(self.numbers)
@@ -192,11 +188,7 @@ class Mechanism(Rows):
         self.dy = after(self.v, n)
         self.a = after(self.dy, n)
         self.trial = after(self.a, n)
-        self.L = after(self.trial, 4 * n)
-        self.held = after(self.L, r * r)
-        self.change = after(self.held, r)
-        self.doubt = after(self.change, r)
-        self.impulse = after(self.doubt, r)
+        self.impulse = after(self.trial, 4 * n)
         self.W = after(self.impulse, r)
         self.turned = after(self.W, n_c * n_c)
         self.lists = np.zeros(r, dtype=np.intp)

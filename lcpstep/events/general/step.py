@@ -20,13 +20,14 @@ if not cython.compiled:
     )
     from lcpstep.events.general.equations import measure, measure_on
     from lcpstep.events.general.forces import contact_forces
-    from lcpstep.events.general.held import constrain, hold_again, note, project
+    from lcpstep.events.general.held import note
     from lcpstep.events.general.hops import carry, find_landings, interrupt, reach_end, shortest_hop, speed_at
     from lcpstep.events.general.keep import keep, keep_wanted
     from lcpstep.events.general.motion import arrive, press_between, rebase
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
     from lcpstep.events.general.switching import SWITCHES, reach_guard, watch
-    from lcpstep.events.rows.held import is_held, parted
+    from lcpstep.events.rows.held import constrain, hold_again, is_held, parted, renew_held
+    from lcpstep.events.rows.projection import project
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -46,7 +47,7 @@ def step(s: Mechanism) -> int:
     Held by surfaces that become parallel, as between walls that close, a motion has no bounds: no forces keep it so.
     """
     code = attempt(s)
-    squeezed = s.parallel and s.n_held > s.n_held_joints
+    squeezed = s.parallel and s.n_held > s.n_kept
     return NO_FORCES if code == NOT_FINITE and squeezed else code
 
 
@@ -211,6 +212,7 @@ def forces_at(s: Mechanism, before: int, ahead: float, owned: bool) -> bool:
     for m in range(before):
         s.row[m] = s.kept[m]
     s.n_held = before
+    hold_again(s)
     return solved
 
 
@@ -228,7 +230,7 @@ def take_over(s: Mechanism, record: Record, tally: Tally, t: float, tau: float) 
         record.store(s.smooth.F, s.length)
         copy(s.q, s.smooth.y_new, 2 * s.n_q)
         if s.n_held > 0:
-            project(s, t)
+            project(s, t, s.q, s.v)
     else:
         copy(s.q, s.q0, 2 * s.n_q)
     rebase(s, t)
@@ -239,16 +241,16 @@ def pass_end(s: Mechanism, record: Record, tally: Tally) -> int:
     if not measure_on(s, s.t0):
         return NOT_FINITE
     carry(s)
-    s.culprit = parted(s, s.joint.gap, s.q) if s.n_held_joints < s.n_j else -1
+    s.culprit = parted(s, s.joint.gap, s.q) if s.n_kept < s.n_j else -1
     if s.culprit >= 0:
         return JOINTS_FAILED
     a = s.a
     copy(a, s.a_free, s.n_q)
     if s.n_held > 0:
-        if not hold_again(s, s.t0, s.q, s.v):
+        if not renew_held(s, s.t0, s.q, s.v):
             s.next = SETTLE
             return DONE
-        constrain(s, a)
+        constrain(s, a, s.bias)
     note(s, a)
     if record.is_due(tally.steps):
         keep(s, record, s.t0)

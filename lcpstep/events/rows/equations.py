@@ -28,6 +28,18 @@ def free_motion(s: Rows, t: float, q: Doubles, v: Doubles, a: Doubles) -> bool:
     return divide_by_mass(s.model, side, q, v, s.M, s.work, a)
 
 
+def renew_rates(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """`measure_rates`, unless these are known and never change."""
+    if not s.known or s.moving:
+        measure_rates(s, t, q, v)
+
+
+def renew_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """`measure_biases`, unless these are known and never change."""
+    if not s.known or s.moving:
+        measure_biases(s, t, q, v)
+
+
 def measure_rates(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
     """Jacobians of all rows into R, and their rates at rest, on their side of a corner."""
     if s.n_j > 0:
@@ -55,6 +67,7 @@ def rates_on_side(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Do
 
 def measure_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
     """(dR/dt) v + d(rate)/dt along the motion, of all rows."""
+    s.on_joints = False
     if s.n_j > 0:
         biases_of(s, s.joints, 0, t, q, v)
     if s.n_c > 0:
@@ -70,11 +83,38 @@ def biases_of(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Double
 
 def respond(s: Rows) -> None:
     """What an impulse on each row does, and the Delassus matrix; the mass matrix must be that of `free_motion`."""
-    r = s.n_r
-    for i in range(r):
+    if s.known:
+        return
+    s.on_joints, s.known = False, s.fixed
+    for i in range(s.n_r):
         respond_to(s, i)
         for j in range(i + 1):
-            s.D[i * r + j] = s.D[j * r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+            couple(s, i, j)
+
+
+def respond_held(s: Rows) -> None:
+    """The same of the rows held alone, and of those whose forces come with theirs."""
+    for m in range(s.n_held):
+        i = s.row[m]
+        respond_to(s, i)
+        for k in range(m + 1):
+            couple(s, i, s.row[k])
+    for m in range(s.n_held if s.n_t > 0 else 0):
+        i = s.row[m]
+        if s.share[i] != 0.0:
+            respond_to(s, other(s, i))
+            for k in range(s.n_held):
+                couple(s, other(s, i), s.row[k])
+
+
+def couple(s: Rows, i: int, j: int) -> None:
+    """Entries i, j of the Delassus matrix, by what an impulse on row i does."""
+    s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+
+
+def other(s: Rows, i: int) -> int:
+    """The tangent of normal i, the normal of tangent i."""
+    return i + s.n_c if i < s.n_j + s.n_c else i - s.n_c
 
 
 def respond_to(s: Rows, i: int) -> None:

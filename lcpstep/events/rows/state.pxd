@@ -6,7 +6,10 @@ from lcpstep.pointers cimport Doubles, Indices
 cdef class Rows(Clock):
     cdef object row_numbers, row_list
     cdef readonly Model model, joints, tangents
-    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_held
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_held, n_kept
+    cdef readonly bint fixed, moving
+    cdef bint on_joints, known
     cdef readonly double rtol, atol
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
-    cdef Indices row
+    cdef Doubles held, change, share, doubt, L, bent, P, MP, S
+    cdef Indices row, either

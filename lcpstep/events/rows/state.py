@@ -11,7 +11,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.clock import Clock
     from lcpstep.kernels.model import Model
-    from lcpstep.pointers import after
+    from lcpstep.pointers import after, indices_after
 
 
 class Rows(Clock):
@@ -25,8 +25,15 @@ class Rows(Clock):
     R, MR : (n_r, n_q)        rows, and rows M^-1 R^T
     D : (n_r, n_r)            Delassus matrix R M^-1 R^T
     rate, bias : (n_r,)       velocity of a row at rest, and its acceleration at v' = 0
-    row, n_held               rows held, and how many
-    work, shifted : (n_q,);  near, further : (n_r,);  G : (n_r, n_q)   work space
+    row, n_held               rows held, and how many;  n_kept   joints among them, which come first
+    held : (n_r,)             multipliers of the rows held
+    share : (n_r,)            force of the `other` row of its contact that comes with that of a row held
+    either : (n_r,)           whether a row may be held though its force alone would move it the other way
+    L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
+    P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   R, MR, D and bias on the joints held, see `on_joints`
+    on_joints                 whether these are known
+    fixed, moving, known      rows and masses never change; flat obstacles move; fixed rows have been measured
+    work, shifted : (n_q,);  near, further, change : (n_r,);  G : (n_r, n_q)   work space
 
     Parameters
     ----------
@@ -49,9 +56,13 @@ class Rows(Clock):
         n, n_c = model.n_q, model.n_c
         r = n_j + n_c + n_t
         self.model, self.joints, self.tangents = model, joints, tangents
-        self.n_q, self.n_c, self.n_j, self.n_t, self.n_r, self.n_held = n, n_c, n_j, n_t, r, 0
+        self.n_q, self.n_c, self.n_j, self.n_t, self.n_r = n, n_c, n_j, n_t, r
+        self.n_held, self.n_kept, self.on_joints = 0, 0, False
+        self.fixed = model.flat and tangents.flat and joints.flat and not model.mass.given
+        self.moving = model.motion.given or joints.motion.given or tangents.motion.given
+        self.known = False
         self.rtol, self.atol = tolerances
-        self.row_numbers = np.zeros(4 * n + n * n + 3 * r * n + r * r + 4 * r)
+        self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r)
         self.a_free = doubles(self.row_numbers)
         self.force = after(self.a_free, n)
         self.work = after(self.force, n)
@@ -65,5 +76,17 @@ class Rows(Clock):
         self.bias = after(self.rate, r)
         self.near = after(self.bias, r)
         self.further = after(self.near, r)
-        self.row_list = np.zeros(r, dtype=np.intp)
+        self.held = after(self.further, r)
+        self.change = after(self.held, r)
+        self.share = after(self.change, r)
+        self.doubt = after(self.share, r)
+        self.L = after(self.doubt, r)
+        self.bent, self.P, self.MP, self.S = self.bias, self.R, self.MR, self.D
+        if n_j > 0:
+            self.bent = after(self.L, r * r)
+            self.P = after(self.bent, r)
+            self.MP = after(self.P, r * n)
+            self.S = after(self.MP, r * n)
+        self.row_list = np.zeros(2 * r, dtype=np.intp)
         self.row = indices(self.row_list)
+        self.either = indices_after(self.row, r)

@@ -17,12 +17,11 @@ import cython
 from lcpstep.events.friction.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import renew_rates
+    from lcpstep.events.friction.equations import rubs
     from lcpstep.events.friction.guards import first_fall, low_flight, read
-    from lcpstep.events.friction.on_joints import rubs
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
-    from lcpstep.events.rows.equations import measure_biases, size_of
+    from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
@@ -93,7 +92,7 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
 
 def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> None:
     """Accelerations of the open gaps that have not left their bands, at a state whose rates are known."""
-    a, known = after(dy, s.n_q), s.rows.n_held > 0 or (s.measured and not s.moving)
+    a, known = after(dy, s.n_q), s.rows.n_held > 0 or (s.constant and not s.rows.moving)
     for c in range(s.n_c):
         if s.mode[c] == OPEN and s.armed[GUARDS * c] == 0:
             if not known:
@@ -106,7 +105,7 @@ def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> 
 def read_guards(s: Strides, t: float, y: Doubles) -> bool:
     """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
     if s.rows.n_held == 0:
-        renew_rates(s, t, y)
+        renew_rates(s.rows, t, y, after(y, s.n_q))
     return read(s, t, y)
 
 

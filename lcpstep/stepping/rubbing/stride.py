@@ -13,7 +13,7 @@ if not cython.compiled:
     from lcpstep.events.friction.modes import decide, undecided
     from lcpstep.events.friction.state import GUARDS
     from lcpstep.events.friction.step import arrive, find_standing, of_force
-    from lcpstep.events.friction.surfaces import project
+    from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
@@ -147,7 +147,7 @@ def put_end_back(s: Strides, t: float) -> bool:
     """Put the end of the step onto the rows held, so that states between lead up to there; see `project`."""
     copy(s.stored, s.y, s.n)
     copy(s.y, s.y_new, s.n)
-    put_back = project(s, t)
+    put_back = project(s.rows, t, s.q, s.v)
     copy(s.y_new, s.y, s.n)
     copy(s.y, s.stored, s.n)
     return put_back
