@@ -17,6 +17,7 @@ cdef class RungeKutta:
     cdef Indices needed
     cdef Doubles A, C, D, E3, E5, y, y_new, y_stage, first, K, F
     cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
+    cdef double rate_terms(self) noexcept nogil
     cdef void begin(self, double next_step) noexcept nogil
     @cython.locals(truncated=bint, again=bint, good=bint, known=bint, error=double)
     cdef Py_ssize_t take_step(self, double t, double longest, double scan) noexcept nogil

@@ -91,6 +91,10 @@ class RungeKutta:
         """Dy = f(t, y); False where it is not finite or cannot be evaluated. Every field has its own."""
         return False
 
+    def rate_terms(self) -> float:
+        """Size of the terms of the rates last asked for, where they may cancel; a field may have its own."""
+        return 0.0
+
     def begin(self, next_step: float) -> None:
         """Another motion begins, with a step of this size."""
         self.next_step, self.stretch_end = next_step, -inf
@@ -211,7 +215,8 @@ class RungeKutta:
     def unresolved(self, h: float, error: float) -> float:
         """An error of the step, over the tolerance, as a share of what a step may have that resolves the motion.
 
-        Below the tolerance one longer than the periods of a motion makes it grow; rounding of the state is no motion.
+        Below the tolerance one longer than the periods of a motion makes it grow; rounding of the state is no motion,
+        nor is that of rates.
         """
         n, K, moved, numbers = self.n, self.K, 0.0, 0.0
         for i in range(n):
@@ -219,7 +224,8 @@ class RungeKutta:
             scale = self.atol + self.rtol * y
             moved = max(moved, max(abs(K[i]), abs(K[STAGES * n + i])) / scale)
             numbers = max(numbers, y / scale)
-        allowed = max(UNSEEN * h * moved, ROUNDINGS * RESOLUTION * numbers)
+        rounding = ROUNDINGS * RESOLUTION * max(numbers, h * self.rate_terms() / self.atol)
+        allowed = max(UNSEEN * h * moved, rounding)
         return error / allowed if allowed > 0.0 else 0.0
 
     def refuse(self, t: float, scan: float) -> bool:

@@ -45,3 +45,18 @@ def test_a_bead_lies_where_its_rail_dips_into_a_floor_however_flatly(slope, fric
     assert run.status is Status.DONE
     np.testing.assert_allclose(run.q[-1], 0.0, rtol=0, atol=1e-12)
     np.testing.assert_allclose(run.impulse.sum(), (5.0 + 3.0 / slope) * OVER_TIME, rtol=1e-12, atol=0)
+
+
+def test_what_lies_still_under_a_varying_load_takes_as_few_steps_without_friction_as_with_it():
+    """What forces that cancel leave by rounding is no motion, whose periods steps would have to resolve."""
+    steps = []
+    for friction in (None, Coulomb(0.3, [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, -1.0, 1.0]])):
+        m = np.array([1.0, 100.0])
+        contacts = LinearContacts([[1.0, 0.0, 0.0, 0.0], [-1.0, 1.0, 0.0, 0.0]], friction=friction)
+        system = LinearSystem(np.diag(np.tile(m, 2)), force=load([*(-G * m), 0.0, 0.0]))
+        steps.append(
+            simulate(
+                Scene(system, np.zeros(4), np.zeros(4), (0.0, 1.0), contacts), EventDriven()
+            ).counts.steps
+        )
+    assert steps[0] == steps[1] < 60

@@ -8,6 +8,7 @@ if not cython.compiled:
     from lcpstep.events.friction.held import right_hand_side
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.step import step
+    from lcpstep.events.rows.held import size_of_pushes
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
@@ -23,6 +24,10 @@ class Smooth(Rubbing):
             return False
         copy(after(self.loads, self.stage * self.n_r), self.multiplier, self.n_r)
         return True
+
+    def rate_terms(self) -> float:
+        """Of what the rows held push with, where their forces are sought at each state."""
+        return 0.0 if self.constant else size_of_pushes(self.rows)
 
     def proceed(self, record: Record, tally: Tally) -> int:
         """A step that meets the tolerance, up to the first event within it; a status."""

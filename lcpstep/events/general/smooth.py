@@ -11,6 +11,7 @@ if not cython.compiled:
     from lcpstep.events.general.step import missed
     from lcpstep.events.general.switching import SWITCHES
     from lcpstep.events.hybrid.state import Motion
+    from lcpstep.events.rows.held import size_of_pushes
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.pointers import Doubles
 
@@ -23,6 +24,10 @@ class Smooth(RungeKutta):
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v'); False where it is not finite or the rows have become dependent."""
         return right_hand_side(self.mechanism, t, y, dy)
+
+    def rate_terms(self) -> float:
+        """Of what the rows held push with."""
+        return size_of_pushes(self.mechanism)
 
     def miss(self, t: float, tau: float) -> float:
         """By the gap of the contact that meets its surface."""
@@ -37,6 +42,10 @@ class Watched(Motion):
     def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
         """Dy = (v, v') in the mode at hand; as above."""
         return right_hand_side(self.mechanism, t, y, dy)
+
+    def rate_terms(self) -> float:
+        """As above."""
+        return size_of_pushes(self.mechanism)
 
     def miss(self, t: float, tau: float) -> float:
         """By the guard that acts, or as above."""

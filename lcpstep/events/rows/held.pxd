@@ -22,5 +22,6 @@ cdef void push_by_change(Rows s, double* x) noexcept nogil
 cdef void constrain(Rows s, double* a, double* bias) noexcept nogil
 cdef void measure_missing(Rows s, double* a, double* bias) noexcept nogil
 cdef void balance(Rows s, double* a) noexcept nogil
+cdef double size_of_pushes(Rows s) noexcept nogil
 cdef Py_ssize_t contradiction(Rows s, double* a) noexcept nogil
 cdef Py_ssize_t parted(Rows s, double* gap, double* q) noexcept nogil

@@ -203,6 +203,17 @@ def balance(s: Rows, a: Doubles) -> None:
     push_by_change(s, a)
 
 
+def size_of_pushes(s: Rows) -> float:
+    """Size of the accelerations that the forces of the rows held make, each by itself."""
+    most = 0.0
+    for j in range(s.n_q):
+        size = 0.0
+        for m in range(s.n_held):
+            size += abs(s.MR[s.row[m] * s.n_q + j] * s.held[m])
+        most = max(most, size)
+    return most
+
+
 def contradiction(s: Rows, a: Doubles) -> int:
     """The first joint left out whose acceleration is not zero under that of the others, or -1."""
     for i in range(s.n_j):
