@@ -18,7 +18,7 @@ def load(constant):
     return Harmonic(constant=constant, sine=0.3 * np.array(constant), omega=OMEGA)
 
 
-@pytest.mark.parametrize("mu", [None, 0.0], ids=["smooth", "rough"])
+@pytest.mark.parametrize("mu", [None, 0.0, 1e-12, 0.3])
 @pytest.mark.parametrize("heavy", [1e3, 1e10, 1e12])
 def test_a_light_body_between_heavy_ones_bears_the_upper_one(heavy, mu):
     m = np.array([heavy, 1.0, heavy])

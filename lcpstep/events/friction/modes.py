@@ -146,6 +146,8 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_direction[c] = 1.0 if force < 0.0 else -1.0
             if abs(rate) <= NOISE * size_of_terms(s, n_a + f, n_a, n_f):
                 s.new_mode[c] = LEANS
+            elif rate * s.new_direction[c] < 0.0:  # large forces have hidden that it does not slide
+                s.new_mode[c] = STICKS
         else:
             s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
 
