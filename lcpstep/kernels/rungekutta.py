@@ -1,8 +1,7 @@
 """Steps of the Runge-Kutta method DOP853, their control and dense output, for any field.
 
-Order 8 with error estimates of orders 5 and 3 and a dense output of order 7; a class of fields inherits `RungeKutta`
-and has its own `rates`. Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I (Springer
-1993), section II.10; the coefficients stand in `dop853`.
+Order 8, errors by orders 5 and 3, dense output of order 7; a class of fields inherits `RungeKutta`, with its `rates`.
+Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I (Springer 1993), section II.10.
 """
 
 from __future__ import annotations
@@ -92,7 +91,7 @@ class RungeKutta:
         return False
 
     def rate_terms(self) -> float:
-        """Size of the terms of the rates last asked for, where they may cancel; a field may have its own."""
+        """Size of terms that may cancel in the rates last asked for; a field may have its own."""
         return 0.0
 
     def begin(self, next_step: float) -> None:
@@ -124,10 +123,8 @@ class RungeKutta:
                     error = max(error, share) if share <= 1.0 else error
                     break
                 before, error = error / h, share
-            # the field may have no value, or an infinite one, beyond what a shorter step reaches
-            known = error < inf
+            known, truncated, again = error < inf, False, good  # a shorter step may reach what is finite
             h *= max(LEAST, factor(error)) if known else LEAST
-            truncated, again = False, good
             if not self.refuse(t, scan) or h <= 4.0 * RESOLUTION * max(abs(t), scan):
                 return STEP_TOO_SMALL if good and known else NOT_FINITE
         self.next_step = max(h * factor(error), self.next_step if truncated else 0.0)
@@ -215,17 +212,15 @@ class RungeKutta:
     def unresolved(self, h: float, error: float) -> float:
         """An error of the step, over the tolerance, as a share of what a step may have that resolves the motion.
 
-        Below the tolerance one longer than the periods of a motion makes it grow; rounding of the state is no motion,
-        nor is that of rates.
+        Below the tolerance one longer than the periods of a motion makes it grow; rounding of state or rates is none.
         """
-        n, K, moved, numbers = self.n, self.K, 0.0, 0.0
-        for i in range(n):
+        K, moved, numbers = self.K, 0.0, h * self.rate_terms() / self.atol
+        for i in range(self.n):
             y = max(abs(self.y[i]), abs(self.y_new[i]))
             scale = self.atol + self.rtol * y
-            moved = max(moved, max(abs(K[i]), abs(K[STAGES * n + i])) / scale)
+            moved = max(moved, max(abs(K[i]), abs(K[STAGES * self.n + i])) / scale)
             numbers = max(numbers, y / scale)
-        rounding = ROUNDINGS * RESOLUTION * max(numbers, h * self.rate_terms() / self.atol)
-        allowed = max(UNSEEN * h * moved, rounding)
+        allowed = max(UNSEEN * h * moved, ROUNDINGS * RESOLUTION * numbers)
         return error / allowed if allowed > 0.0 else 0.0
 
     def refuse(self, t: float, scan: float) -> bool:
