@@ -13,7 +13,7 @@ from hypothesis import settings
 from tests.uncompiled import BUILT
 
 settings.register_profile("random", deadline=None)
-settings.register_profile("repeated", deadline=None, derandomize=True, max_examples=60)
+settings.register_profile("repeated", deadline=None, derandomize=True, max_examples=40)
 settings.load_profile("repeated")
 
 

@@ -148,8 +148,7 @@ def said(err, what):
     )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("command", LONG)
+@pytest.mark.parametrize("command", shared(LONG, 3))
 def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
     words = [command, *LONG[command].split()]
     (tmp_path / "study.toml").write_text(STUDY)

@@ -13,6 +13,7 @@ from lagrangian import scenes
 from lcpstep import EventDriven, Located, Moreau, pace, simulate
 from lcpstep.analysis.attractors import attractors
 from lcpstep.maps import StroboscopicMap, iterate, periods
+from tests.marks import shared
 from tests.processes import environment
 
 CAM = scenes.cam_follower(rpm=660.0)
@@ -115,20 +116,22 @@ def on_terminal(*words, seconds):
     return written
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
-    [
-        ["simulate", "cam-follower", "--h", "1e-6", "--t-end", "20"],
-        ["attractor", "cam-follower", "--method", "moreau", "--starts", "200", "--out", "{out}"],
-        ["orbit", "cam-follower", "--rpm", "700", "--method", "moreau", "--h", "1e-6", "--out", "{out}"],
-        ["study", "cam-follower", "--out", "{out}"],
-        ["lyapunov", "cam-follower", "--periods", "3000000"],
-        ["corner", "cam-follower", "--out", "{out}"],
-        ["corner", "cam-follower", "--chattering", "114", "200"],
-        ["hard", "--full"],
-        ["thesis", "4.5", "4.12", "--out", "{out}"],
-    ],
+    shared(
+        [
+            ["simulate", "cam-follower", "--h", "1e-6", "--t-end", "20"],
+            ["attractor", "cam-follower", "--method", "moreau", "--starts", "200", "--out", "{out}"],
+            ["orbit", "cam-follower", "--rpm", "700", "--method", "moreau", "--h", "1e-6", "--out", "{out}"],
+            ["study", "cam-follower", "--out", "{out}"],
+            ["lyapunov", "cam-follower", "--periods", "3000000"],
+            ["corner", "cam-follower", "--out", "{out}"],
+            ["corner", "cam-follower", "--chattering", "114", "200"],
+            ["hard", "--full"],
+            ["thesis", "4.5", "4.12", "--out", "{out}"],
+        ],
+        3,
+    ),
     ids=lambda words: words[0],
 )
 def test_a_bar_on_a_terminal_shows_the_time_left(words, tmp_path):

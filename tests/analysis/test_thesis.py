@@ -28,7 +28,7 @@ def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
     assert "exists already; --overwrite" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", shared([name for name in FIGURES if name not in FAST], 6))
+@pytest.mark.parametrize("name", shared([name for name in FIGURES if name not in FAST], 12))
 def test_every_figure_can_be_made(name, tmp_path, monkeypatch):
     """Of fewer periods and cells than are drawn: what they show is the matter of other tests."""
     for size, fewer in (("DROP", 50), ("LONG", 100), ("CELLS", 200)):
