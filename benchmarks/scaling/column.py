@@ -61,7 +61,8 @@ def main() -> None:
     n, case, steps = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
     followed = case == "falling" and n <= FOLLOWED
     scene, ends = column(n, case, steps), looks(steps) if followed else np.array([H * steps])
-    simulate(column(10, case, 3), Moreau(H))  # what is loaded once
+    for loads_once in (10, 300):  # dense steps, sparse ones
+        simulate(column(loads_once, case, 3), Moreau(H))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     begin = time.process_time()
     run = simulate(scene, Moreau(H), keep=ends)
