@@ -17,7 +17,7 @@ RESOLUTION = 2.0**-52
 WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
 LATE = 1e-9  # of a step: what rounding may take from the end of the last one
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed
-UNTOLD = 4.0 * RESOLUTION  # of a time: by how much longer than the body on it an obstacle may have moved
+UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
 
@@ -38,7 +38,7 @@ def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
     longest : whether h is a bound on steps that are chosen by a tolerance, and may be as long as it likes
     """
     start, end = span
-    rounding = 4.0 * RESOLUTION * max(abs(start), abs(end))
+    rounding = UNTOLD * max(abs(start), abs(end))
     if h > (end - start) * (1.0 + WHOLE) + rounding and not longest:
         raise LcpStepError(f"h: steps of {h:g} s are longer than the span of {end - start:g} s")
     if h < rounding and h < end - start:
@@ -50,7 +50,7 @@ def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
 
 def unresolved(span: tuple[float, float], h: float) -> float:
     """Time by which whole steps of h may miss the end of the span: a share of one, or the rounding of the times."""
-    return max(WHOLE * h, 4.0 * RESOLUTION * max(abs(span[0]), abs(span[1])))
+    return max(WHOLE * h, UNTOLD * max(abs(span[0]), abs(span[1])))
 
 
 def number(span: tuple[float, float], h: float) -> int:

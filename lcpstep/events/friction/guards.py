@@ -92,10 +92,8 @@ def begin_guards(s: Rubbing, t: float) -> bool:
         k, i = GUARDS * c, s.n_j + c
         s.lands[c] = 0.0
         if s.mode[c] == OPEN:
-            u, alpha = (
-                product(s.R, s.v, i, s.n_q) + s.rate[i],
-                product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i],
-            )
+            u = product(s.R, s.v, i, s.n_q) + s.rate[i]
+            alpha = product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
             noise = rounding_of_gap(s, c) + no_gap(s, c, u, alpha)
             s.band[k] = max(noise, -2.0 * s.value[k])  # deeper than it is now
             s.lands[c] = low_flight(u, alpha, s.band[k])
