@@ -4,6 +4,7 @@ python3 start.py          the cam-follower by every method: a table, how to read
 python3 start.py test     the checks: lint, types, import rules, tests
 """
 
+import contextlib
 import functools
 import hashlib
 import os
@@ -72,10 +73,12 @@ def set_up(checks: bool) -> None:
     built = is_done("built", *BUILD, *kernels())
     if not built:
         make_environment()
-    with ThreadPoolExecutor(1) as beside:
-        fetching = None if fetched else beside.submit(fetch, *required(checks))
+    if built and fetched:
+        return
+    with uv_for_now() as uv, ThreadPoolExecutor(1) as beside:
+        fetching = None if fetched else beside.submit(install, uv, *required(checks))
         if not built:
-            pip_install("--no-deps", "--editable", ".")
+            install(uv, "--no-deps", "--editable", ".")
             note_done("built", *BUILD, *kernels())
         if fetching is not None:
             fetching.result()
@@ -124,16 +127,15 @@ def digest(*files: str) -> str:
     return hashlib.sha256(b"".join((ROOT / file).read_bytes() for file in files)).hexdigest()
 
 
-def fetch(*packages: str) -> None:
-    """Install for the environment what others have built: by uv, in a fifth of the time; where that fails by pip."""
+@contextlib.contextmanager
+def uv_for_now() -> Iterator[str | None]:
+    """A uv at hand, or one fetched for as long as this lasts; None where pip is led to packages in its own way."""
     with tempfile.TemporaryDirectory() as folder:
-        uv = find_uv(folder)
-        if uv is None or not succeeds(uv, "pip", "install", "--quiet", "--python", ENVIRONMENT, *packages):
-            pip_install(*packages)
+        yield find_uv(folder)
 
 
 def find_uv(folder: str) -> str | None:
-    """A uv at hand, or one fetched into the folder; None where pip is led to packages in its own way."""
+    """A uv at hand, or one fetched into the folder; None where there is none to be used."""
     if OWN_INDEX.search(subprocess.run([*pip(), "config", "list"], capture_output=True, text=True).stdout):
         return None
     if shutil.which("uv") is None and succeeds(*pip(), "install", "--quiet", "--target", folder, "uv"):
@@ -141,22 +143,26 @@ def find_uv(folder: str) -> str | None:
     return shutil.which("uv")
 
 
-def pip_install(*arguments: str) -> None:
-    """Run `pip install` for the environment; each file is compiled as it is first imported.
+def install(uv: str | None, *arguments: str) -> None:
+    """Install for the environment: by uv, in a fifth of pip's time; where that fails by pip.
 
-    What it says is shown where it fails, else its warnings are of no use to anybody.
+    Files are compiled as they are first imported. What is said is shown where it fails, else warnings are of no use
+    to anybody.
     """
     later = [] if sys.dont_write_bytecode else ["--no-compile"]
-    process = subprocess.Popen(
-        [*pip(), "install", "--verbose", *later, *arguments], cwd=ROOT, text=True, errors="replace",
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-    )  # fmt: skip
-    said = list(shown(process.stdout))
-    if process.wait() != 0:
-        log = ENVIRONMENT / "setting-up.log"
-        log.write_text("".join(said))
-        words = " ".join(map(str, process.args))
-        sys.exit(f"{''.join(said[-LAST:])}setting up failed: {words}; all of it: {log}")
+    by_uv = [] if uv is None else [[uv, "pip", "install", "--verbose", "--python", ENVIRONMENT]]
+    for way in [*by_uv, [*pip(), "install", "--verbose", *later]]:
+        process = subprocess.Popen(
+            [*way, *arguments], cwd=ROOT, text=True, errors="replace",
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+        said = list(shown(process.stdout))
+        if process.wait() == 0:
+            return
+    log = ENVIRONMENT / "setting-up.log"
+    log.write_text("".join(said))
+    words = " ".join(map(str, process.args))
+    sys.exit(f"{''.join(said[-LAST:])}setting up failed: {words}; all of it: {log}")
 
 
 @functools.cache

@@ -39,7 +39,8 @@ def set_up(environment: Path) -> None:
     start.ENVIRONMENT = environment
     start.BIN = environment / start.BIN.name
     venv.create(environment, clear=True)
-    start.fetch(*lowest())
+    with start.uv_for_now() as uv:
+        start.install(uv, *lowest())
 
 
 if __name__ == "__main__":

@@ -1,22 +1,31 @@
-cimport numpy as cnp
+# Declared here and not cimported from numpy, which would bring all of its types into each module: two fifths of the
+# time of translating them
+cdef extern from "numpy/ndarraytypes.h":
+    ctypedef class numpy.ndarray [object PyArrayObject, check_size ignore]:
+        pass
+    int NPY_DOUBLE
+    void* PyArray_DATA(ndarray x) noexcept nogil
+    int PyArray_TYPE(ndarray x) noexcept nogil
+    int PyArray_NDIM(ndarray x) noexcept nogil
+    bint PyArray_ISCARRAY(ndarray x) noexcept nogil
 
 
 cdef inline bint are_doubles(object x, int dimensions) noexcept:
     return (
-        type(x) is cnp.ndarray
-        and cnp.PyArray_TYPE(<cnp.ndarray> x) == cnp.NPY_DOUBLE
-        and cnp.PyArray_NDIM(<cnp.ndarray> x) == dimensions
-        and cnp.PyArray_ISCARRAY(<cnp.ndarray> x)
+        type(x) is ndarray
+        and PyArray_TYPE(<ndarray> x) == NPY_DOUBLE
+        and PyArray_NDIM(<ndarray> x) == dimensions
+        and PyArray_ISCARRAY(<ndarray> x)
     )
 
 
 cdef inline double* doubles(object x) noexcept:
-    return <double*> cnp.PyArray_DATA(<cnp.ndarray> x)
+    return <double*> PyArray_DATA(<ndarray> x)
 
 
 cdef inline Py_ssize_t* indices(object x) noexcept:
-    return <Py_ssize_t*> cnp.PyArray_DATA(<cnp.ndarray> x)
+    return <Py_ssize_t*> PyArray_DATA(<ndarray> x)
 
 
 cdef inline unsigned char* small_numbers(object x) noexcept:
-    return <unsigned char*> cnp.PyArray_DATA(<cnp.ndarray> x)
+    return <unsigned char*> PyArray_DATA(<ndarray> x)

@@ -128,17 +128,25 @@ def test_a_log_of_the_building_that_nobody_watches_is_not_written_over(capsys):
     assert capsys.readouterr().out == ""
 
 
-def test_packages_come_by_pip_where_it_has_an_index_of_its_own_or_uv_fails(tmp_path, monkeypatch):
+def test_uv_is_not_asked_where_pip_has_an_index_of_its_own(tmp_path, monkeypatch):
     monkeypatch.setattr(start, "pip", lambda: [sys.executable, "-m", "pip"])
-    asked = []
-    monkeypatch.setattr(start, "pip_install", lambda *packages: asked.append(packages))
     monkeypatch.setenv("PIP_INDEX_URL", "https://packages.example/simple")
     assert start.find_uv(str(tmp_path)) is None
-    start.fetch("numpy")
-    monkeypatch.delenv("PIP_INDEX_URL")
-    monkeypatch.setattr(start, "find_uv", lambda folder: sys.executable)  # which knows no `pip install`
-    start.fetch("scipy")
-    assert asked == [("numpy",), ("scipy",)]
+
+
+def test_packages_come_by_pip_where_uv_fails(tmp_path, monkeypatch):
+    asked = tmp_path / "asked.txt"
+    pip = tmp_path / "pip.py"
+    pip.write_text(f"import sys\nopen({str(asked)!r}, 'a').write(' '.join(sys.argv[1:]) + '\\n')\n")
+    monkeypatch.setattr(start, "pip", lambda: [sys.executable, pip])
+    start.install(None, "numpy")
+    start.install(sys.executable, "scipy")  # which knows no `pip install`
+    assert [line.split()[-1] for line in asked.read_text().splitlines()] == ["numpy", "scipy"]
+    pip.write_text("print('no such package'); raise SystemExit(1)\n")
+    monkeypatch.setattr(start, "ENVIRONMENT", tmp_path)
+    with pytest.raises(SystemExit, match="no such package"):
+        start.install(None, "numpy")
+    assert (tmp_path / "setting-up.log").read_text() == "no such package\n"
 
 
 def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
