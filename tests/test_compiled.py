@@ -59,6 +59,7 @@ def three_processes(tmp_path_factory):
     return said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("expression", EXPRESSIONS)
 def test_a_callback_kept_on_disk_is_not_taken_for_another(three_processes, expression):
     for number, found in three_processes.values():

@@ -54,6 +54,7 @@ def test_basins_agree_with_runs_followed_one_by_one_and_divide_into_any_parts(mo
     assert np.array_equal(again["label"], data["label"])
 
 
+@pytest.mark.slow
 def test_all_cells_go_to_the_chaotic_attractor_where_there_is_no_other():
     data = basins(cam_follower(rpm=660.0), [0.01, -20.0], [1.0, 20.0], (24, 24), longest=400, sample=0)
     assert list(data["name"].values) == ["chaotic"]

@@ -71,6 +71,7 @@ def test_the_corner_impact_has_thirteen_digits(orbit):
     assert orbit.x == pytest.approx([float(z[0]), float(z[1])], rel=1e-13)
 
 
+@pytest.mark.slow
 def test_both_sides_of_the_local_map_have_thirteen_digits_and_their_error_is_known(orbit):
     z, chain = exact_orbit(orbit), local_map(orbit)
     error = uncertainty(orbit, chain)

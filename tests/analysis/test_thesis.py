@@ -15,7 +15,7 @@ from lcpstep.thesis.page import chapter_of, table
 from lcpstep.thesis.printed import PRINTED
 from tests.marks import shared
 
-FAST = ("2", "4.4", "7.5")
+FAST = ("4.4", "7.5")
 
 
 @pytest.mark.parametrize("name", FAST)
