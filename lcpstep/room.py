@@ -48,7 +48,7 @@ def no_room(run: Trajectory) -> str:
         g = gaps_at(m, run.t[k], np.ascontiguousarray(run.q[k]))
     cause()
     forget()
-    reach = float(np.linalg.norm(np.ptp(run.q[k], axis=0)))
+    reach = float(np.linalg.norm(np.ptp([run.scene.q0, *run.q[k]], axis=0)))  # kept states may be those of a rest
     lowest = g.min(axis=1)
     for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
         c, at = int(np.argmin(g[i])), float(run.t[k[i]])

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearSystem, Scene, System
+from lagrangian import Contacts, Coulomb, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.room import closes_upon
 from lcpstep.trajectory import Status
@@ -93,3 +93,35 @@ def test_linear_forces_that_are_taken_implicitly_have_no_bound():
         run = simulate(scene, method)
         assert run.doubt == ""
         np.testing.assert_allclose(run.q, 0.1 + 0.3 * np.column_stack([run.t, run.t]), rtol=1e-9)
+
+
+def ground(t, q, v, p, out):
+    out[0] = q[1] - 0.3 * q[0] * q[0]
+
+
+def ground_normal(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -0.6 * q[0], 1.0
+
+
+def ground_curvature(t, q, v, p, out):
+    out[0] = -0.6 * v[0] * v[0]
+
+
+def ground_tangent(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, 0.6 * q[0]
+
+
+def falls_freely(t, q, v, p, out):
+    out[0], out[1] = 0.0, -9.81
+
+
+@pytest.mark.parametrize("keep", [1, "impacts", [0.6, 1.0]])
+def test_a_body_at_rest_on_a_ground_has_room_whatever_is_kept_of_its_run(keep):
+    contacts = Contacts(
+        1, ground, ground_normal, bias=ground_curvature, friction=Coulomb(0.8, ground_tangent)
+    )
+    scene = Scene(System(2, np.eye(2), falls_freely), [0.2, 0.1], [0.4, 0.0], (0.0, 1.0), contacts)
+    run = simulate(scene, Moreau(2e-4), keep=keep)
+    assert np.abs(run.v[-1]).max() < 1e-9  # it has come to rest, somewhat below the surface
+    assert -1e-3 < run.q[-1, 1] - 0.3 * run.q[-1, 0] ** 2 < 0.0
+    assert (run.status, run.doubt) == (Status.DONE, "")

@@ -4,14 +4,14 @@ from lcpstep.stepping.theta_method.moving cimport Rows, State
 from lcpstep.stepping.theta_method.plan cimport Plan
 
 cdef Py_ssize_t ONE, FIRST, SECOND
-cdef double STICKS
+cdef double SHARED, STICKS
 
 
 @cython.final
 cdef class Switches:
     cdef object kept
-    cdef readonly Py_ssize_t n_c, n
-    cdef Doubles force, impulse, mobility, response, turned
+    cdef readonly Py_ssize_t n_q, n_c, n
+    cdef Doubles force, impulse, mobility, response, turned, apart
     cdef Indices holds, held
     cdef void begin(self, State s, double slow) noexcept nogil
     cdef void note(
@@ -23,3 +23,4 @@ cdef class Switches:
     ) noexcept nogil
     cdef double unseen(self, double h, bint even) noexcept nogil
     cdef double differ(self, Py_ssize_t k) noexcept nogil
+    cdef double apart_by(self, Py_ssize_t k) noexcept nogil

@@ -12,13 +12,14 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.kernels.vectors import add, clear, largest, product
     from lcpstep.pointers import Doubles, abs, after, indices_after, max, min
     from lcpstep.stepping.hidden_forces import hidden, late
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
 
 ONE, FIRST, SECOND = range(3)  # the step, its halves
+SHARED = 4.0  # rows that do not depend on each other make of their impulses together a quarter of what one makes
 STICKS = 1.0 - 1e-9  # of its limit: friction below it; its speed does not tell, for sliding begins slowly
 
 
@@ -31,18 +32,21 @@ class Switches:
     mobility : (n,)            when last in contact
     response : (n,)            largest velocity that an impulse makes
     turned : (n,)              impulse of friction with the wrong sign
+    apart : (n_q,)             what the impulses of all rows, joints too, make of the velocities in the step, less
+                               what they make in its halves: nothing where rows that depend on each other share them
 
     Parameters
     ----------
-    n_c, n : int   contacts; rows
+    n_q, n_c, n : int   coordinates; contacts; rows
     """
 
-    def __init__(self, n_c: int, n: int) -> None:
-        self.n_c, self.n = n_c, n
-        self.kept = np.zeros(9 * n), np.zeros(4 * n, dtype=np.intp)
+    def __init__(self, n_q: int, n_c: int, n: int) -> None:
+        self.n_q, self.n_c, self.n = n_q, n_c, n
+        self.kept = np.zeros(9 * n + n_q), np.zeros(4 * n, dtype=np.intp)
         self.force, self.holds = doubles(self.kept[0]), indices(self.kept[1])
         self.impulse, self.mobility = after(self.force, 3 * n), after(self.force, 6 * n)
         self.response, self.turned = after(self.force, 7 * n), after(self.force, 8 * n)
+        self.apart = after(self.force, 9 * n)
         self.held = indices_after(self.holds, 3 * n)
 
     def begin(self, s: State, slow: float) -> None:
@@ -50,6 +54,7 @@ class Switches:
         for i in range(self.n_c):
             self.held[i] = 1 if s.closed[i] > 0 and abs(s.u[i]) <= slow else 0
         clear(self.turned, self.n)
+        clear(self.apart, self.n_q)
 
     def note(self, part: int, plan: Plan, s: State, rows: Rows, before: Doubles, slow: float) -> None:
         """Rows of a part that has been taken; `before`: gap velocities at its start."""
@@ -64,6 +69,10 @@ class Switches:
                 self.force[first + i] = -(s.u[i] - before[i]) / (self.mobility[i] * plan.h)
         if rows.n_t > 0:
             self.note_friction(part, plan, s, rows, slow)
+        for k in range(rows.n):
+            if rows.p[k] != 0.0:
+                sign = 1.0 if part == ONE else -1.0
+                add(self.apart, sign * rows.p[k], after(plan.X, k * self.n_q), self.n_q)
 
     def measure(self, k: int, plan: Plan, s: State, rows: Rows) -> None:
         """How a row answers impulses."""
@@ -94,7 +103,7 @@ class Switches:
 
     def unseen(self, h: float, even: bool) -> float:
         """Error of the velocities after two halves of h/2; `even` where impulses are means of both ends of a step."""
-        worst, n = 0.0, self.n
+        worst, n, apart = 0.0, self.n, SHARED * largest(self.apart, 0.0, self.n_q)
         for k in range(n):
             p = self.turned[k]
             if self.held[k] > 0:
@@ -104,6 +113,8 @@ class Switches:
                 one, first, second = self.force[k], self.force[n + k], self.force[2 * n + k]
                 if not even:  # forces at the ends of the parts: along a line
                     one, first, second = first, 0.5 * (3.0 * first - one), 0.5 * (first + one)
+                if self.apart_by(k) * self.response[k] > apart:
+                    continue  # what one row has less, others have more: forces that nothing tells apart
                 p = max(p, late(one, first, second, h, opened, h))
                 if self.holds[ONE * n + k] > 0 and opened == h:
                     p = max(p, self.differ(k))
@@ -111,8 +122,10 @@ class Switches:
         return worst
 
     def differ(self, k: int) -> float:
-        """By how much the step and its halves disagree about an impulse."""
+        """By how much the step and its halves disagree about an impulse, as an error."""
         one, two = self.impulse[k], self.impulse[self.n + k] + self.impulse[2 * self.n + k]
-        if one > 0.0 and two > 0.0:
-            return hidden(one, two)
-        return abs(one - two)
+        return hidden(one, two) if one > 0.0 and two > 0.0 else self.apart_by(k)
+
+    def apart_by(self, k: int) -> float:
+        """By how much they disagree about it."""
+        return abs(self.impulse[k] - (self.impulse[self.n + k] + self.impulse[2 * self.n + k]))

@@ -13,7 +13,8 @@ Beside the difference of the two runs these count as errors, for both may agree 
 and what releases and friction hide (`hidden_switches`).
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
 step before an impact is halved until it is short, which costs the logarithm of its length. A contact that closes
-slower than the tolerance resolves is closed without rebound, so that chattering ends.
+slower than the tolerance resolves is closed without rebound, so that chattering ends; one that lasts stays active
+while its gap is below the tolerance, for steps above what curves or shakes open it by their own error.
 
 A step ends at a corner of the scene, on its near side, and the next one begins on its far side, where forces and
 obstacles' velocities are other ones. What rests on an obstacle is taken along without rebound, or left behind, as by
@@ -82,7 +83,7 @@ class Attempts(Control):
         m, plan, s, rows = way.m, way.plan, way.s, way.rows
         self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
         self.times, self.record.n_times = self.record.times, 0
-        self.switches, self.struck, self.share = Switches(s.n_c, rows.n_c + rows.n_t), False, 1.0
+        self.switches, self.struck, self.share = Switches(s.n_q, s.n_c, rows.n_c + rows.n_t), False, 1.0
         places = OWN + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
         self.own_made[:] = not m.linear
@@ -215,6 +216,7 @@ class Attempts(Control):
         """Remember where a part begins; contacts slower than `slow` have no restitution in it."""
         copy(self.part_q, self.s.q, self.s.n_moving)
         self.rows.blows.least = slow
+        self.s.opened = self.tolerance * (1.0 + self.size_q)
         for i in range(self.s.n_c):
             self.rows.p[i] = 0.0
 

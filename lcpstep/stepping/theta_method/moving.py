@@ -33,6 +33,7 @@ class State:
     active           contacts that take part in the step at hand
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
     moved    by how much more than rounding of q the last iteration has moved it
+    opened   the gap that steps may have opened above a contact which lasts: 0 of steps of one size
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ class State:
         self.closed = indices(self.marks)
         self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
         self.active = self.steps = self.problems = self.forces = self.iteration = 0
-        self.moved = 0.0
+        self.moved = self.opened = 0.0
         self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q)
         self.next_force = doubles(self.work)
         self.next_q = after(self.next_force, n_q)

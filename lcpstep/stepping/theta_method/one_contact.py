@@ -109,7 +109,8 @@ def met(
     s.v_free[0], c.H[0], c.H_t[0] = v, G, g_t  # what a control by a tolerance looks at
     gap = g + 0.5 * plan.h * u
     drift = (RESTING + RESOLUTION * k) * (abs(G) * (abs(q) + plan.h * (abs(plan.X[0]) * c.p[0])))
-    if gap <= plan.slack or (closed > 0 and gap <= plan.slack + drift + UNTOLD * abs(t * g_t)):
+    held = s.opened if closed > 1 else 0.0
+    if gap <= plan.slack + held or (closed > 0 and gap <= plan.slack + drift + UNTOLD * abs(t * g_t)):
         r = m.restitution[0] if abs(u) > c.blows.least else 0.0
         p = max(0.0, -(G * v + g_t + r * u) / plan.W[0])
         v += plan.X[0] * p

@@ -1,8 +1,8 @@
 """One step of the Moreau theta-method, from t to t + h, with contacts, tangents and joints as rows of one problem.
 
     v_free  velocity without contact (a theta-method: linear systems by constant matrices, others by Newton)
-    active  contacts whose predicted gap g + (h/2) u is not positive, but for what rounding may have opened
-            closed ones by
+    active  contacts whose predicted gap g + (h/2) u is not positive, but for what rounding, or the error of steps
+            by a tolerance, may have opened closed ones by
     p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t;  blow after blow
             where some of these separate while others strike, without those that separate: see `blows`
             law of friction and impact on their tangents, see `kernels.coulomb`
@@ -93,7 +93,8 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     n_a = 0
     for i in range(c.n_c):
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
-        if gap <= plan.slack or (s.closed[i] > 0 and gap <= plan.slack + drifted(m, plan, s, c, i, t)):
+        held = s.opened if s.closed[i] > 1 else 0.0
+        if gap <= plan.slack + held or (s.closed[i] > 0 and gap <= plan.slack + drifted(m, plan, s, c, i, t)):
             c.problem.ids[n_a] = i
             n_a += 1
     s.active = n_a
