@@ -7,7 +7,7 @@ import importlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,23 @@ def labelled(
         if unit is not None:
             data[name].attrs["units"] = unit
     return data
+
+
+def check_free(parameter: str, taken: Iterable[str]) -> None:
+    """Refuse a parameter of the name of something else in a dataset, before any work starts.
+
+    Raises
+    ------
+    TypeError    the name is no text
+    ValueError   it is taken
+    """
+    if not isinstance(parameter, str):
+        raise TypeError(f"parameter: expected the name of one, got {parameter!r}")
+    if parameter in taken:
+        raise ValueError(
+            f"parameter: the result has something else of the name {parameter!r}; give it another one, as the "
+            f"function that makes scenes calls it"
+        )
 
 
 def provenance(scene: Scene | HybridScene, method: Method) -> dict[str, Any]:

@@ -5,6 +5,8 @@ Only classes that are listed here are made again from a tree, and none of their 
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from functools import partial
@@ -57,6 +59,14 @@ MOTIONS = (Again, Arcs, Bent, Flights, Linear, Moved, Parabolic, Pieces, States)
 ANSWERS = (Audit, Bar, Counts, ErrorBar, Found, HybridTrajectory, Trajectory, Window)
 KINDS = {kind.__name__: kind for kind in (*MODELS, *METHODS, *MOTIONS, *ANSWERS)}
 LEFT_OUT = {"Flights": ("model",)}  # good in one process only
+MOVING = (
+    "system",
+    "contacts",
+    "joints",
+    "p",
+    "corners",
+    "period",
+)  # of a scene: what decides how a state moves
 COLUMNS = {"impacts": "impact", "switches": "switch"}  # what the log's columns begin with
 Tree = Any
 
@@ -89,6 +99,13 @@ class Describer:
         self.places[id(x)] = place
         self.met.append(x)
         return self._new(x, place)
+
+    def told(self, x: Any, place: str) -> Tree:
+        """The same; of what no file can take the name of its class."""
+        try:
+            return self.tree(x, place)
+        except LcpStepError:
+            return type(x).__qualname__
 
     def _new(self, x: Any, place: str) -> Tree:
         if isinstance(x, np.ndarray):
@@ -129,6 +146,31 @@ class Describer:
             self.arrays[place] = np.ascontiguousarray(x)
         mark = {"parameters": True} if isinstance(x, Values) else {}
         return {"array": place, "dtype": x.dtype.str, "shape": list(x.shape)} | mark
+
+
+def checksum(scene: Scene | HybridScene) -> str:
+    """A number that is the same exactly if states move on alike, in every process: matrices, functions, parameters.
+
+    Initial state, span, name and drawing have no part in it. Classes of a user's own, and objects that are called,
+    go by their names.
+    """
+    made = Describer()
+    tree = {name: made.told(getattr(scene, name), name) for name in MOVING if hasattr(scene, name)}
+    found = hashlib.sha256(json.dumps(_without_sources(tree), sort_keys=True).encode())
+    for name, x in sorted(made.arrays.items()):
+        found.update(f"{name} {x.dtype} {x.shape}".encode() + x.tobytes())
+    return found.hexdigest()
+
+
+def _without_sources(tree: Tree) -> Tree:
+    """The same with functions told by their checksums alone: a comment, or another name, makes no other motion."""
+    if isinstance(tree, list):
+        return [_without_sources(x) for x in tree]
+    if not isinstance(tree, dict):
+        return tree
+    if tree.get("sha256"):
+        return tree["sha256"]
+    return {name: _without_sources(x) for name, x in tree.items()}
 
 
 class Builder:

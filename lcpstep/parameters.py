@@ -67,6 +67,7 @@ ERRORS: dict[str, tuple[str, Callable[[Any], Any]]] = {  # of an error bar: unit
     "energy_error": ("J", lambda bar: bar.energy.sup),
     "known_until": ("s", lambda bar: bar.until),
 }
+VECTORS = ("q_end", "v_end")  # a number for every coordinate
 ORDINARY = ("impacts", "impulse", "strongest", "q_end", "v_end")
 
 
@@ -155,14 +156,28 @@ class ParameterStudy:
         -------
         xarray.Dataset : each measure over the swept parameters, and how each run ended; its attribute `study` is the
             text, `scene`, `method` and the versions are others
+
+        Raises
+        ------
+        ValueError   a swept parameter has the name of a measure, or a measure by coordinates is asked for where the
+            number of these is swept
         """
+        measures = self.outputs["measures"]
+        for name in self.sweep:
+            dataset.check_free(name, {"status", "coordinate", *measures})
         points = self.points
         scenes = [make(point) for point in points]  # all of them before any work starts
         if modes := next((x for x in scenes if isinstance(x, HybridScene)), None):
             raise LcpStepError(
                 f"scene: {modes.name!r} has modes; parameter studies take scenes with contacts"
             )
-        rows, ended, measures = [], [], self.outputs["measures"]
+        counts = sorted({scene.n_q for scene in scenes})
+        if len(counts) > 1 and (wide := [name for name in VECTORS if name in measures]):
+            raise ValueError(
+                f"measures: {', '.join(wide)}: the scenes have {', '.join(map(str, counts))} coordinates, which "
+                f"make no array; leave them out"
+            )
+        rows, ended = [], []
         for k, scene in enumerate(scenes):
             run = self._one(scene, 1 if kept or self.tells_errors or "penetration" in measures else None)
             if kept is not None:

@@ -147,3 +147,17 @@ def test_a_picture_without_a_sweep_is_refused_before_the_run(folder, capsys):
     status, out, err = run(capsys, "run", "one.toml")
     assert (status, out) == (USAGE, "")
     assert "one.toml: [outputs]: picture: expected a parameter in [sweep] to draw over" in err
+
+
+def test_names_and_shapes_that_make_no_array_are_refused_before_any_run():
+    def beads(values):
+        return scenes.elastic_gas(n=int(values.get("n", 2)))
+
+    for sweep, measures, said in (
+        ("n = [2, 3]", '["impacts", "q_end"]', "measures: q_end: the scenes have 2, 3 coordinates"),
+        ("steps = [2, 3]", '["steps"]', "parameter: .* 'steps'"),
+        ("status = [2, 3]", '["impacts"]', "parameter: .* 'status'"),
+    ):
+        text = f'scene = "elastic-gas"\n[sweep]\n{sweep}\n[outputs]\nmeasures = {measures}\n'
+        with pytest.raises(ValueError, match=said):
+            ParameterStudy.read(text).run(beads, kept=lambda *_: pytest.fail("a run was made"))

@@ -34,6 +34,7 @@ from lcpstep.analysis.cells import OBSTACLE, UNKNOWN, Cells, Grid
 from lcpstep.analysis.neighbourhoods import neighbourhoods
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.dataset import Progress, labelled, provenance
+from lcpstep.described import checksum
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, Targets, periodic, periods
 from lcpstep.simulation import Method
@@ -103,16 +104,24 @@ def basins(
     low, high = checks.array("lowest", lowest, (2,)), checks.array("highest", highest, (2,))
     if not np.all(low < high):
         raise ValueError(f"lowest, highest: expected an increasing range of q and of v, got {low} and {high}")
+    if np.shape(shape) != (2,):
+        raise ValueError(f"shape: expected two numbers of cells, along q and along v, got {shape!r}")
     n_q, n_v = (checks.count("shape", n) for n in shape)
     longest, method = checks.count("longest", longest), method or EventDriven()
     complete = known is None
-    if known is None:
+    if known is not None:
+        checks.instance("known", known, Attractors)
+    else:
         starts = outside(scene, random_starts([low, high], STARTS, seed), phase)
+        if len(starts) == 0:
+            raise ValueError(
+                "lowest, highest: the rectangle lies inside of the obstacle, as far as was looked"
+            )
         known = attractors(scene, method, starts, phase=phase, transient=longest)
     grid = Grid(low, high, n_q, n_v)
     targets = neighbourhoods(scene, method, known.found, phase, longest, seed)
     study = _Study(scene, method, grid, targets, phase, longest)
-    inputs = study.inputs(known)
+    inputs = study.inputs(known) | {"scene_sha256": checksum(scene)}
 
     def follow(name: str, work: Callable[..., Any], x: Array, least: int) -> Arrays:
         size = max(least, -(-len(x) // PARTS))

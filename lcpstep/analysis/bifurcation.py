@@ -21,9 +21,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.listed import joined, listed
-from lcpstep.dataset import Progress, labelled, provenance
+from lcpstep.dataset import Progress, check_free, labelled, provenance
+from lcpstep.described import checksum
 from lcpstep.events import EventDriven
-from lcpstep.maps.batch import periods
+from lcpstep.maps.batch import INSIDE, periods, section
 from lcpstep.simulation import Method
 from lcpstep.sweep import Arrays, sweep
 from lcpstep.trajectory import Status
@@ -33,6 +34,15 @@ Start = Literal["fixed", "forward", "backward", "random"]
 STARTS = ("fixed", "forward", "backward", "random")
 IMPACTS_RECORDED = 512  # of a period
 PART = 8  # parameter values of a part of the sweep
+LISTS = {  # of all events, and what each says of one
+    "impact": ("value", "run", "period", "number", "phase", "before", "after"),
+    "landing": ("value", "run", "period", "number", "phase"),
+}
+TAKEN = {  # names in the dataset
+    "run", "period", "impacts", "ends", "status", "corner_phase", "corner", *LISTS,
+    *(f"{kind}_{name}" for kind, names in LISTS.items() for name in names),
+}  # fmt: skip
+OF_STATES = {HybridScene: {"x", "state"}, Scene: {"q", "v", "coordinate"}}
 WINDOWS = {  # rpm of the cam-follower, as in the thesis
     "114-850": (114.0, 850.0),
     "114-200": (114.0, 200.0),
@@ -93,27 +103,44 @@ def bifurcation(
 
     Raises
     ------
-    ValueError   values empty or not increasing, keep not positive, an unknown kind of start, a box missing
+    TypeError    make gives no scene
+    ValueError   values empty or not increasing, keep not positive, an unknown kind of start, a box missing, x0 inside
+        of the obstacle at every value, or a name of the parameter that the dataset needs itself
     SweepStopped   the executor died; finished parts are kept in `out`
     """
     checks.function("make", make, f"{parameter}, by name, that makes a scene")
+    check_free(parameter, TAKEN)
     values = checks.increasing(parameter, values)
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")
-    first = make(**{parameter: float(values[0])})
+    first, last = (_made(make, parameter, value) for value in (values[0], values[-1]))
+    check_free(parameter, OF_STATES[type(first)])
     d = first.n_x
     study = _Study(
         make=make, parameter=parameter, values=values, method=method or EventDriven(), start=start,
         x0=checks.array("x0", np.zeros(d) if x0 is None else x0, (d,)), box=_box(box, d, start),
-        runs=checks.count("runs", runs) if start == "random" else 1, seed=int(seed),
-        drop=int(checks.number("drop", drop, least=0)), keep=checks.count("keep", keep), phase=float(phase),
+        runs=checks.count("runs", runs) if start == "random" else 1, seed=int(checks.number("seed", seed, least=0)),
+        drop=int(checks.number("drop", drop, least=0)), keep=checks.count("keep", keep), phase=section(phase),
         most=checks.count("most", most),
     )  # fmt: skip
     order = range(len(values)) if start != "backward" else range(len(values) - 1, -1, -1)
     parts = [list(order)[i : i + PART] for i in range(0, len(values), PART)]
     chains = [parts] if start in ("forward", "backward") else [[part] for part in parts]
-    done = sweep(study, chains, study.inputs(first), out=out, executor=executor, jobs=jobs, progress=progress)
-    return study.dataset(first, [part for chain in done for part in chain])
+    inputs = study.inputs(first) | {"scenes_sha256": [checksum(scene) for scene in (first, last)]}
+    done = sweep(study, chains, inputs, out=out, executor=executor, jobs=jobs, progress=progress)
+    rows = [row for chain in done for row in chain]
+    if all(np.all(row["status"] == INSIDE) for row in rows):
+        where = "x0" if start != "random" else "box"
+        raise ValueError(f"{where}: the motion starts inside of the obstacle at every value of {parameter}")
+    return study.dataset(first, rows)
+
+
+def _made(make: Callable[..., Any], parameter: str, value: float) -> Scene | HybridScene:
+    """The scene at a value of the parameter; TypeError where it is none."""
+    scene = make(**{parameter: float(value)})
+    if not isinstance(scene, (Scene, HybridScene)):
+        raise TypeError(f"make: expected a scene at {parameter} = {value:g}, got {scene!r}")
+    return scene
 
 
 def _box(box: ArrayLike | None, d: int, start: str) -> Array:
@@ -132,7 +159,7 @@ def _name(make: Callable[..., Any]) -> str:
     if isinstance(make, partial):
         fixed = ", ".join(f"{key}={value!r}" for key, value in sorted(make.keywords.items()))
         return f"{_name(make.func)}({fixed})"
-    return f"{getattr(make, '__module__', '')}.{getattr(make, '__qualname__', make)}"
+    return f"{getattr(make, '__module__', '')}.{getattr(make, '__qualname__', type(make).__qualname__)}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,10 +185,11 @@ class _Study:
         rows: list[Arrays] = []
         lists: list[Arrays] = []
         for i in part:
+            given = self.start == "random" or np.array_equal(x, self.x0)  # and not where the neighbour ended
             scene = self.make(**{self.parameter: float(self.values[i])})
             found = periods(
                 scene, self.method, self.starts(i, x), self.drop + self.keep, drop=self.drop,
-                phase=self.phase, most=self.most, strict=handed is None and i == part[0],
+                phase=self.phase, most=self.most, strict=given,
             )  # fmt: skip
             continued = self.start in ("forward", "backward") and found.status[0] == Status.DONE
             x = found.final[0] if continued else self.x0

@@ -9,6 +9,11 @@ import numpy as np
 from lcpstep.analysis.orbits import OrbitBranch
 from lcpstep.dataset import labelled, provenance
 
+TAKEN = {  # names in the dataset
+    "point", "state", "special", "x", "stable", "name", "multiplier_real", "multiplier_imag", "multiplier_modulus",
+    "special_kind", "special_p", "special_x", "special_after",
+}  # fmt: skip
+
 
 def branch_dataset(
     ways: list[OrbitBranch], parameter: str, p_range: tuple[float, float], scene: Any, method: Any

@@ -58,8 +58,8 @@ def continue_point(
 
     Returns
     -------
-    Branch   whose last point lies on an end of the range, unless the branch or the number of points ends before;
-        a KeyboardInterrupt ends it where it has come to
+    Branch   whose last point lies on an end of the range, unless the branch or the number of points ends before, or
+        it is closed: then its last point is its first; a KeyboardInterrupt ends it where it has come to
 
     Raises
     ------

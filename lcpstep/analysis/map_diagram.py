@@ -25,7 +25,7 @@ from lcpstep.analysis.fixed_points import (
     periodic_point,
 )
 from lcpstep.analysis.lyapunov import Lyapunov, lyapunov
-from lcpstep.dataset import Progress, labelled
+from lcpstep.dataset import Progress, check_free, labelled
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.maps.formulas import Family
 from lcpstep.maps.iteration import Map
@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 BOUND = 1e6  # of an orbit that has not escaped, in units of 1 + |x0|
 PART = 16  # values of a part of the sweep
 SAME = 1e-7  # distance of two periodic points that are one, relative to their size
+TAKEN = {"x", "lyapunov", "lyapunov_error", "iteration", "state"}  # names in the dataset
 STARTS = ("fixed", "forward", "backward")
 
 
@@ -136,6 +137,7 @@ def map_diagram(
     checks.instance("family", family, Family)
     if parameter not in family.parameters:
         raise UnknownName(f"parameter of {family.name}", parameter, family.parameters)
+    check_free(parameter, TAKEN)
     values = checks.increasing(parameter, values)
     if start not in STARTS:
         raise ValueError(f"start: expected one of {', '.join(STARTS)}, got {start!r}")

@@ -19,13 +19,15 @@ from lcpstep.analysis.orbit import PeriodicOrbit as PeriodicOrbit
 from lcpstep.analysis.orbit import described, quiet_phase
 from lcpstep.analysis.orbit import moved as moved
 from lcpstep.analysis.orbit import periodic_orbit as periodic_orbit
-from lcpstep.analysis.predictor import Progress
+from lcpstep.analysis.predictor import PARAMETER_STEP, SPOILT, Progress
 from lcpstep.analysis.variation import PeriodMap
+from lcpstep.errors import LcpStepError
 from lcpstep.maps.batch import Periods
 
 Array = NDArray[np.float64]
 REMEMBERED = 32  # maps and motions that are asked for again at once
 GRAZING = 1e-2  # a branch that ends with a contact this soft, relative to the others, ends by grazing
+CLEARLY = 3.0  # times as soft: the difference of two orbits that is no rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,25 +129,62 @@ def continue_orbit(
         s._replace(kind=s.kind.split(" ")[0] if s.kind.startswith("corner") else s.kind)
         for s in branch.special
     ]
-    if branch.ended.startswith("no point") and _grazes(orbits[-1]):
-        p_end = _grazing_parameter(orbits[-2:], branch.p[-2:])
-        special.append(Special("grazing", p_end, branch.x[-1], branch.multipliers[-1]))
+    if branch.ended.startswith("no point") and isinstance(orbit.scene, Scene):
+        p_end, (value, x) = _grazing_parameter(orbits, branch.p), (float(branch.p[-1]), branch.x[-1])
+        # where an impact comes or goes beside the end, no differences tell the derivative by the parameter
+        reach = SPOILT * PARAMETER_STEP * (p_range[1] - p_range[0])
+        changes = {_impacts(followed, value + step, x) for step in (-reach, 0.0, reach)}
+        if _grazes(orbits[-1]) or (p_end != value and len(changes) > 1):
+            special.append(Special("grazing", p_end, x, branch.multipliers[-1]))
     return OrbitBranch(branch, phase, orbits, tuple(special))
 
 
-def _grazing_parameter(orbits: tuple[PeriodicOrbit, ...], p: Array) -> float:
-    """Where the contact becomes as soft as can be: the clearance, or the square of the lowest speed, is zero.
+def _impacts(
+    followed: Callable[[float, tuple[float, ...]], Periods], p: float, x: Array
+) -> tuple[int, ...] | None:
+    """Number of impacts in each period of the motion through x; None of one that does not begin or ends early."""
+    try:
+        return tuple(followed(p, tuple(x)).impacts[0].tolist())
+    except (ValueError, LcpStepError):
+        return None
 
-    Either is linear in the parameter there; continued from the last two orbits of the branch, of which the very
-    last is within a smallest step.
+
+def _grazing_parameter(orbits: tuple[PeriodicOrbit, ...], p: Array) -> float:
+    """Where the contact becomes as soft as can be: the clearance, or the lowest speed, is zero; p[-1] where unknown.
+
+    Either is linear in the parameter there, a speed because the orbit yields by as much as a graze moves it.
     """
-    if len(orbits) < 2 or len(orbits[0].time) != len(orbits[1].time):
-        return float(p[-1])
-    speeds = [float(np.min(np.abs(orbit.before), initial=np.inf)) ** 2 for orbit in orbits]
-    first, second = speeds if _soft(orbits[1]) else [orbit.clearance() for orbit in orbits]
-    if not (np.isfinite(first) and second < first):
-        return float(p[-1])
-    return float(p[1] + second * (p[1] - p[0]) / (first - second))
+    ways = [_lowest_speed] if _soft(orbits[-1]) else [_lowest_speed, PeriodicOrbit.clearance]
+    ends = [end for softness in ways if np.isfinite(end := _vanishing(softness, orbits, p))]
+    return min(ends, key=lambda end: abs(end - p[-1]), default=float(p[-1]))
+
+
+def _vanishing(
+    softness: Callable[[PeriodicOrbit], float], orbits: tuple[PeriodicOrbit, ...], p: Array
+) -> float:
+    """Where this is zero, from the last orbits that clearly differ in it; nan where they do not.
+
+    The very last is left out if it can be: of the softest contact the speed is the square root of its rounding.
+    """
+    alike = [k for k in range(len(orbits)) if len(orbits[k].time) == len(orbits[-1].time)]
+    found: list[tuple[float, float]] = []
+    for k in reversed(alike):
+        value = softness(orbits[k])
+        if not np.isfinite(value):
+            break
+        if not found or value >= CLEARLY * found[-1][1]:
+            found.append((float(p[k]), value))
+        if len(found) == 3:
+            break
+    if len(found) < 2:
+        return np.nan
+    (p_first, first), (p_last, last) = found[-1], found[-2]
+    return p_last + last * (p_last - p_first) / (first - last)
+
+
+def _lowest_speed(orbit: PeriodicOrbit) -> float:
+    """Of all its impacts [m/s]; infinite where it has none."""
+    return float(np.min(np.abs(orbit.before), initial=np.inf))
 
 
 def _soft(orbit: PeriodicOrbit) -> bool:
@@ -159,7 +198,5 @@ def _soft(orbit: PeriodicOrbit) -> bool:
 
 def _grazes(orbit: PeriodicOrbit) -> bool:
     """Whether one contact of the orbit is much softer than the others, or is about to appear."""
-    if isinstance(orbit.scene, HybridScene):
-        return False
     height = float(np.ptp(orbit.x[:, 0])) + abs(float(orbit.x[0, 0]))
     return _soft(orbit) or orbit.clearance() < GRAZING**2 * max(height, 1e-300)

@@ -28,10 +28,16 @@ CONVERGED = 1e-11  # residual, relative to the size of the point
 CONTRACTION = 0.5  # a residual that shrinks by less than this is at its rounding, or will not converge
 STAGNATED = 1e-8
 INTERRUPTED = "interrupted"  # why a branch ended
+CLOSED = "back where it began: the branch is closed"
+SAME = 1e-6  # distance of two points that are one, in units of steps
 SOON = 3  # corrections after which dF/dp is computed anew
 FEW = 4  # corrections after which the step may grow
 GROWTH, SHRINK = 1.4, 0.5
 PARAMETER_STEP = 1e-5  # of the range, for the derivative by the parameter
+NEAREST = (
+    1e-9  # the same where the branch is hard to follow: near grazing, longer differences see other motions
+)
+SPOILT = 10.0  # of such steps: a motion of another kind within that spoils it
 ROOT = 1e-13  # of a step, where a bifurcation is located
 KINDS = ("fold", "branch point", "flip", "torus", "jump")
 SMALL = 1e-4  # a test function this small at its sign change, relative to the ends, is zero there and no jump
@@ -55,7 +61,7 @@ class Follower:
         character: Callable[[float, Array], object] | None, progress: Progress | None,
     ) -> None:  # fmt: skip
         self.family, self.n, self.low, self.high = family, n, low, high
-        self.steps, self.monitor, self.character = steps, monitor, character
+        self.steps, self.monitor, self.character, self.beside = steps, monitor, character, PARAMETER_STEP
         self.progress = progress
 
     def branch(self, z: Array, direction: float) -> Branch:
@@ -71,7 +77,7 @@ class Follower:
                     break
                 found = self.step(states[-1], tangent, ds)
                 if found is None:
-                    ds *= SHRINK
+                    ds, self.beside = ds * SHRINK, max(self.beside * SHRINK**3, NEAREST)
                     if ds < self.steps.smallest:
                         ended = f"no point of the branch beyond p = {states[-1].z[-1]:.12g}"
                     continue
@@ -80,6 +86,8 @@ class Follower:
                     new, ended = self.at_the_end(states[-1], new), "left the range"
                 if new is states[-1]:
                     break
+                if not ended and self.passes(states, tangent, new):
+                    new, ended = states[0], CLOSED
                 reached = float(tangent @ ((new.z - states[-1].z) / self.scale))
                 found_between = between(self, states[-1], new, tangent, reached)
                 special += [s._replace(after=len(states) - 1) for s in found_between]
@@ -89,7 +97,11 @@ class Follower:
                 self.measure(new.z)
                 new.slope = self.slope(new.z)
                 tangent = self.tangent(new, ahead / self.scale)
-                ds = min(self.steps.largest, ds * (GROWTH if effort <= FEW else 1.0))
+                growth = GROWTH if effort <= FEW else 1.0
+                ds, self.beside = (
+                    min(self.steps.largest, ds * growth),
+                    min(PARAMETER_STEP, self.beside * growth),
+                )
         except KeyboardInterrupt:
             ended = INTERRUPTED
         return Branch(
@@ -111,6 +123,20 @@ class Follower:
         """The units in which steps from z are counted."""
         size = max(1.0, float(np.max(np.abs(z[:-1]))))
         self.scale = np.append(np.full(len(z) - 1, size), self.high - self.low)
+
+    def passes(self, states: list[State], tangent: Array, new: State) -> bool:
+        """Whether the step to a new point goes through the first one, as on a branch that is closed."""
+        first, last = states[0], states[-1]
+        back, step = ((z - last.z) / self.scale for z in (first.z, new.z))
+        ahead = float(tangent @ back)
+        if (
+            len(states) < 3
+            or not 0.0 < ahead <= float(tangent @ step)
+            or np.linalg.norm(back) > 2.0 * np.linalg.norm(step)
+        ):
+            return False
+        found = self.step(last, tangent, ahead)  # the branch at the height of the first point
+        return found is not None and float(np.linalg.norm((found[0].z - first.z) / self.scale)) <= SAME
 
     def at_the_end(self, state: State, outside: State) -> State:
         """The point of the branch at the end of the range, between two points; the former where it is lost."""
@@ -176,7 +202,7 @@ class Follower:
 
     def slope(self, z: Array) -> Array:
         """dF/dp at z, (d,)."""
-        d = PARAMETER_STEP * (self.high - self.low)
+        d = self.beside * (self.high - self.low)
         total = np.zeros(len(z) - 1)
         for s, w in STENCIL:
             for side in (1.0, -1.0):

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from lagrangian import HybridScene, checks
 from lcpstep import dataset
-from lcpstep.analysis.branch_data import branch_dataset
+from lcpstep.analysis.branch_data import TAKEN, branch_dataset
 from lcpstep.analysis.continuation import Steps
 from lcpstep.analysis.fixed_points import NotConverged, periodic_point
 from lcpstep.analysis.orbits import OrbitBranch, PeriodicOrbit, continue_orbit, periodic_orbit
+from lcpstep.analysis.predictor import CLOSED, Progress
 from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
-from lcpstep.analysis.predictor import Progress
 from lcpstep.analysis.returns import TOLERANCE, return_time, to_shoot_from
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt, proofs
@@ -98,6 +98,8 @@ def run_orbit(options: argparse.Namespace) -> int:
     known = parameters_of(options.scene)
     if options.range is not None and options.parameter not in known:
         raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
+    if options.range is not None:
+        dataset.check_free(options.parameter, TAKEN)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
     if options.mode is not None or options.event is not None:
@@ -215,6 +217,7 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
             ways.append(way)
             if way.points.ended == INTERRUPTED_WORD:
                 interrupt.answer()
+            if way.points.ended in (INTERRUPTED_WORD, CLOSED):  # the other way round is the same branch
                 break
     low, high = (float(x) for x in options.range)
     data = branch_dataset(ways, parameter, (low, high), scene, orbit.method)
