@@ -18,6 +18,7 @@ from the sample.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -225,7 +226,7 @@ class _Study:
         return provenance(self.scene, self.method) | {
             "lowest": g.low.tolist(), "highest": g.high.tolist(), "shape": [g.n_q, g.n_v], "phase": self.phase,
             "longest": self.longest, "attractors": [a.name for a in known.found],
-            "points": self.targets[0].points.tolist(),
+            "points": hashlib.sha256(self.targets[0].points.tobytes()).hexdigest(),  # thousands where chaotic
         }  # fmt: skip
 
     def dataset(self, known: Attractors, label: Ints, wrong: float, seed: int, sample: int) -> Any:

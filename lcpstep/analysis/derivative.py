@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lcpstep.maps.iteration import Map, iterate
+from lcpstep.maps.saltation.lengths import lengths
 
 Array = NDArray[np.float64]
 # f' = sum w (f(x + s d) - f(x - s d)) / d; the step balances the rounding of f with the fifth derivative
@@ -45,19 +46,30 @@ def along(P: Map, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
 
 
 def differences(
-    f: Any, x: ArrayLike, step: float = RELATIVE_STEP, stencil: tuple[tuple[float, float], ...] = STENCIL
-) -> Array:
-    """Derivative of f: (d,) -> (e,) by central differences, of fourth order unless the stencil is another, (e, d)."""
+    f: Any, x: ArrayLike, step: float = RELATIVE_STEP, stencil: tuple[tuple[float, float], ...] = STENCIL,
+    scale: Array | None = None,
+) -> Array:  # fmt: skip
+    """Derivative of f: (d,) -> (e,) by central differences, of fourth order unless the stencil is another, (e, d).
+
+    scale : (d,)   lengths that steps are a share of; one, or the size of x, where not given
+    """
     x = np.atleast_1d(np.asarray(x, dtype=float))
+    scale = np.maximum(1.0, np.abs(x)) if scale is None else scale
     columns = []
     for i in range(len(x)):
         d = np.zeros(len(x))
-        d[i] = step * max(1.0, abs(x[i]))
+        d[i] = step * scale[i]
         total: Any = 0.0
         for s, w in stencil:
             total = total + w * (np.atleast_1d(f(x + s * d)) - np.atleast_1d(f(x - s * d)))
         columns.append(total / d[i])
     return np.stack(columns, axis=1)
+
+
+def smooth_differences(f: Any, x: ArrayLike, size: ArrayLike) -> Array:
+    """The same over lengths on which f is smooth, (e, d); size : (d,) of the motion, see `lengths`."""
+    x = np.atleast_1d(np.asarray(x, dtype=float))
+    return differences(f, x, scale=lengths(f, x, RELATIVE_STEP, np.atleast_1d(np.asarray(size, dtype=float))))
 
 
 def one_sided(f: Callable[[float], Array], t: float, step: float) -> Array:

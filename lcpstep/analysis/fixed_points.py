@@ -76,8 +76,9 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     n = checks.count("n", n)
     x = np.array(checks.vector("x", x))
     F, J = _residual(P, x, n)
+    size = float(np.max(np.abs(x)))  # of the guess at least, for the point may be zero
     for _ in range(MAX_ITERATIONS):
-        size = max(1.0, float(np.max(np.abs(x))))
+        size = max(size, float(np.max(np.abs(x))), float(np.max(np.abs(F + x))))
         error = float(np.max(np.abs(F)))
         if error <= CONVERGED * size:
             break

@@ -62,6 +62,7 @@ class Follower:
     ) -> None:  # fmt: skip
         self.family, self.n, self.low, self.high = family, n, low, high
         self.steps, self.monitor, self.character, self.beside = steps, monitor, character, PARAMETER_STEP
+        self.largest = 0.0  # of the points so far: what states are measured by
         self.progress = progress
 
     def branch(self, z: Array, direction: float) -> Branch:
@@ -119,9 +120,14 @@ class Follower:
         self.measure(z)
         return self.with_tests(State(z, self.equations(z)[1], self.slope(z)))
 
+    def size(self, z: Array) -> float:
+        """Of the states of the branch up to the point z; one where all of them are zero."""
+        self.largest = max(self.largest, float(np.max(np.abs(z[:-1]))))
+        return self.largest or 1.0
+
     def measure(self, z: Array) -> None:
         """The units in which steps from z are counted."""
-        size = max(1.0, float(np.max(np.abs(z[:-1]))))
+        size = self.size(z)
         self.scale = np.append(np.full(len(z) - 1, size), self.high - self.low)
 
     def passes(self, states: list[State], tangent: Array, new: State) -> bool:
@@ -184,7 +190,7 @@ class Follower:
             F, J = self.equations(z)
             if slope is None or k >= SOON:
                 slope = self.slope(z)
-            error, size = float(np.max(np.abs(F))), max(1.0, float(np.max(np.abs(z[:-1]))))
+            error, size = float(np.max(np.abs(F))), max(self.size(predicted), float(np.max(np.abs(z[:-1]))))
             off = float(tangent @ ((z - predicted) / self.scale))
             if error <= CONVERGED * size or (error <= STAGNATED * size and error > CONTRACTION * before):
                 return State(z, J, slope), k

@@ -18,12 +18,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.analysis.derivative import differences
+from lcpstep.analysis.derivative import RELATIVE_STEP, differences, smooth_differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
+from lcpstep.maps.saltation.lengths import lengths, sizes
 from lcpstep.maps.saltation.rubbing import Walk
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulation import simulate
@@ -78,8 +79,8 @@ def impact_law(local: Local, t: float, q: Array, v: Array) -> tuple[Array, Array
     if local.model.flat and local.model.linear:
         R_t[n:] = -(1.0 + r) / W * MG * local.bias(t, q, v)
     else:
-        R_x[n:, :n] = differences(lambda y: local.after_impact(t, y, v), q)
-        R_t[n:] = differences(lambda s: local.after_impact(float(s[0]), q, v), np.array([t]))[:, 0]
+        R_x[n:, :n] = smooth_differences(lambda y: local.after_impact(t, y, v), q, local.size)
+        R_t[n:] = smooth_differences(lambda s: local.after_impact(float(s[0]), q, v), t, local.span)[:, 0]
     return R_x, R_t
 
 
@@ -93,7 +94,8 @@ def landing(local: Local, t: float, q: Array, v: Array) -> Array:
     D[:n, :n] -= loss
     D[n:, n:] -= loss
     if not local.model.flat:
-        D[n:, :n] -= np.outer(MG, differences(lambda y: np.array([local.rates(t, y, v)[1]]), q)[0]) / W
+        turned = smooth_differences(lambda y: np.array([local.rates(t, y, v)[1]]), q, local.size)[0]
+        D[n:, :n] -= np.outer(MG, turned) / W
     return D
 
 
@@ -101,7 +103,7 @@ class _Variation:
     """Walks along a trajectory."""
 
     def __init__(self, run: Trajectory) -> None:
-        self.run, self.local = run, Local(run.scene)
+        self.run, self.local = run, Local(run.scene, sizes(run), float(run.t[-1] - run.t[0]))
         self.linear = bool(self.local.model.linear and self.local.model.flat)
 
     def factors(self) -> list[Array]:
@@ -167,11 +169,13 @@ class _Variation:
 
         def right_hand_side(t: float, y: Array) -> Array:
             x, J = y[: 2 * n], y[2 * n :].reshape(2 * n, 2 * n)
-            A = differences(lambda z: self.field(t, z, closed), x)
+            A = differences(lambda z: self.field(t, z, closed), x, scale=scale)
             return np.concatenate([self.field(t, x, closed), (A @ J).ravel()])
 
         start = np.concatenate([self.run.q[row], self.run.v[row], np.eye(2 * n).ravel()])
-        done = solve_ivp(right_hand_side, (a, b), start, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE)
+        scale = lengths(lambda z: self.field(a, z, closed), start[: 2 * n], RELATIVE_STEP, self.local.size)
+        errors = TOLERANCE * np.append(np.minimum(self.local.size, 1.0), np.ones(4 * n * n))
+        done = solve_ivp(right_hand_side, (a, b), start, method="DOP853", rtol=TOLERANCE, atol=errors)
         if not done.success:
             raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
         return np.asarray(done.y[2 * n :, -1].reshape(2 * n, 2 * n))

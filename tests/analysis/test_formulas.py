@@ -64,7 +64,7 @@ def test_its_diagram_has_exponents_and_goes_on_where_it_was_interrupted(tmp_path
 
     def stop(done, total):
         seen.append(done)
-        if done == 1:
+        if done:  # one at least: two may end at once
             raise LcpStepError("stopped")
 
     with pytest.raises(LcpStepError, match="stopped"):

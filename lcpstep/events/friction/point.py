@@ -24,7 +24,7 @@ if not cython.compiled:
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.rows.equations import free_motion
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, after, max
+    from lcpstep.pointers import after
 
 
 def modes(s: Rubbing) -> tuple[Any, Any]:
@@ -68,13 +68,13 @@ def field(s: Rubbing, t: float, x: Any) -> Any:
     return dy
 
 
-def slopes(s: Rubbing, t: float, x: Any) -> Any:
-    """Derivative of `field` by x, (2 n_q, 2 n_q), by differences of fourth order."""
+def slopes(s: Rubbing, t: float, x: Any, scale: Any) -> Any:
+    """Derivative of `field` by x, (2 n_q, 2 n_q), by differences of fourth order over shares of `scale` (2 n_q,)."""
     n = 2 * s.n_q
     A, beside, rates = np.zeros((n, n)), np.array(x), np.zeros(n)
-    slope, y, dy = doubles(A), doubles(beside), doubles(rates)
+    slope, y, dy, length = doubles(A), doubles(beside), doubles(rates), doubles(scale)
     for j in range(n):
-        here, d = y[j], RELATIVE_STEP * max(1.0, abs(y[j]))
+        here, d = y[j], RELATIVE_STEP * length[j]
         for k in range(4):
             place = k - 2 if k < 2 else k - 1  # -2, -1, 1, 2
             weight = (8.0 if abs(place) == 1 else -1.0) * (1.0 if place > 0 else -1.0) / (12.0 * d)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lcpstep.errors import LcpStepError
 from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN
+from lcpstep.maps.saltation.lengths import derivative
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]
@@ -30,6 +31,7 @@ class Blow:
 
     def __init__(self, walk: Any, before: Any, after: Any, events: Any) -> None:
         self.s, self.n, self.t = walk.s, walk.n, float(after.t)
+        self.sizes, self.latest = walk.sizes, walk.scale
         self.lasted, self.p = before.end - before.t, np.array(walk.scene.p)
         self.x, self.v_after = before.x_end, after.x[walk.n :]
         contacts: Any = walk.scene.contacts
@@ -95,16 +97,11 @@ class Blow:
         R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
         K, C, (share, _) = self.matrices(self.t, self.x)
         R_x[n:, n:] -= C @ np.linalg.pinv(K @ C) @ (share[:, None] * K)
-        for i in range(
-            2 * n if callable(self.friction.mu) else n
-        ):  # linear in v where mu does not depend on it
-            d = np.zeros(2 * n)
-            d[i] = STEP * max(1.0, abs(self.x[i]))
-            R_x[n:, i] = self.slope(lambda k, d=d: self.law(self.t, self.x + k * d)) / d[i]
-        d_t = STEP * max(self.lasted, 1e-3)
-        R_t[n:] = self.slope(lambda k: self.law(self.t + k * d_t, self.x)) / d_t
+        m = 2 * n if callable(self.friction.mu) else n  # linear in v where mu does not depend on it
+        R_x[n:, :m] = derivative(
+            lambda x: self.law(self.t, np.append(x, self.x[m:])), self.x[:m], STEP, self.sizes[:m]
+        )
+        d = STEP * max(self.lasted, 1e-3 * self.latest)
+        before, earlier, later, after = (self.law(self.t + k * d, self.x) for k in (-2.0, -1.0, 1.0, 2.0))
+        R_t[n:] = (8.0 * (later - earlier) - after + before) / (12.0 * d)
         return R_x, R_t
-
-    def slope(self, f: Any) -> Array:
-        """Derivative of f at 0 by differences of fourth order, for steps of one."""
-        return np.asarray((8.0 * (f(1.0) - f(-1.0)) - f(2.0) + f(-2.0)) / 12.0)

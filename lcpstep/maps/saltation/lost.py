@@ -19,13 +19,14 @@ from numpy.typing import NDArray
 
 from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN, STICKS
+from lcpstep.maps.saltation.lengths import derivative
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # of differences, relative
 
 
-def lost(s: Any, t: float, x: Array, mode: Any, direction: Array) -> Array:
-    """What is left of a deviation from surfaces that are held from here on, (2 n_q, 2 n_q)."""
+def lost(s: Any, t: float, x: Array, mode: Any, direction: Array, size: Array) -> Array:
+    """What is left of a deviation from surfaces that are held from here on, (2 n_q, 2 n_q); size : see `lengths`."""
     n, n_j, n_c = s.n_q, s.n_j, s.n_c
     D = np.eye(2 * n)
     closed = [c for c in range(n_c) if mode[c] != OPEN]
@@ -42,19 +43,16 @@ def lost(s: Any, t: float, x: Array, mode: Any, direction: Array) -> Array:
     D[:n, :n] -= C[on].T @ np.linalg.pinv(R[on] @ C[on].T) @ R[on]
     back = C[held].T @ np.linalg.pinv(R[held] @ C[held].T)
     D[n:, n:] -= back @ R[held]
-    D[n:, :n] -= back @ turning(s, t, x, held) @ D[:n, :n]
+    D[n:, :n] -= back @ turning(s, t, x, held, size) @ D[:n, :n]
     return D
 
 
-def turning(s: Any, t: float, x: Array, held: list[int]) -> Array:
+def turning(s: Any, t: float, x: Array, held: list[int], size: Array) -> Array:
     """Derivative of the velocities of rows by the coordinates, (rows, n_q)."""
-    columns = []
-    for i in range(s.n_q):
-        d = np.zeros(2 * s.n_q)
-        d[i] = STEP * max(1.0, abs(x[i]))
-        sides = []
-        for y in (x + d, x - d):
-            R, _, rate, _ = point.rows(s, t, y)
-            sides.append((R @ x[s.n_q :] + rate)[held])
-        columns.append((sides[0] - sides[1]) / (2.0 * d[i]))
-    return np.stack(columns, axis=1)
+    n = s.n_q
+
+    def velocities(q: Array) -> Array:
+        R, _, rate, _ = point.rows(s, t, np.concatenate([q, x[n:]]))
+        return np.asarray((R @ x[n:] + rate)[held])
+
+    return derivative(velocities, x[:n], STEP, size)

@@ -29,6 +29,7 @@ from lcpstep.events.friction.run import start
 from lcpstep.events.friction.smooth import Smooth
 from lcpstep.maps.saltation.blow import Blow
 from lcpstep.maps.saltation.finished import closed_at_once, with_friction
+from lcpstep.maps.saltation.lengths import derivative, lengths, sizes
 from lcpstep.maps.saltation.lost import lost
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Kind, Status, Trajectory
@@ -61,7 +62,7 @@ class Walk:
             raise LcpStepError(f"the motion ended early: {run.message}")
         self.run, self.scene, self.n = run, with_friction(run.scene), run.scene.n_q
         self.s = start(self.scene, Smooth, run.method.rtol, run.method.atol)
-        self.scale = max(float(np.max(np.abs(run.t))), 1e-300)
+        self.scale, self.sizes = max(float(np.max(np.abs(run.t))), 1e-300), sizes(run)
         self.log = closed_at_once(run)
 
     def factors(self) -> list[Array]:
@@ -155,16 +156,17 @@ class Walk:
         end, n = later[0] if later else float(self.run.t[-1]), 2 * self.n
         if not point.hold(self.s, t, x, mode, direction):
             raise LcpStepError(f"no forces hold the closed contacts at t = {t:g} s")
-        y = np.concatenate([x, np.eye(n).ravel()])
+        y, errors = np.append(x, np.eye(n)), np.append(np.minimum(self.sizes, 1.0), np.ones(n * n))
+        scale = lengths(lambda y: point.field(self.s, t, y), x, RELATIVE_STEP, self.sizes)
 
         def rates(time: float, y: Array) -> Array:
             x = np.ascontiguousarray(y[:n])
-            A = point.slopes(self.s, time, self.beside(time, x, mode, direction))
+            A = point.slopes(self.s, time, self.beside(time, x, mode, direction), scale)
             return np.concatenate([point.field(self.s, time, x), (A @ y[n:].reshape(n, n)).ravel()])
 
         for a, b in self.between_corners(t, end):
             point.hold(self.s, a, np.ascontiguousarray(y[:n]), mode, direction)
-            done = solve_ivp(rates, (a, b), y, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE)
+            done = solve_ivp(rates, (a, b), y, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * errors)
             if not done.success:
                 raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
             y = done.y[:, -1]
@@ -235,7 +237,7 @@ class Walk:
         point.hold(self.s, t, after.x, after.mode, after.direction)
         F_after = point.field(self.s, t, after.x)
         change = F_after - R_x @ F_before - R_t
-        if np.max(np.abs(change)) <= CONTINUOUS * (1.0 + np.max(np.abs(F_after))):
+        if np.max(np.abs(change)) <= CONTINUOUS * (np.max(np.abs(F_before)) + np.max(np.abs(F_after))):
             return R_x
         if not abs(slope) > 0.0:
             raise LcpStepError(
@@ -245,7 +247,7 @@ class Walk:
 
     def lost(self, piece: Piece) -> Array:
         """What is left of a deviation from the surfaces held from the start of a piece on, (2 n_q, 2 n_q)."""
-        return lost(self.s, piece.t, piece.x, piece.mode, piece.direction)
+        return lost(self.s, piece.t, piece.x, piece.mode, piece.direction, self.sizes)
 
     def kept(self, before: Piece, after: Piece) -> Array:
         """Puts what lies on surfaces that are new after the events onto them to the last digit."""
@@ -266,10 +268,7 @@ class Walk:
         def value(time: float, y: Array) -> float:
             return float(point.guards(self.s, time, np.ascontiguousarray(y))[c, column])
 
-        H_x = np.zeros(len(x))
-        for i, d in enumerate(STEP * np.diag(np.maximum(1.0, np.abs(x)))):
-            far, near = (value(t, x + k * d) - value(t, x - k * d) for k in (2.0, 1.0))
-            H_x[i] = (8.0 * near - far) / (12.0 * d[i])
+        H_x = derivative(lambda y: value(t, y), x, STEP, self.sizes)[0]
         d_t = STEP * max(before.end - before.t, 1e-3 * self.scale)
         along = [value(t - k * d_t, x - k * d_t * F) for k in range(5)]  # from before the event
         slope = np.dot((25.0, -48.0, 36.0, -16.0, 3.0), along) / (12.0 * d_t)

@@ -1,0 +1,59 @@
+"""Derivatives and orbits know no unit of length: a mechanism of nanometres has those of the same one in metres."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven
+from lcpstep.analysis.orbits import periodic_orbit
+from lcpstep.analysis.variation import PeriodMap
+
+T = 2.0 * math.pi / 1.3
+
+
+def force(t, q, v, p, out):  # p: the unit of length
+    x, y = q[0] / p[0], q[1] / p[0]
+    pull = y - x + 0.5 * math.sin(y - x)
+    out[0] = p[0] * (pull - x + 2.0 * math.sin(1.3 * t)) - 0.1 * v[0]
+    out[1] = -p[0] * pull - 0.1 * v[1]
+
+
+def gap(t, q, v, p, out):
+    out[0] = q[0] + 0.3 * p[0] * (1.0 + math.sin(q[1] / p[0]) ** 2)
+
+
+def slope(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, 0.3 * math.sin(2.0 * q[1] / p[0])
+
+
+def two_masses(unit, friction):
+    contacts = Contacts(1, gap, slope, restitution=0.7, friction=friction)
+    q0, v0 = unit * np.array([0.5, 0.6]), unit * np.array([0.3, -0.2])
+    return Scene(System(2, np.eye(2), force), q0, v0, (0.0, T), contacts=contacts, p=[unit], period=T)
+
+
+@pytest.mark.parametrize("friction", [None, Coulomb(0.2, [[0.0, 1.0]])], ids=["smooth", "rough"])
+def test_the_derivative_of_a_motion_does_not_depend_on_the_unit_of_length(friction):
+    found = []
+    for unit in (1.0, 1e-9):
+        P = PeriodMap(two_masses(unit, friction), EventDriven(1e-11, 1e-11 * unit))
+        x = unit * np.array([0.5, 0.6, 0.3, -0.2])
+        assert P.follow(x, 1).impacts[0, 0] > 0
+        found.append(P.jacobian(x))
+    assert np.max(np.abs(found[0])) > 0.3
+    assert found[1] == pytest.approx(found[0], abs=1e-6)
+
+
+def test_a_small_orbit_is_shot_to_as_many_digits_as_a_large_one():
+    def struck(unit):
+        block = LinearSystem(M=1.0, C=0.1, K=1.0, force=Harmonic(sine=2.0 * unit, omega=1.3))
+        stop = LinearContacts(G=1.0, offset=0.3 * unit, restitution=0.7)
+        return Scene(block, unit, 0.0, (0.0, T), contacts=stop, period=T)
+
+    guess = np.array([0.965, 0.315])
+    large, small = (periodic_orbit(struck(unit), unit * guess) for unit in (1.0, 1e-12))
+    assert np.max(np.abs(large.x[0] - guess)) > 1e-5
+    assert small.x == pytest.approx(1e-12 * large.x, rel=1e-9, abs=0.0)
+    assert small.multipliers == pytest.approx(large.multipliers, abs=1e-9)
