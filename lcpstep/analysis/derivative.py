@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lcpstep.lengths import lengths
 from lcpstep.maps.iteration import Map, iterate
-from lcpstep.maps.saltation.lengths import lengths
 
 Array = NDArray[np.float64]
 # f' = sum w (f(x + s d) - f(x - s d)) / d; the step balances the rounding of f with the fifth derivative

@@ -21,10 +21,10 @@ from lagrangian import Scene, checks
 from lcpstep.analysis.derivative import RELATIVE_STEP, differences, smooth_differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.lengths import ASIDE, lengths, sizes
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
-from lcpstep.maps.saltation.lengths import lengths, sizes
 from lcpstep.maps.saltation.rubbing import Walk
 from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulation import simulate
@@ -173,7 +173,8 @@ class _Variation:
             return np.concatenate([self.field(t, x, closed), (A @ J).ravel()])
 
         start = np.concatenate([self.run.q[row], self.run.v[row], np.eye(2 * n).ravel()])
-        scale = lengths(lambda z: self.field(a, z, closed), start[: 2 * n], RELATIVE_STEP, self.local.size)
+        aside = start[: 2 * n] + ASIDE * self.local.size
+        scale = lengths(lambda z: self.field(a, z, closed), aside, RELATIVE_STEP, self.local.size)
         errors = TOLERANCE * np.append(np.minimum(self.local.size, 1.0), np.ones(4 * n * n))
         done = solve_ivp(right_hand_side, (a, b), start, method="DOP853", rtol=TOLERANCE, atol=errors)
         if not done.success:

@@ -5,7 +5,19 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, System
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Harmonic,
+    HybridScene,
+    HybridSystem,
+    LinearContacts,
+    LinearSystem,
+    Mode,
+    Scene,
+    Surface,
+    System,
+)
 from lcpstep import EventDriven
 from lcpstep.analysis.orbits import periodic_orbit
 from lcpstep.analysis.variation import PeriodMap
@@ -57,3 +69,31 @@ def test_a_small_orbit_is_shot_to_as_many_digits_as_a_large_one():
     assert np.max(np.abs(large.x[0] - guess)) > 1e-5
     assert small.x == pytest.approx(1e-12 * large.x, rel=1e-9, abs=0.0)
     assert small.multipliers == pytest.approx(large.multipliers, abs=1e-9)
+
+
+def soft(t, x, p, out):
+    out[0], out[1] = x[1], p[0] * (2.0 * math.sin(1.3 * t) - math.sin(x[0] / p[0])) - 0.5 * x[0] - 0.1 * x[1]
+
+
+def stiff(t, x, p, out):
+    out[0], out[1] = (
+        x[1],
+        p[0] * (2.0 * math.sin(1.3 * t) - 4.0 * math.sin(x[0] / p[0])) - 0.5 * x[0] - 0.1 * x[1],
+    )
+
+
+def curve(t, x, p, out):
+    out[0] = x[0] - 0.3 * p[0] * math.cos(x[1] / p[0])
+
+
+def test_the_derivative_of_a_motion_with_modes_does_not_depend_on_it_either():
+    sides = [Surface(curve, below="stiff", above="soft")]
+    system = HybridSystem(2, {"soft": Mode(soft), "stiff": Mode(stiff)}, surfaces=sides)
+    found = []
+    for unit in (1.0, 1e-3, 1e-9):
+        scene = HybridScene(system, [0.5 * unit, 0.0], "soft", (0.0, T), p=[unit], period=T)
+        P = PeriodMap(scene, EventDriven(1e-12, 1e-12 * unit))
+        x = unit * np.array([0.5, 0.3])
+        assert P.follow(x, 1).impacts[0, 0] > 0
+        found.append(P.jacobian(x))
+    assert found[1:] == [pytest.approx(found[0], abs=1e-8)] * 2

@@ -8,15 +8,16 @@ cdef double DIFFERENCE, INNER, OUTER, TINY
 
 @cython.final
 cdef class Machine:
-    cdef object numbers, out_array, signs, kept
+    cdef object numbers, out_array, signs, lengths, kept
     cdef readonly Py_ssize_t n, n_guards
-    cdef readonly double dt
+    cdef readonly double dt, shortest
     cdef readonly Functions fields
     cdef Functions surfaces, values, resets
     cdef Indices has_reset, first, at_once, kind, target, below, above
-    cdef Doubles sign, out, F, F1, F2, H_x, g_x, x, x_guard, moved
+    cdef Doubles sign, length, out, F, F1, F2, H_x, g_x, x, x_guard, moved
 
 
+cdef double reach(Machine m, Py_ssize_t i, double x_i) noexcept nogil
 cdef double scalar(Machine m, Functions f, Py_ssize_t k, double t, double* x) noexcept nogil
 cdef void field(Machine m, Py_ssize_t mode, double t, double* x, double* out) noexcept nogil
 cdef (double, double) approaches(Machine m, Py_ssize_t mode, double t, double* x) noexcept nogil

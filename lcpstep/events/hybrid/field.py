@@ -14,7 +14,7 @@ import cython
 import numpy as np
 
 from lcpstep.events.hybrid.kinds import ARRIVE as ARRIVE
-from lcpstep.events.hybrid.kinds import EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
+from lcpstep.events.hybrid.kinds import DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
@@ -23,7 +23,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import Doubles, abs, after, max
 
-DIFFERENCE = 2.0**-10  # step of differences, relative
 INNER, OUTER = 2.0 / 3.0, -1.0 / 12.0
 TINY = 1e-300  # a band is never empty
 VECTORS = 8
@@ -42,6 +41,7 @@ class Machine:
         ARRIVE the sliding one
     below, above     modes beside a sliding one, or NOT_SLIDING
     dt               step of differences in time
+    length : (n,)    lengths over which all is smooth, where these are shorter than one;  shortest   of them
     F, F1, F2, H_x, g_x : (n,)   a field; those on both sides; gradients of a surface and of a guard
     x, x_guard : (n,)   shifted states of their differences
     moved : (n,)     state after a reset
@@ -50,7 +50,7 @@ class Machine:
     ----------
     n : int;  p : (n_p,)   parameters
     functions : dict   addresses of the functions by name;  tables : dict   the integers
-    sign, dt   as above;  kept : what must outlive this object
+    sign, dt, length   as above;  kept : what must outlive this object
     """
 
     def __init__(
@@ -61,6 +61,7 @@ class Machine:
         tables: dict[str, Any],
         sign: Any,
         dt: float,
+        length: Any,
         kept: Any,
     ) -> None:
         own = {name: np.array(table, dtype=np.intp) for name, table in tables.items()}
@@ -69,6 +70,8 @@ class Machine:
             np.zeros(1),
             np.array(sign, dtype=float),
         )
+        self.lengths, self.shortest = np.array(length, dtype=float), float(np.min(length))
+        self.length = doubles(self.lengths)
         self.n, self.n_guards, self.dt = n, len(own["kind"]), dt
         self.kept = p, own, kept
         self.fields = Functions(functions["fields"], p, n, 0, (n,))
@@ -113,6 +116,11 @@ class Machine:
     def target_of(self, k: int) -> int:
         """The mode that guard k leads to."""
         return self.target[k]
+
+
+def reach(m: Machine, i: int, x_i: float) -> float:
+    """The length of which differences by state i are a share."""
+    return m.length[i] if m.length[i] < 1.0 else max(1.0, abs(x_i))
 
 
 def scalar(m: Machine, f: Functions, k: int, t: float, x: Doubles) -> float:
@@ -171,7 +179,7 @@ def gradient(m: Machine, mode: int, k: int, t: float, x: Doubles, beside: Double
     """Its derivatives by the state into `slopes`; returns that by time. beside : (n,)  work space."""
     copy(beside, x, m.n)
     for i in range(m.n):
-        d, slope = DIFFERENCE * max(1.0, abs(x[i])), 0.0
+        d, slope = DIFFERENCE * reach(m, i, x[i]), 0.0
         for j in range(2):
             step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
             beside[i] = x[i] + step

@@ -2,3 +2,4 @@
 
 PLAIN, ARRIVE, EXIT_BELOW, EXIT_ABOVE = range(4)
 NOT_SLIDING = -1  # in place of the mode beside a sliding one
+DIFFERENCE = 2.0**-10  # step of differences, relative

@@ -5,16 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene, HybridSystem
 from lagrangian.modes import BOTH, Guard
 from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.events.hybrid.field import Machine
-from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, PLAIN
+from lcpstep.events.hybrid.kinds import ARRIVE, DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, PLAIN
 from lcpstep.faults import name_of
 from lcpstep.kernels.uncompiled import CalledBack
+from lcpstep.lengths import ASIDE, lengths
 
+Array = NDArray[np.float64]
+SMALL = 1e-2  # size of a motion that is far below one, the length of differences otherwise
 TIME_DIFFERENCE = 1e-4  # step of differences in time, of the period or the span
 
 
@@ -46,10 +50,38 @@ def machine(scene: HybridScene) -> Machine:
         "above": not_sliding + [index[surface.above] for surface in surfaces],
     }
     span = min(scene.period, scene.t_span[1] - scene.t_span[0])
+    length = _lengths(scene, [f for fs in functions.values() for f in fs], span)
     return Machine(
         system.n_x, np.array(scene.p), addresses, integers, [row[2] for row in table], TIME_DIFFERENCE * span,
-        list(made.values()),
+        length, list(made.values()),
     )  # fmt: skip
+
+
+def _lengths(scene: HybridScene, functions: list[Any], span: float) -> Array:
+    """Lengths for differences, (n_x,): one, or shorter where the motion is small and functions bend within it."""
+    system, t, x, p = scene.system, scene.t_span[0], np.array(scene.x0), np.array(scene.p)
+
+    def value(f: Any) -> Any:
+        def at(y: Array) -> Array:
+            out = np.zeros(system.n_x)  # a guard fills the first
+            try:
+                f(t, y, p, out)
+            except (ValueError, ArithmeticError):  # beyond where it is defined
+                out[:] = np.nan
+            return out
+
+        return at
+
+    size = np.abs(x)
+    if not np.any((size > 0.0) & (size < SMALL)):
+        return np.ones(system.n_x)
+    rates = np.max([np.abs(value(mode.field)(x)) for mode in system.modes.values()], axis=0)
+    size = np.maximum(size, span * rates)
+    size[size == 0.0] = 1.0
+    found = [
+        lengths(value(f), x + ASIDE * size, DIFFERENCE, size) for f in {id(f): f for f in functions}.values()
+    ]
+    return np.minimum(np.min(found, axis=0), 1.0)
 
 
 def _rows(

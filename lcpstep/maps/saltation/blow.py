@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lcpstep.errors import LcpStepError
 from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN
-from lcpstep.maps.saltation.lengths import derivative
+from lcpstep.lengths import derivative
 from lcpstep.trajectory import Kind
 
 Array = NDArray[np.float64]

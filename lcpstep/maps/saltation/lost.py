@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN, STICKS
-from lcpstep.maps.saltation.lengths import derivative
+from lcpstep.lengths import derivative
 
 Array = NDArray[np.float64]
 STEP = 1e-4  # of differences, relative

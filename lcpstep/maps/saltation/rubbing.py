@@ -27,9 +27,9 @@ from lcpstep.events.friction import point
 from lcpstep.events.friction.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
 from lcpstep.events.friction.run import start
 from lcpstep.events.friction.smooth import Smooth
+from lcpstep.lengths import ASIDE, derivative, lengths, sizes
 from lcpstep.maps.saltation.blow import Blow
 from lcpstep.maps.saltation.finished import closed_at_once, with_friction
-from lcpstep.maps.saltation.lengths import derivative, lengths, sizes
 from lcpstep.maps.saltation.lost import lost
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Kind, Status, Trajectory
@@ -157,7 +157,8 @@ class Walk:
         if not point.hold(self.s, t, x, mode, direction):
             raise LcpStepError(f"no forces hold the closed contacts at t = {t:g} s")
         y, errors = np.append(x, np.eye(n)), np.append(np.minimum(self.sizes, 1.0), np.ones(n * n))
-        scale = lengths(lambda y: point.field(self.s, t, y), x, RELATIVE_STEP, self.sizes)
+        aside = x + ASIDE * self.sizes
+        scale = lengths(lambda y: point.field(self.s, t, y), aside, RELATIVE_STEP, self.sizes)
 
         def rates(time: float, y: Array) -> Array:
             x = np.ascontiguousarray(y[:n])

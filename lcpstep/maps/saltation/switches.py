@@ -30,12 +30,13 @@ if not cython.compiled:
         Machine,
         field,
         guard_gradient,
+        reach,
         surface_gradient,
     )
     from lcpstep.events.hybrid.state import SWITCH_LEAD
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, after, max, whole
+    from lcpstep.pointers import Doubles, abs, after, whole
 
 TOLERANCE = 1e-12  # of the variational flow
 RELATIVE_STEP = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets
@@ -57,7 +58,7 @@ class Tangent(RungeKutta):
 
     def __init__(self, machine: Machine) -> None:
         n = machine.n
-        super().__init__(n + n * n, 0, TOLERANCE, TOLERANCE, False)
+        super().__init__(n + n * n, 0, TOLERANCE, TOLERANCE * machine.shortest, False)
         self.n_x, self.m, self.mode = n, machine, 0
         self.derivative, self.squares, self.vectors = (
             np.zeros((n, n)),
@@ -153,7 +154,7 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
     """Rates of the state and of its derivative: F and F_x J."""
     n = s.n_x
     for j in range(n):
-        d = RELATIVE_STEP * max(1.0, abs(z[j]))
+        d = RELATIVE_STEP * reach(s.m, j, z[j])
         for i in range(n):
             s.F_x[i * n + j] = 0.0
         for k in range(2):
@@ -218,7 +219,7 @@ def compose(s: Tangent, line: Doubles, t: float) -> None:
     if s.m.has_reset[guard] != 0:
         before = after(line, SWITCH_LEAD)
         for j in range(n):
-            differenced(s, guard, t, before, j, RELATIVE_STEP * max(1.0, abs(before[j])))
+            differenced(s, guard, t, before, j, RELATIVE_STEP * reach(s.m, j, before[j]))
             for i in range(n):
                 s.S[i * n + j] = s.up[i]
         product(s)

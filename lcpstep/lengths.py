@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 SMOOTH = 1e-6  # error of a slope, of that itself, that is small
-SHORTER = 0.1
+KNOWN = 1e-2  # error of one that is known at all
+SHORTER, SHORTEST = 0.1, 1e-3  # from length to length; of the size of the motion
+ASIDE = 0.05  # of the size: where lengths for a whole motion are sought, for starts are where even functions are flat
 BEYOND = 100.0  # times the size of the motion: lengths that are far beyond it
 ROUNDING = np.finfo(float).eps
 
@@ -64,13 +66,14 @@ def _along(f: Callable[[Array], Any], x: Array, i: int) -> Callable[[float], Arr
 def _length(f: Callable[[float], Array], at: float, step: float, size: float) -> float:
     """The longest one over which the slope of f is known, or that over which it is known best."""
     length = max(1.0, abs(at))
-    best, least, shortest = length, np.inf, SHORTER * min(size, 1.0)
+    best, least, shortest = length, (True, np.inf), SHORTEST * min(size, 1.0)
     while length > shortest:
         slope, error = _slope(f, step * length)
         if error == 0.0 or (error <= SMOOTH * slope and length <= BEYOND * size):
             return length
-        if error < least:  # not of what is not finite
-            best, least = length, error
+        found = (length > BEYOND * size or error > KNOWN * slope, error)
+        if np.isfinite(error) and found < least:
+            best, least = length, found
         length *= SHORTER
     return best
 
