@@ -113,6 +113,8 @@ class Switches:
                 one, first, second = self.force[k], self.force[n + k], self.force[2 * n + k]
                 if not even:  # forces at the ends of the parts: along a line
                     one, first, second = first, 0.5 * (3.0 * first - one), 0.5 * (first + one)
+                if opened == 0.0 and k >= self.n_c and min(min(one, first), second) > 0.0:
+                    continue  # slower than is resolved, but it slid before, and has yet to come to rest
                 if self.apart_by(k) * self.response[k] > apart:
                     continue  # what one row has less, others have more: forces that nothing tells apart
                 p = max(p, late(one, first, second, h, opened, h))
