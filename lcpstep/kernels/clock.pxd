@@ -6,7 +6,7 @@ cdef double RESOLUTION, NOISE, NUDGE
 
 cdef class Clock:
     cdef object corner_array
-    cdef public double t0, t0_rest, rest, low, high, scale, period, last_event
+    cdef public double t0, t0_rest, rest, low, high, scale, period, last_event, jump
     cdef double* corners
     cdef Py_ssize_t n_corners
     cdef double after(self, double tau) noexcept nogil
@@ -16,4 +16,6 @@ cdef class Clock:
     ) noexcept nogil
     cdef double untold(self, double length) noexcept nogil
     cdef double inside(self, double t) noexcept nogil
+    cdef void break_at(self, double t) noexcept nogil
     cdef void find_corners(self, double t) noexcept nogil
+    cdef void find_named(self, double near) noexcept nogil

@@ -32,6 +32,7 @@ class Clock:
     scale                a typical time
     period               of the corners
     last_event           time of it
+    jump                 the corner found last that the scene does not name
 
     Parameters
     ----------
@@ -44,7 +45,7 @@ class Clock:
         self.t0, self.t0_rest, self.rest = t_span[0], 0.0, 0.0
         self.period, self.last_event = period, -inf
         self.scale = period if period < inf else t_span[1] - t_span[0]
-        self.low, self.high = inf, -inf
+        self.low, self.high, self.jump = inf, -inf, -inf
 
     def after(self, tau: float) -> float:
         """The time tau after the base; what rounding takes from it is kept for the next base.
@@ -79,11 +80,23 @@ class Clock:
         margin = NUDGE * max(abs(t), self.scale)
         return min(max(t, self.low + margin), self.high - margin)
 
+    def break_at(self, t: float) -> None:
+        """The smooth interval at hand ends at t, as has been found."""
+        self.high = self.jump = t
+
     def find_corners(self, t: float) -> None:
         """The smooth interval that begins at t or contains it."""
         near = t + 0.5 * NUDGE * max(abs(t), self.scale)
         if self.low <= near < self.high:
             return
+        self.find_named(near)
+        if self.low < self.jump <= near:
+            self.low = self.jump
+        elif near < self.jump < self.high:
+            self.high = self.jump
+
+    def find_named(self, near: float) -> None:
+        """The same, of the corners that the scene names."""
         self.low, self.high = -inf, inf
         n, period, start = self.n_corners, self.period, 0.0
         if n == 0:

@@ -1,18 +1,21 @@
 """When a guard acts that is known to act within a step: its root, by steps that end there, as kernels.
 
-A force that jumps at a time that is no corner of the scene takes its guard through zero without a root: halving finds
-the time, and the modes are decided by the force beyond it.
+A force, or a belt, that jumps at a time that is no corner of the scene takes its guard through zero without a root:
+halving finds the time. The modes are decided by the force beyond it; where a belt jumps, as at a corner.
 """
 
 from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import SLIDES
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.friction.guards import UNKNOWN, look, look_at_stage
-    from lcpstep.events.friction.state import Rubbing
+    from lcpstep.events.friction.impact import still
+    from lcpstep.events.friction.state import GUARDS, Rubbing
+    from lcpstep.events.rows.jumps import find_jump
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after, min
@@ -47,8 +50,27 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 
 
 def jumps(s: Rubbing, g: int, tau: float) -> bool:
-    """Whether guard g is far from zero where its slope says that it is zero: a force has jumped."""
-    return abs(s.value[g]) > s.band[g] and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
+    """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
+    least = still(s, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
+    return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
+
+
+def turns_at_once(s: Rubbing, g: int, tau: float, h: float) -> bool:
+    """Whether guard g, a sliding velocity located at tau, is turned by a belt that jumps: a corner then.
+
+    What begins to slide, within its band, has no slope there that would tell: the step of size h tells.
+    """
+    if s.risen:
+        if s.value[g] >= 0.0 or not jumps(s, g, tau):
+            return False
+        s.clock.break_at(s.clock.t0 + tau)
+        return True
+    if find_jump(s.rows, s, s.n_j + s.n_c + g // GUARDS, h):
+        return True
+    if tau > 0.0:
+        s.step(s.clock.t0, tau)
+        s.complete(s.clock.t0, tau)
+    return False
 
 
 def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
@@ -71,6 +93,11 @@ def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
     if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new) and s.complete(t0, tau)):
         return UNKNOWN
     return tau
+
+
+def of_sliding(s: Rubbing, g: int) -> bool:
+    """Whether guard g is a sliding velocity."""
+    return s.mode[g // GUARDS] == SLIDES and g % GUARDS == 1
 
 
 def missing(s: Rubbing, g: int) -> float:

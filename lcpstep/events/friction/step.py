@@ -17,10 +17,11 @@ if not cython.compiled:
     from lcpstep.events.friction.impact import forget_terms, still
     from lcpstep.events.friction.keep import keep
     from lcpstep.events.friction.modes import decide, undecided
-    from lcpstep.events.friction.moments import locate
+    from lcpstep.events.friction.moments import jumps, locate, of_sliding, turns_at_once
     from lcpstep.events.friction.parting import part_before
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.friction.surfaces import find_touching, lift
+    from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -42,6 +43,9 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     if code != DONE:
         return PAINLEVE_INCONSISTENT if s.culprit >= 0 and code != STEP_TOO_SMALL else code
     h = s.length
+    mark_resting(s)
+    if breaks(s.rows, s, h):
+        return DONE
     g = first_event(s, h)
     if g == UNKNOWN:
         return NOT_FINITE
@@ -57,8 +61,19 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     tau = locate(s, g, h, border - t0)
     if tau == UNKNOWN:
         return NOT_FINITE
+    if of_sliding(s, g) and turns_at_once(s, g, tau, h):
+        return DONE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
-    return arrive(s, g) if code == DONE else code
+    none = of_sliding(s, g) and jumps(s, g, tau)  # a jump whose polynomial has been there, not the velocity
+    return arrive(s, g) if code == DONE and not none else code
+
+
+def mark_resting(s: Rubbing) -> None:
+    """Which gaps, and which sliding velocities, the modes at hand keep at zero."""
+    for c in range(s.n_c):
+        i, mode = s.n_j + c, s.mode[c]
+        s.rows.rests[i] = 1 if mode != OPEN else 0
+        s.rows.rests[i + s.n_c] = 1 if mode in (STICKS, LEANS) else 0
 
 
 def change_pace(s: Rubbing) -> None:

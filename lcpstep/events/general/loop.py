@@ -31,7 +31,7 @@ if not cython.compiled:
         SETTLE,
         Mechanism,
     )
-    from lcpstep.events.general.step import complete, step
+    from lcpstep.events.general.step import step
     from lcpstep.events.general.switching import look_at_guards, switch
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
@@ -99,8 +99,7 @@ def go_further(s: Mechanism, record: Record, tally: Tally) -> int:
     elif s.constant:
         fly(s, record, tally)
     else:
-        code = step(s)
-        return complete(s, record, tally) if code == DONE else code
+        return step(s, record, tally)
     return DONE
 
 

@@ -8,8 +8,9 @@ cdef Py_ssize_t LOOKS
 cdef double FAR, LOOK_AHEAD, BALANCED, FURTHER
 
 @cython.locals(squeezed=bint)
-cdef Py_ssize_t step(Mechanism s) noexcept nogil
-cdef Py_ssize_t attempt(Mechanism s) noexcept nogil
+cdef Py_ssize_t step(Mechanism s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t stride(Mechanism s) noexcept nogil
+cdef Py_ssize_t look(Mechanism s, double h) noexcept nogil
 cdef Py_ssize_t scan(Mechanism s, double h) noexcept nogil
 cdef Py_ssize_t complete(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t complete_to_guard(Mechanism s, Record record, Tally tally) noexcept nogil

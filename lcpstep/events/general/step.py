@@ -27,6 +27,7 @@ if not cython.compiled:
     from lcpstep.events.general.state import JUMP, OBEY, SETTLE, SWITCH, Mechanism
     from lcpstep.events.general.switching import SWITCHES, reach_guard, watch
     from lcpstep.events.rows.held import constrain, hold_again, is_held, parted, renew_held
+    from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
@@ -41,25 +42,37 @@ BALANCED = 1e-4  # the same where the multiplier has been no more than this shar
 LOOKS, FURTHER = 6, 10.0  # how often, by how much further each time, unless they tell: to a tenth of a step
 
 
-def step(s: Mechanism) -> int:
-    """One DOP853 step, and the first event within it; `complete` takes it over.
+def step(s: Mechanism, record: Record, tally: Tally) -> int:
+    """One DOP853 step up to the first event within it; none where it has found a corner, at which the next one ends.
 
     Held by surfaces that become parallel, as between walls that close, a motion has no bounds: no forces keep it so.
     """
-    code = attempt(s)
+    code = stride(s)
+    for c in range(s.n_c):
+        s.rests[s.n_j + c] = s.contact.closed[c]
+    if code == DONE and breaks(s, s.smooth, s.length):
+        tally.stalled += 1
+        return DONE
+    code = look(s, s.length) if code == DONE else code
+    if code == DONE:
+        return complete(s, record, tally)
     squeezed = s.parallel and s.n_held > s.n_kept
     return NO_FORCES if code == NOT_FINITE and squeezed else code
 
 
-def attempt(s: Mechanism) -> int:
-    """The same, whatever ends it."""
+def stride(s: Mechanism) -> int:
+    """The step, whatever happens within it; a status."""
     copy(s.left.gap, s.contact.gap, 4 * s.n_c)
     copy(s.start.gap, s.contact.gap, 4 * s.n_c)
     longest = min(s.t_end, s.high) - s.t0
     code = s.smooth.take_step(s.t0, min(min(longest, s.scan), 4.0 * shortest_hop(s)), s.scan)
-    if code != DONE:
-        return code
-    h = s.length = s.smooth.length
+    if code == DONE:
+        s.length = s.smooth.length
+    return code
+
+
+def look(s: Mechanism, h: float) -> int:
+    """The first event within the step of size h, which `complete` takes over; a status."""
     s.found, s.seen_to = NONE, 0.0
     find_landings(s, h)
     code = scan(s, h) if s.n_c > 0 else DONE

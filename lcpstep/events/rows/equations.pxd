@@ -11,6 +11,7 @@ cdef void measure_rates(Rows s, double t, double* q, double* v) noexcept nogil
 cdef void rates_on_side(Rows s, Model model, Py_ssize_t first, double t, double* q, double* v) noexcept nogil
 cdef void measure_biases(Rows s, double t, double* q, double* v) noexcept nogil
 cdef void biases_of(Rows s, Model model, Py_ssize_t first, double t, double* q, double* v) noexcept nogil
+cdef void list_gaps(Rows s, double t, double* q, double* v) noexcept nogil
 cdef void respond(Rows s) noexcept nogil
 cdef void respond_held(Rows s) noexcept nogil
 cdef void couple(Rows s, Py_ssize_t i, Py_ssize_t j) noexcept nogil

@@ -11,7 +11,7 @@ import cython
 if not cython.compiled:
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.acceleration import divide_by_mass, response
-    from lcpstep.kernels.dynamics import bias, gap_rates, total_force
+    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after
@@ -79,6 +79,14 @@ def measure_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
 def biases_of(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Doubles) -> None:
     """The same of one model, from row `first` on."""
     bias(model, s.inside(t), s.low, s.high, q, v, s.shifted, s.G, s.near, after(s.bias, first))
+
+
+def list_gaps(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
+    """Gaps of joints and contacts, into `near`."""
+    if s.n_j > 0:
+        gaps(s.joints, t, q, v, s.near)
+    if s.n_c > 0:
+        gaps(s.model, t, q, v, after(s.near, s.n_j))
 
 
 def respond(s: Rows) -> None:

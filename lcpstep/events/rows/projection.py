@@ -5,12 +5,12 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.events.rows.equations import list_gaps
     from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.acceleration import factor_mass
-    from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.vectors import largest
-    from lcpstep.pointers import Doubles, after
+    from lcpstep.pointers import Doubles
 
 
 def project(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
@@ -31,10 +31,7 @@ def project(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
 
 def are_open(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
     """Whether gaps of rows held are not exactly zero; these, with their signs turned, into `change`."""
-    if s.n_j > 0:
-        gaps(s.joints, t, q, v, s.near)
-    if s.n_c > 0:
-        gaps(s.model, t, q, v, after(s.near, s.n_j))
+    list_gaps(s, t, q, v)
     for m in range(s.n_held):
         s.change[m] = -s.near[s.row[m]] if s.row[m] < s.n_j + s.n_c else 0.0  # tangents have none
     return largest(s.change, 0.0, s.n_held) > 0.0

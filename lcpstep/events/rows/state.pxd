@@ -10,6 +10,7 @@ cdef class Rows(Clock):
     cdef readonly bint fixed, moving
     cdef bint on_joints, known
     cdef readonly double rtol, atol
+    cdef double drift, slack
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
     cdef Doubles held, change, share, doubt, L, bent, P, MP, S
-    cdef Indices row, either
+    cdef Indices row, either, rests

@@ -20,6 +20,7 @@ class Rows(Clock):
     model, joints, tangents   the same system with its contacts, its joints and its tangents as rows
     n_q, n_c, n_j, n_t, n_r   coordinates, contacts, joints, tangents; rows in all
     rtol, atol                tolerances
+    drift, slack              velocity and gap of a row at rest that a step may leave, as steps so far have shown
     a_free, force : (n_q,)    acceleration M^-1 f without contacts and joints, f
     M                         factor of the mass matrix, where that changes
     R, MR : (n_r, n_q)        rows, and rows M^-1 R^T
@@ -30,6 +31,7 @@ class Rows(Clock):
     share : (n_r,)            force of the `other` row of its contact that comes with that of a row held
     either : (n_r,)           whether a row may be held though its force alone would move it the other way
     L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
+    rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always
     P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   R, MR, D and bias on the joints held, see `on_joints`
     on_joints                 whether these are known
     fixed, moving, known      rows and masses never change; flat obstacles move; fixed rows have been measured
@@ -62,6 +64,7 @@ class Rows(Clock):
         self.moving = model.motion.given or joints.motion.given or tangents.motion.given
         self.known = False
         self.rtol, self.atol = tolerances
+        self.drift = self.slack = 0.0
         self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r)
         self.a_free = doubles(self.row_numbers)
         self.force = after(self.a_free, n)
@@ -87,6 +90,8 @@ class Rows(Clock):
             self.P = after(self.bent, r)
             self.MP = after(self.P, r * n)
             self.S = after(self.MP, r * n)
-        self.row_list = np.zeros(2 * r, dtype=np.intp)
+        self.row_list = np.zeros(3 * r, dtype=np.intp)
         self.row = indices(self.row_list)
         self.either = indices_after(self.row, r)
+        self.rests = indices_after(self.either, r)
+        self.row_list[2 * r : 2 * r + n_j] = 1

@@ -1,0 +1,130 @@
+"""Where the velocity of an obstacle, a belt or a joint jumps at a time that no corner of the scene names, as kernels.
+
+The accelerations by which a step holds its rows know nothing of a jump: beyond one the velocity of a row is off by
+all of it, at the end of however short a step, and to put the motion back onto the row would drag it along. Halving
+finds the time, which is a corner from then on.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
+    from lcpstep.events.rows.state import Rows
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import Doubles, abs, after, max
+
+TOLERANCES = 8.0  # of a velocity: what a step leaves of a row held
+MORE = 4.0  # times what steps have left of one so far
+SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as can be, and not of drift
+# Of a step: what changes within less than this is none, but a jump, or turns too fast to be seen
+SUDDEN = 1.0 / 64.0
+
+
+def breaks(s: Rows, motion: RungeKutta, h: float) -> bool:
+    """Whether the velocity of a row that `rests` jumps within the step of size h just made, which is left as it is.
+
+    The time is a corner then, and the step is to be made again.
+    """
+    if s.n_held == 0 or (s.fixed and not s.moving):
+        return False
+    i = farthest_off(s, s.t0 + h, motion)
+    if i < 0:
+        i = open_at(s, s.t0 + h, motion)
+        return i >= 0 and find_way(s, motion, i, h)
+    if find_jump(s, motion, i, h):
+        return True
+    begins = velocity(s, i, s.t0, motion.y)
+    s.drift = max(s.drift, MORE * abs(velocity(s, i, s.t0 + h, motion.y_new) - begins))
+    return False
+
+
+def farthest_off(s: Rows, t: float, motion: RungeKutta) -> int:
+    """The row at rest whose velocity is farthest off from zero at the end of the step, beyond errors of it; or -1."""
+    v, found, most = after(motion.y_new, s.n_q), -1, 1.0
+    measure_rates(s, t, motion.y_new, v)
+    for i in range(s.n_r):
+        u = abs(product(s.R, v, i, s.n_q) + s.rate[i]) if s.rests[i] == 1 else 0.0
+        if u > most * s.drift:
+            off = u / unseen(s, i, v)
+            if off > most:
+                found, most = i, off
+    return found
+
+
+def open_at(s: Rows, t: float, motion: RungeKutta) -> int:
+    """The first row at rest whose gap is open, or the other way, by more than errors of the step just made; or -1."""
+    list_gaps(s, t, motion.y_new, after(motion.y_new, s.n_q))
+    for i in range(s.n_j + s.n_c):
+        if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_effect(s, i, motion.y_new), s.slack):
+            return i
+    return -1
+
+
+def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
+    """Whether gap i, open at the end of the step though its velocity is zero, has opened by two jumps within it.
+
+    Halving by the gap finds a time between the two.
+    """
+    low, high, way = 0.0, h, abs(s.near[i])
+    while high - low > SUDDEN * SUDDEN * h:
+        tau = 0.5 * (low + high)
+        if not motion.step(s.t0, tau):
+            break
+        t, v = s.t0 + tau, after(motion.y_new, s.n_q)
+        if abs(velocity(s, i, t, motion.y_new)) > unseen(s, i, v) and find_jump(s, motion, i, tau):
+            return True
+        list_gaps(s, t, motion.y_new, after(motion.y_new, s.n_q))
+        if abs(s.near[i]) > 0.5 * way:
+            high = tau
+        else:
+            low = tau
+    s.slack = max(s.slack, MORE * way)
+    motion.step(s.t0, h)
+    motion.complete(s.t0, h)
+    return False
+
+
+def unseen(s: Rows, i: int, v: Doubles) -> float:
+    """What steps may leave of the velocity of row i, which is no jump."""
+    known = max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
+    return max(known, s.drift)
+
+
+def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
+    """The velocity of row i at a state."""
+    v = after(y, s.n_q)
+    measure_rates(s, t, y, v)
+    return product(s.R, v, i, s.n_q) + s.rate[i]
+
+
+def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
+    """Whether what the velocity of row i changes by within the step of size h comes by a jump; at a corner then.
+
+    Of what is no jump, but was too fast for the step, that is where it begins, or a part of it. What sticks may begin
+    the step with a velocity, next to none, that the end of it no longer has.
+    """
+    t0, low, high = s.t0, 0.0, h
+    before, later = velocity(s, i, t0, motion.y), velocity(s, i, t0 + h, motion.y_new)
+    middle, off = 0.5 * (before + later), abs(later - before)
+    if off <= unseen(s, i, after(motion.y_new, s.n_q)):
+        return False
+    while abs(later - before) >= SHARE * off and high - low > 2.0 * RESOLUTION * (abs(t0) + high):
+        tau = 0.5 * (low + high)
+        if not motion.step(t0, tau):
+            break
+        u = velocity(s, i, t0 + tau, motion.y_new)
+        if (u - middle) * (later - middle) > 0.0:
+            high, later = tau, u
+        else:
+            low, before = tau, u
+    if high - low < SUDDEN * h:
+        begins = abs(later - before) < SHARE * off and low > 0.0
+        s.break_at(t0 + low if begins else t0 + high)
+        return True
+    motion.step(t0, h)
+    motion.complete(t0, h)
+    return False
