@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep import EventDriven, Status, simulate
+from lcpstep import EventDriven, Located, Status, simulate
 
 G, MU, END = 9.81, 0.25, 1.0
 TIMES = [1.0 / 3.0, 0.5123456]
@@ -31,11 +31,11 @@ def runs(t, q, v, p, out):
     out[0] = -p[2] if t >= p[0] else -p[1]
 
 
-def ends_at(scene, q, v):
-    run = simulate(scene, EventDriven(1e-10, 1e-10))
+def ends_at(scene, q, v, method=None, within=1e-9):
+    run = simulate(scene, method or EventDriven(1e-10, 1e-10))
     assert run.status is Status.DONE
-    np.testing.assert_allclose(run.q[-1], q, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(run.v[-1], v, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(run.q[-1], q, rtol=0, atol=within)
+    np.testing.assert_allclose(run.v[-1], v, rtol=0, atol=within)
 
 
 def after(speed, belt, rest):
@@ -113,3 +113,28 @@ def test_a_table_that_stops_before_the_step_ends_throws_up_what_lies_on_it(rough
     scene = Scene(block, [0.0, 0.0], [0.0, 0.0], (0.0, 0.42), table, p=[1.0 / 3.0, 0.9, 0.0025])
     rest = 0.42 - 1.0 / 3.0 - 0.0025
     ends_at(scene, [0.0, 0.9 * 0.0025 + 0.9 * rest - 0.5 * G * rest**2], [0.0, 0.9 - G * rest])
+
+
+STEPS = [Located(1e-2), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6)]
+
+
+@pytest.mark.parametrize("method", STEPS, ids=["order 2", "order 4", "tolerance"])
+@pytest.mark.parametrize("v", [0.0, 2.0])
+@pytest.mark.parametrize("then", [-0.4, 3.0])
+def test_steps_with_friction_find_the_time_too(method, v, then):
+    """At rest on the belt, or faster than it: it had been dragged along, or had stopped where it is turned."""
+    belt = LinearContacts([[0.0, 1.0]], restitution=0.5, friction=Coulomb(MU, along, runs))
+    block = LinearSystem(np.eye(2), force=[0.0, -G])
+    scene = Scene(block, [0.0, 0.0], [v, 0.0], (0.0, END), belt, p=[0.5123456, 0.0, then])
+    way, v = after(v, 0.0, 0.5123456)
+    more, v = after(v, then, END - 0.5123456)
+    ends_at(scene, [way + more, 0.0], [v, 0.0], method, 1e-6)
+
+
+@pytest.mark.parametrize("method", STEPS, ids=["order 2", "order 4", "tolerance"])
+def test_and_drop_a_rough_table(method):
+    table = LinearContacts([[0.0, 1.0]], 0.0, 0.5, motion=moves, friction=Coulomb(MU, [[1.0, 0.0]]))
+    block = LinearSystem(np.eye(2), force=[0.0, -G])
+    scene = Scene(block, [0.0, 0.0], [0.0, 0.0], (0.0, 0.7), table, p=[0.5123456, -1.5])
+    rest = 0.7 - 0.5123456
+    ends_at(scene, [0.0, -0.5 * G * rest**2], [0.0, -G * rest], method, 1e-6)

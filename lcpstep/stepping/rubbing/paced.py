@@ -42,6 +42,7 @@ def pace(s: Strides, t: float, longest: float) -> int:
     """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status.
 
     Rates that the step before has arrived with are as good as it was long: for a shorter one they are made anew.
+    No size is left where a velocity has jumped: there is a corner then, and the size is zero.
     """
     h, before, longer = min(s.next_step, longest), inf, inf
     truncated = h < s.next_step
@@ -57,7 +58,11 @@ def pace(s: Strides, t: float, longest: float) -> int:
         if error <= allowed:
             break
         if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDING:
-            return why(s, error)
+            if not error < inf or s.tolerance < ROUNDING or t + h >= s.clock.high:
+                return why(s, error)
+            s.clock.break_at(t + h)
+            s.length = 0.0
+            return DONE
         if longer == inf and not measure_base(s, t):
             return why(s, inf)
         longer = h

@@ -4,10 +4,12 @@ from lcpstep.kernels.tally cimport Tally
 from lcpstep.stepping.rubbing.strides cimport Strides
 
 cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+cdef Py_ssize_t TORN
 cdef double LOOK_AHEAD, FURTHER
 
 cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t search(Strides s, double t, double h) noexcept nogil
+cdef bint turns_at_once(Strides s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil
 cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil

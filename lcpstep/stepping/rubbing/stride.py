@@ -9,15 +9,19 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 if not cython.compiled:
     from lcpstep.events.friction.equations import add_impulse, measure
     from lcpstep.events.friction.held import count_impulses, hold_modes
+    from lcpstep.events.friction.impact import still
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import decide, undecided
+    from lcpstep.events.friction.moments import of_sliding
     from lcpstep.events.friction.state import GUARDS
-    from lcpstep.events.friction.step import arrive, find_standing, of_force
+    from lcpstep.events.friction.step import arrive, find_standing, mark_resting, of_force
+    from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import after, min
+    from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
     from lcpstep.stepping.rubbing.paced import pace
     from lcpstep.stepping.rubbing.strides import Strides
@@ -25,6 +29,7 @@ if not cython.compiled:
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
 # is seen of it there
 LOOK_AHEAD, FURTHER = 1e-4, 10.0
+TORN = -2  # in place of a guard
 
 
 def stride(s: Strides, record: Record, tally: Tally) -> int:
@@ -40,7 +45,7 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
         return failed(s)
     s.going = False
     code = search(s, t0, h)
-    if code != DONE:
+    if code != DONE or s.guard == TORN:
         return code
     if s.length < h:
         h = s.length
@@ -72,17 +77,35 @@ def search(s: Strides, t: float, h: float) -> int:
     """A step from t of size h, or shorter, and the first event within it: `guard`, and `tau` from t; a status.
 
     A polynomial that tells of an event which the motion does not have is wrong by a power of the step, beside what a
-    gap that opens by a force which begins at zero is there: half the step tells better.
+    gap that opens by a force which begins at zero is there: half the step tells better. Where a velocity jumps within
+    the step the guard is TORN: that is a corner, up to which the step is to be made again.
     """
     while True:
         code = attempt(s, t, h)
         if code != DONE:
             return code
         h = s.length
+        mark_resting(s)
+        if h == 0.0 or breaks(s.rows, s, h):
+            s.guard = TORN
+            return DONE
         s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
+        if s.tau != NOWHERE and turns_at_once(s, s.guard):
+            s.clock.break_at(t + s.tau)
+            s.guard = TORN
+            return DONE
         if s.guard < 0 or s.tau != NOWHERE or s.found >= 0.5 or h <= s.clock.untold(0.0):
             return DONE
         h *= 0.5
+
+
+def turns_at_once(s: Strides, g: int) -> bool:
+    """Whether guard g, located within the step, is a sliding velocity that is not zero there: its belt has jumped."""
+    if not of_sliding(s, g):
+        return False
+    none = still(s, s.n_j + s.n_c + g // GUARDS)
+    rounding = NOISE * (abs(s.clock.t0) + s.tau) * abs(s.begin_slope[g])
+    return s.begin_value[g] >= -none and abs(s.value[g]) > max(none, rounding)
 
 
 def attempt(s: Strides, t: float, h: float) -> int:
