@@ -44,7 +44,7 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
         return PAINLEVE_INCONSISTENT if s.culprit >= 0 and code != STEP_TOO_SMALL else code
     h = s.length
     mark_resting(s)
-    if breaks(s.rows, s, h):
+    if breaks(s.rows, s, h, False):
         return DONE
     g = first_event(s, h)
     if g == UNKNOWN:

@@ -50,7 +50,7 @@ def step(s: Mechanism, record: Record, tally: Tally) -> int:
     code = stride(s)
     for c in range(s.n_c):
         s.rests[s.n_j + c] = s.contact.closed[c]
-    if code == DONE and breaks(s, s.smooth, s.length):
+    if code == DONE and breaks(s, s.smooth, s.length, False):
         tally.stalled += 1
         return DONE
     code = look(s, s.length) if code == DONE else code

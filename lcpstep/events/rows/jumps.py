@@ -24,14 +24,19 @@ SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as 
 SUDDEN = 1.0 / 64.0
 
 
-def breaks(s: Rows, motion: RungeKutta, h: float) -> bool:
+def breaks(s: Rows, motion: RungeKutta, h: float, measured: bool) -> bool:
     """Whether the velocity of a row that `rests` jumps within the step of size h just made, which is left as it is.
 
     The time is a corner then, and the step is to be made again.
+    measured : rows are those at the end of the step, which costs so little that gaps are not asked for either
     """
     if s.n_held == 0 or (s.fixed and not s.moving):
         return False
-    i = farthest_off(s, s.t0 + h, motion)
+    if not measured:
+        measure_rates(s, s.t0 + h, motion.y_new, after(motion.y_new, s.n_q))
+    i = farthest_off(s, motion)
+    if i < 0 and measured:
+        return False
     if i < 0:
         i = open_at(s, s.t0 + h, motion)
         return i >= 0 and find_way(s, motion, i, h)
@@ -42,10 +47,9 @@ def breaks(s: Rows, motion: RungeKutta, h: float) -> bool:
     return False
 
 
-def farthest_off(s: Rows, t: float, motion: RungeKutta) -> int:
+def farthest_off(s: Rows, motion: RungeKutta) -> int:
     """The row at rest whose velocity is farthest off from zero at the end of the step, beyond errors of it; or -1."""
     v, found, most = after(motion.y_new, s.n_q), -1, 1.0
-    measure_rates(s, t, motion.y_new, v)
     for i in range(s.n_r):
         u = abs(product(s.R, v, i, s.n_q) + s.rate[i]) if s.rests[i] == 1 else 0.0
         if u > most * s.drift:

@@ -86,7 +86,7 @@ def search(s: Strides, t: float, h: float) -> int:
             return code
         h = s.length
         mark_resting(s)
-        if h == 0.0 or breaks(s.rows, s, h):
+        if h == 0.0 or breaks(s.rows, s, h, True):
             s.guard = TORN
             return DONE
         s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
