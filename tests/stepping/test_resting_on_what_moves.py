@@ -85,3 +85,47 @@ def test_a_rod_whose_ends_stick_to_it_shares_its_friction_as_it_likes(r):
     assert m.counts.steps < 1000
     assert np.sum((m.impacts.kind == Kind.IMPACT) & (m.impacts.contact == 0)) <= 3
     np.testing.assert_allclose(m.q[-1], simulate(scene, EventDriven()).q[-1], rtol=0, atol=1e-4)
+
+
+def hills(t, q, v, p, out):
+    for c in range(out.shape[0]):
+        out[c] = q[2 * c + 1] - 0.026 * math.sin(3.25 * q[2 * c] + 2.0)
+
+
+def hills_normal(t, q, v, p, out):
+    out[:, :] = 0.0
+    for c in range(out.shape[0]):
+        out[c, 2 * c], out[c, 2 * c + 1] = -0.0845 * math.cos(3.25 * q[2 * c] + 2.0), 1.0
+
+
+def hills_curvature(t, q, v, p, out):
+    for c in range(out.shape[0]):
+        out[c] = 0.274625 * math.sin(3.25 * q[2 * c] + 2.0) * v[2 * c] ** 2
+
+
+def hills_tangent(t, q, v, p, out):
+    out[:, :] = 0.0
+    for c in range(out.shape[0]):
+        out[c, 2 * c], out[c, 2 * c + 1] = 1.0, 0.0845 * math.cos(3.25 * q[2 * c] + 2.0)
+
+
+def weight_and_wind(t, q, v, p, out):
+    for i in range(out.shape[0]):
+        out[i] = -9.81 if i % 2 else -1.9
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_a_rod_that_slides_over_hills_to_a_stop_needs_few_steps(tolerance):
+    """Friction slows it where it slides more slowly than the tolerance resolves, and does not let it go."""
+    friction = Coulomb([0.31, 0.62], hills_tangent, law="newton")
+    contacts = Contacts(2, hills, hills_normal, bias=hills_curvature, restitution=0.51, friction=friction)
+    x, y, angle, spin = 0.84, 0.25, 1.0655, -0.12
+    q0 = [x, y, x + LENGTH * math.cos(angle), y + LENGTH * math.sin(angle)]
+    v0 = [-0.87, 0.58, -0.87 - spin * LENGTH * math.sin(angle), 0.58 + spin * LENGTH * math.cos(angle)]
+    scene = Scene(
+        System(4, np.eye(4), weight_and_wind), q0, v0, (0.0, 1.7), contacts, joints=Joints(1, rod, along)
+    )
+    m, true = simulate(scene, Moreau(1e-2, tolerance=tolerance)), simulate(scene, EventDriven())
+    assert (m.status, true.status) == (Status.DONE, Status.DONE)
+    assert m.counts.steps < 10_000
+    np.testing.assert_allclose(m.q[-1], true.q[-1], rtol=0, atol=2.0 * tolerance)
