@@ -16,6 +16,7 @@ cdef class Clock:
     ) noexcept nogil
     cdef double untold(self, double length) noexcept nogil
     cdef double inside(self, double t) noexcept nogil
+    cdef bint lies_apart(self, double t) noexcept nogil
     cdef void break_at(self, double t) noexcept nogil
     cdef void find_corners(self, double t) noexcept nogil
     cdef void find_named(self, double near) noexcept nogil

@@ -80,6 +80,11 @@ class Clock:
         margin = NUDGE * max(abs(t), self.scale)
         return min(max(t, self.low + margin), self.high - margin)
 
+    def lies_apart(self, t: float) -> bool:
+        """Whether a time can be told from the base, and from the end of its smooth interval: see `inside`."""
+        margin = NUDGE * max(abs(t), self.scale)
+        return self.t0 + margin < t < self.high - margin
+
     def break_at(self, t: float) -> None:
         """The smooth interval at hand ends at t, as has been found."""
         self.high = self.jump = t

@@ -61,7 +61,7 @@ def turns_at_once(s: Rubbing, g: int, tau: float, h: float) -> bool:
     What begins to slide, within its band, has no slope there that would tell: the step of size h tells.
     """
     if s.risen:
-        if s.value[g] >= 0.0 or not jumps(s, g, tau):
+        if tau <= 0.0 or s.value[g] >= 0.0 or not jumps(s, g, tau):  # at once, and not looked at
             return False
         s.clock.break_at(s.clock.t0 + tau)
         return True

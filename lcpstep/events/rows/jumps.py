@@ -125,9 +125,10 @@ def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
             high, later = tau, u
         else:
             low, before = tau, u
-    if high - low < SUDDEN * h:
-        begins = abs(later - before) < SHARE * off and low > 0.0
-        s.break_at(t0 + low if begins else t0 + high)
+    begins = abs(later - before) < SHARE * off and low > 0.0
+    t = t0 + low if begins else t0 + high
+    if high - low < SUDDEN * h and s.lies_apart(t):
+        s.break_at(t)
         return True
     motion.step(t0, h)
     motion.complete(t0, h)
