@@ -48,7 +48,8 @@ def no_room(run: Trajectory) -> str:
         g = gaps_at(m, run.t[k], np.ascontiguousarray(run.q[k]))
     cause()
     forget()
-    reach = float(np.linalg.norm(np.ptp([run.scene.q0, *run.q[k]], axis=0)))  # kept states may be those of a rest
+    seen = [run.scene.q0, *run.q[k]]  # what is kept may be but a rest
+    reach = float(np.linalg.norm(np.ptp(seen, axis=0)))
     lowest = g.min(axis=1)
     for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
         c, at = int(np.argmin(g[i])), float(run.t[k[i]])

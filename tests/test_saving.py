@@ -291,13 +291,3 @@ def test_a_notebook_shows_a_summary_and_the_motion():
         assert "DONE" in page
         assert page.count("<svg") == min(3, (run.q if hasattr(run, "q") else run.x).shape[1])
     assert "&lt;b&gt;" in simulate(own(name="<b>"), Moreau(0.1))._repr_html_()
-
-
-def test_a_sparkline_keeps_every_peak():
-    from lcpstep.summary import HEIGHT, sparkline
-
-    t, x = np.linspace(0.0, 1.0, 100_000), np.zeros(100_000)
-    x[54_321] = 1.0
-    assert "130.4,2.0" in sparkline(t, x, np.zeros(0))
-    assert f"M120.0 {HEIGHT}" in sparkline(t, x, np.array([0.5]))
-    assert sparkline(t[:1], x[:1], np.zeros(0)) == ""

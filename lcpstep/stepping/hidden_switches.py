@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.stepping.theta_method.plan import Plan
 
 ONE, FIRST, SECOND = range(3)  # the step, its halves
-SHARED = 4.0  # rows that do not depend on each other make of their impulses together a quarter of what one makes
+SHARED = 4.0  # rows that do not depend on each other make together a quarter of what the impulse of one makes
 STICKS = 1.0 - 1e-9  # of its limit: friction below it; its speed does not tell, for sliding begins slowly
 
 

@@ -64,8 +64,9 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
     if of_sliding(s, g) and turns_at_once(s, g, tau, h):
         return DONE
     take_over(s, record, tally, min(s.clock.after(tau), border), tau)
-    none = tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)  # a jump whose polynomial has been there, not the velocity
-    return arrive(s, g) if code == DONE and not none else code
+    if code != DONE or (tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)):
+        return code  # a jump whose polynomial has been there, not the velocity
+    return arrive(s, g)
 
 
 def mark_resting(s: Rubbing) -> None:
