@@ -15,13 +15,14 @@ from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INC
 
 if not cython.compiled:
     from lcpstep.events.friction.balance import opens_any, reconsider
-    from lcpstep.events.friction.equations import measure
+    from lcpstep.events.friction.equations import add_impulse, measure, measure_velocities
     from lcpstep.events.friction.guards import begin_guards
     from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.surfaces import come_apart, contradict, find_touching
+    from lcpstep.events.rows.jumps import drive_joints
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -120,6 +121,10 @@ def turn_corner(s: Rubbing) -> int:
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     forget_terms(s)
+    if drive_joints(s.rows, s.v):
+        for m in range(s.rows.n_held):
+            add_impulse(s, s.rows.row[m], s.rows.held[m])
+        measure_velocities(s, s.v)
     for c in range(s.n_c):
         i = s.n_j + c
         s.touches[c] = 1 if s.mode[c] != OPEN else 0

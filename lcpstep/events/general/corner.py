@@ -17,9 +17,10 @@ if not cython.compiled:
     from lcpstep.events.general.modes import tell_impacts
     from lcpstep.events.general.state import JUMP, SETTLE, Mechanism
     from lcpstep.events.rows.equations import JUMPS, measure_rates, size_of
+    from lcpstep.events.rows.jumps import drive_joints
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, max
 
 
@@ -41,15 +42,25 @@ def pass_corner(s: Mechanism, record: Record, tally: Tally) -> int:
 
 
 def throws(s: Mechanism) -> bool:
-    """Whether a closed contact is struck or left by its obstacle; gap velocities of open ones are the new ones."""
-    some = False
+    """Whether a closed contact is struck or left by its obstacle; gap velocities of open ones are the new ones.
+
+    A joint that is driven, and jumps, makes contacts of the bodies that it moves jump as their obstacles would.
+    """
     before = s.left.curve
     measure_rates(s, s.t0, s.q, s.v)  # as they are here, and not where gaps were last looked at
     copy(before, s.contact.rate, s.n_c)
     s.find_corners(s.t0)
     measure_rates(s, s.t0, s.q, s.v)
+    copy(s.dy, s.v, s.n_q)
+    some = drive_joints(s, s.v)
+    for m in range(s.n_held if some else 0):
+        s.joint.impulse[s.row[m]] = s.joint.impulse[s.row[m]] + s.held[m]
+    for j in range(s.n_q):
+        s.dy[j] = s.v[j] - s.dy[j]
     for c in range(s.n_c):
         jump = s.contact.rate[c] - before[c]
+        if some:
+            jump += product(s.R, s.dy, s.n_j + c, s.n_q)
         size = size_of(s, s.n_j + c, abs(s.contact.rate[c]) + abs(before[c]), s.v)
         s.contact.terms[c], s.contact.parting[c], s.contact.thrown[c] = size, 0, 0.0
         if abs(jump) <= max(JUMPS * size, speed_tolerance(s, c)):

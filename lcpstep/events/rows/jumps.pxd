@@ -7,6 +7,8 @@ cdef double TOLERANCES, MORE, SHARE, SUDDEN
 cdef bint breaks(Rows s, RungeKutta motion, double h, bint measured) noexcept nogil
 @cython.locals(found=Py_ssize_t)
 cdef Py_ssize_t farthest_off(Rows s, RungeKutta motion) noexcept nogil
+@cython.locals(driven=bint)
+cdef bint drive_joints(Rows s, double* v) noexcept nogil
 cdef Py_ssize_t open_at(Rows s, double t, RungeKutta motion) noexcept nogil
 cdef bint find_way(Rows s, RungeKutta motion, Py_ssize_t i, double h) noexcept nogil
 cdef double unseen(Rows s, Py_ssize_t i, double* v) noexcept nogil

@@ -11,6 +11,7 @@ import cython
 
 if not cython.compiled:
     from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
+    from lcpstep.events.rows.held import constrain, hold_joints
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.rungekutta import RungeKutta
@@ -57,6 +58,18 @@ def farthest_off(s: Rows, motion: RungeKutta) -> int:
             if off > most:
                 found, most = i, off
     return found
+
+
+def drive_joints(s: Rows, v: Doubles) -> bool:
+    """Put velocities onto joints that have jumped at a corner, their impulses into `held`; whether any has."""
+    driven = False
+    for i in range(s.n_j):
+        off = abs(product(s.R, v, i, s.n_q) + s.rate[i])
+        driven = driven or off > max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
+    if driven:
+        hold_joints(s)
+        constrain(s, v, s.rate)
+    return driven
 
 
 def open_at(s: Rows, t: float, motion: RungeKutta) -> int:
