@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lcpstep.lengths import lengths
+from lcpstep.lengths import derivative as over_lengths
 from lcpstep.maps.iteration import Map, iterate
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ def differences(
 def smooth_differences(f: Any, x: ArrayLike, size: ArrayLike) -> Array:
     """The same over lengths on which f is smooth, (e, d); size : (d,) of the motion, see `lengths`."""
     x = np.atleast_1d(np.asarray(x, dtype=float))
-    return differences(f, x, scale=lengths(f, x, RELATIVE_STEP, np.atleast_1d(np.asarray(size, dtype=float))))
+    return over_lengths(f, x, RELATIVE_STEP, np.atleast_1d(np.asarray(size, dtype=float)))
 
 
 def one_sided(f: Callable[[float], Array], t: float, step: float) -> Array:

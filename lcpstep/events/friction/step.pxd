@@ -6,7 +6,6 @@ from lcpstep.kernels.tally cimport Tally
 cdef Py_ssize_t ALL, STAGES, SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double LOOK_AHEAD, FURTHER, FARTHEST
 
-@cython.locals(none=bint)
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef void mark_resting(Rubbing s) noexcept nogil
 cdef void change_pace(Rubbing s) noexcept nogil

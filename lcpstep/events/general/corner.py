@@ -52,14 +52,15 @@ def throws(s: Mechanism) -> bool:
     s.find_corners(s.t0)
     measure_rates(s, s.t0, s.q, s.v)
     copy(s.dy, s.v, s.n_q)
-    some = drive_joints(s, s.v)
-    for m in range(s.n_held if some else 0):
-        s.joint.impulse[s.row[m]] = s.joint.impulse[s.row[m]] + s.held[m]
-    for j in range(s.n_q):
-        s.dy[j] = s.v[j] - s.dy[j]
+    some = driven = drive_joints(s, s.v)
+    if driven:
+        for m in range(s.n_held):
+            s.joint.impulse[s.row[m]] = s.joint.impulse[s.row[m]] + s.held[m]
+        for j in range(s.n_q):
+            s.dy[j] = s.v[j] - s.dy[j]
     for c in range(s.n_c):
         jump = s.contact.rate[c] - before[c]
-        if some:
+        if driven:
             jump += product(s.R, s.dy, s.n_j + c, s.n_q)
         size = size_of(s, s.n_j + c, abs(s.contact.rate[c]) + abs(before[c]), s.v)
         s.contact.terms[c], s.contact.parting[c], s.contact.thrown[c] = size, 0, 0.0

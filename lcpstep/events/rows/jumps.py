@@ -36,10 +36,8 @@ def breaks(s: Rows, motion: RungeKutta, h: float, measured: bool) -> bool:
     if not measured:
         measure_rates(s, s.t0 + h, motion.y_new, after(motion.y_new, s.n_q))
     i = farthest_off(s, motion)
-    if i < 0 and measured:
-        return False
     if i < 0:
-        i = open_at(s, s.t0 + h, motion)
+        i = -1 if measured else open_at(s, s.t0 + h, motion)
         return i >= 0 and find_way(s, motion, i, h)
     if find_jump(s, motion, i, h):
         return True
@@ -64,8 +62,7 @@ def drive_joints(s: Rows, v: Doubles) -> bool:
     """Put velocities onto joints that have jumped at a corner, their impulses into `held`; whether any has."""
     driven = False
     for i in range(s.n_j):
-        off = abs(product(s.R, v, i, s.n_q) + s.rate[i])
-        driven = driven or off > max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
+        driven = driven or abs(product(s.R, v, i, s.n_q) + s.rate[i]) > error(s, i, v)
     if driven:
         hold_joints(s)
         constrain(s, v, s.rate)
@@ -107,8 +104,12 @@ def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
 
 def unseen(s: Rows, i: int, v: Doubles) -> float:
     """What steps may leave of the velocity of row i, which is no jump."""
-    known = max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
-    return max(known, s.drift)
+    return max(error(s, i, v), s.drift)
+
+
+def error(s: Rows, i: int, v: Doubles) -> float:
+    """Of the velocity of row i: its rounding, and some of the tolerance."""
+    return max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
 
 
 def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
