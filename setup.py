@@ -33,6 +33,7 @@ HEADERS = {
     "lcpstep.pointers",
     "lcpstep.arrays",
     "lcpstep.kernels.vectors",
+    "lcpstep.kernels.one_row",
     "lcpstep.stepping.pieces.codes",
     "lcpstep.kernels.quadratic",
     "lcpstep.stepping.pieces.times",

@@ -142,9 +142,10 @@ def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[s
     """Addresses of C functions for the callbacks among the fields of each part; what must be kept as long."""
     called_back: list[CalledBack] = []
     made: dict[str, dict[str, int]] = {}
+    compiling = not callbacks.disabled()
     for part, fields in parts.items():
         given = {name: f for name, f in fields.items() if callable(f)}
-        made[part] = {} if not given or callbacks.disabled() else _compile(scene, part, given)
+        made[part] = _compile(scene, part, given) if compiling else {}
         for name, f in given.items():
             if name not in made[part]:
                 called_back.append(CalledBack(f))

@@ -1,35 +1,35 @@
-"""What a run keeps: states chosen by the caller, and every event, in buffers that a kernel fills.
+"""What a run keeps: states chosen by the caller, and every event, in arrays that a kernel fills.
 
-Kernels write into arrays of fixed size and return when these are full; the recorder empties them.
+These are of fixed size, and kernels return when they are full: the recorder then makes room for as many states again,
+and empties the log.
 """
 
 from __future__ import annotations
 
-import math
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
-from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH
+from lcpstep.kernels.layout import COLUMNS
 from lcpstep.trajectory import IMPACT_DTYPE
-
-if TYPE_CHECKING:
-    from lcpstep.kernels.record import Columns
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
 EVENT_CAPACITY = 4096
 LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
-BUFFERS = threading.local()  # .rows, .lines, .curves: those of the last run of this thread
+BUFFERS = threading.local()  # .lines: those of the last run of this thread
+NO_EVENTS = np.empty(0, dtype=LOGGED).view(np.recarray)
 NOTHING: Array = np.zeros(0)
 NOTHING.flags.writeable = False
-EXPECTED = 1 << 22  # states that room is made for at once, at most
+EXPECTED = 1 << 26  # numbers of states that room is made for at once, at most, where theirs is known
+UNKNOWN = 1 << 20  # the same where it is not
+FIRST = 512  # states that room is made for where their number is not known
+SPARE = 16  # rows that there is room for, at least, when kernels go on, besides states at given times
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,9 @@ class Kept:
         """Whether nothing but states at given times is kept."""
         return self.every == 0 and not self.on_events
 
-    def of_steps(self, n: int) -> int:
-        """How many of n steps are kept for their number."""
-        return n // self.every if self.every > 0 else 0
+    def of_steps(self, n: int) -> int | None:
+        """How many of n steps are kept for their number, and the start; None where states are kept otherwise."""
+        return 1 + n // self.every if self.every > 0 else None
 
 
 def in_order(events: Array, end: float) -> Array:
@@ -82,8 +82,6 @@ def in_order(events: Array, end: float) -> Array:
     The end of a chattering sequence is noted, with the time at which it comes, where the rest of the sequence is
     summed up: before events of other contacts that come earlier. What the contact itself does next ends the sequence.
     """
-    if len(events) == 0:
-        return events
     ordered = events.copy()
     time = ordered[:, 0]
     np.minimum(time, end, out=time)
@@ -122,11 +120,6 @@ def in_use(room: bytearray) -> bool:
     return False
 
 
-def joined(parts: Sequence[Array]) -> Array:
-    """Arrays one after another; a single one as it is."""
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)
-
-
 class States(NamedTuple):
     """Kept states: times t (n,), q and v (n, n_q), impulses (n, n_c), modes and durations (n,)."""
 
@@ -144,11 +137,17 @@ class States(NamedTuple):
 
 
 class Recorder:
-    """Buffers of one run, and what they held when they were emptied.
+    """What kernels write to: states where they stay, and a buffer for the log.
 
-    record    what kernels write into `rows`, `lines` of the log and `curves` (dense output) through
-    taken     events taken out of the buffers
-    expected : states of the whole run, where that is known; they are not moved again, then
+    record    what kernels write through
+    lines     of the log, the last ones
+    taken     events taken out of that buffer
+
+    Parameters
+    ----------
+    n_q, n_c : coordinates, and impulses in a row;  kept : Kept
+    dense_shape : of the dense output after each state; None: no such
+    expected : states kept in all, where that is known; they are not moved, then
     """
 
     def __init__(
@@ -156,75 +155,76 @@ class Recorder:
         n_q: int,
         n_c: int,
         kept: Kept,
-        rows: int,
-        dense: bool = False,
-        dense_shape: tuple[int, int] | None = None,
-        expected: int = 0,
+        dense_shape: tuple[int, ...] | None = None,
+        expected: int | None = None,
     ) -> None:
         from lcpstep.kernels.record import Record
 
-        self.rows = buffer("rows", rows, LEAD + 2 * n_q + n_c)  # what is read has been written
-        self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)
-        shape = dense_shape or (7, 2 * n_q)
-        self.curves = np.zeros((0, *shape))
-        if dense:
-            self.curves = buffer("curves", rows, math.prod(shape)).reshape(-1, *shape)
-        self.record = Record(
-            n_q, n_c, kept.every, kept.on_events, kept.times, self.rows, self.lines, self.curves
-        )
+        self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)  # what is read has been written
+        self.record = Record(n_q, n_c, kept.every, kept.on_events, kept.times, self.lines)
         self.taken = 0
-        self._states: list[Columns] = []
-        self._expected = min(expected, EXPECTED)
-        self._free = 0  # rows of the last of them that are not filled
-        self._parts = {"events": [self.lines[:0]], "dense": [self.curves[:0]]}
+        self._dense_shape = dense_shape
+        self._events: list[Array] = []
+        most = (UNKNOWN if expected is None else EXPECTED) // (2 * n_q + n_c + 1)
+        if expected is None:
+            expected = 0 if kept.given else FIRST
+        self._columns = self._rows(len(kept.times) + min(expected, most) + 2 * SPARE)
+        self.record.write_to(self._columns)
 
-    def empty(self, rows: int, events: int) -> None:
-        """Take over the first rows and events of the buffers."""
-        if rows > self._free:
-            self._close(max(rows, self._expected))
-        if rows > 0:
-            if len(self.curves):
-                curves = self.curves[:rows].copy()
-                curves[self.rows[:rows, LENGTH] == 0.0] = 0.0  # no step has followed
-                self._parts["dense"].append(curves)
-            self.record.row = rows
-            self.record.move(self._states[-1], len(self._states[-1][0]) - self._free)
-            self._free -= rows
-        if events > 0:
-            self._parts["events"].append(self.lines[:events].copy())
-        self.taken += events
-        self.record.event = 0
-
-    def _close(self, rows: int) -> None:
-        """Leave the arrays at hand as they are, and go on with others for so many rows."""
-        if self._free > 0:
-            t, mode, length, q, v, impulse = self._states.pop()
-            n = len(t) - self._free
-            self._states.append((t[:n], mode[:n], length[:n], q[:n], v[:n], impulse[:n]))
-        if rows > 0 or not self._states:
-            self._states.append(self.record.room_for(rows))
-        self._free = rows
+    def _rows(self, n: int) -> tuple[Array, ...]:
+        """Arrays for so many rows; of what is zero in most of them the system has memory ready, untouched."""
+        n_q, n_c, shape = self.record.n_q, self.record.n_c, self._dense_shape
+        dense = np.empty(0 if shape is None else (n, *shape))
+        return (
+            np.empty(n), np.zeros(n), np.zeros(n), np.empty((n, n_q)), np.empty((n, n_q)), np.zeros((n, n_c)), dense
+        )  # fmt: skip
 
     def take(self) -> None:
-        """Take over what kernels have written."""
-        self.empty(self.record.row, int(self.record.event))
+        """Take over the events that kernels have written, and see to it that they can go on."""
+        record = self.record
+        if record.event > 0:
+            self._events.append(self.lines[: record.event].copy())
+            self.taken += record.event
+            record.event = 0
+        if record.row_capacity - record.row < record.n_times - record.next_time + SPARE:
+            more = self._rows(2 * record.row_capacity)
+            for old, new in zip(self._columns, more, strict=True):
+                new[: record.row] = old[: record.row]
+            self._columns = more
+            record.write_to(more)
+
+    def keep(self, t: float, q: Array, v: Array, impulse: Array) -> None:
+        """Keep a state from Python."""
+        k = self.record.row
+        numbers: tuple[Any, ...] = t, 0.0, 0.0, q, v, impulse
+        for column, x in zip(self._columns, numbers, strict=False):
+            column[k] = x
+        self.record.row = k + 1
+        self.take()
+
+    def _written(self) -> list[Array]:
+        """What has been written of each array; of those that are mostly empty copies."""
+        n = self.record.row
+        written = [x[:n] for x in self._columns]
+        return written if 2 * n + 4 * SPARE > self.record.row_capacity else [x.copy() for x in written]
 
     def states(self) -> States:
         """All states kept so far."""
-        if self._free > 0 or not self._states:
-            self._close(0)
-        first, *more = self._states
-        t, mode, length, q, v, impulse = map(joined, zip(first, *more, strict=True)) if more else first
+        t, mode, length, q, v, impulse, _ = self._written()
         return States(t, q, v, impulse, mode, length)
 
     def dense(self) -> Array:
-        """Dense output of the steps after the kept states."""
-        return joined(self._parts["dense"])
+        """Dense output of the steps after the kept states, zero where none has followed."""
+        _, _, length, *_, dense = self._written()
+        dense[length[: len(dense)] == 0.0] = 0.0
+        return dense
 
     def events(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
-        events = in_order(joined(self._parts["events"]), end)
+        if self.taken == 0:
+            return NO_EVENTS
+        events = in_order(np.concatenate(self._events), end)
         log = np.empty(len(events), dtype=LOGGED)
-        for k, name in enumerate(IMPACT_DTYPE.names or () if len(events) else ()):
+        for k, name in enumerate(IMPACT_DTYPE.names or ()):
             log[name] = events[:, k]
         return log.view(np.recarray)

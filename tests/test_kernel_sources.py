@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from lcpstep.kernels import quadratic, vectors
+from lcpstep.kernels import one_row, quadratic, vectors
 from lcpstep.stepping.pieces import codes, times
 from tests.uncompiled import BUILT, HEADERS, ROOT
 
@@ -98,7 +98,7 @@ def as_python(name):
     """The functions of a `.pxd` file, which are Python but for their types."""
     text = INLINE.sub(lambda m: f"def {m[1]}({', '.join(arguments_in_c(name)[m[1]])}):", header(name))
     text = re.sub(r"^(from .* cimport .*|)$", "", text, flags=re.M)
-    text = re.sub(r"cdef double (\w+ =)", r"\1", text)
+    text = re.sub(r"cdef (?:double|Py_ssize_t) (\w+ =)", r"\1", text)
     known = {"sqrt": math.sqrt, "abs": abs, "max": max, "min": min, "inf": math.inf, "range": range}
     known |= {x: getattr(codes, x) for x in ("EPS", "LATE")}
     exec(text, known)
@@ -150,6 +150,25 @@ def test_short_loops_are_the_same_in_both_files(name):
                 answers.append([f(*arguments), *arguments])
         for mine, other in zip(*answers, strict=True):
             np.testing.assert_array_equal(mine, other)
+
+
+class Written:
+    """What a record has written: two rows, and one that is to come."""
+
+    def __init__(self):
+        self.row, self.t, self.q, self.v = 2, np.ones(3), np.ones(3), np.ones(3)
+        self.length, self.impulse = np.zeros(3), np.zeros(3)
+
+
+@pytest.mark.parametrize("x", VALUES)
+def test_a_kept_state_is_the_same_in_both_files(x):
+    answers = []
+    for f in (one_row.keep_one, as_python(one_row.__name__)["keep_one"]):
+        record, impulse = Written(), np.array([x])
+        f(record, x, x, 2.0 * x, 3.0 * x, impulse)
+        answers.append([*vars(record).values(), impulse])
+    for mine, other in zip(*answers, strict=True):
+        np.testing.assert_array_equal(mine, other)
 
 
 class Piece:

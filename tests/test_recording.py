@@ -1,10 +1,10 @@
-"""The impact log is in the order of time, whatever the order in which a method notes events."""
+"""The impact log is in the order of time; states stay the same wherever room is made for them."""
 
 import numpy as np
 import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, recording, simulate
 from lcpstep.recording import in_order
 from lcpstep.trajectory import Kind
 
@@ -84,3 +84,42 @@ def test_a_run_within_a_run_changes_nothing_of_it(method):
     for name in ("t", "q", "v", "impulse", "impacts"):
         np.testing.assert_array_equal(getattr(run, name), getattr(alone, name))
         np.testing.assert_array_equal(getattr(within[-1], name), getattr(simulate(other, method), name))
+
+
+WAYS = [
+    (scenes.bouncing_ball(t_end=2.0), Moreau(h=1e-3)),
+    (scenes.impact_oscillator(t_end=20.0), Moreau(h=0.1, tolerance=1e-4)),
+    (scenes.impact_oscillator(t_end=20.0), Located(h=1e-2)),
+    (scenes.cam_follower(660.0, t_end=0.2), Located(h=1e-4)),  # in a frame of its own
+    (scenes.cam_follower(660.0, t_end=0.2), Located(h=1e-2, tolerance=1e-6)),
+    (scenes.bouncing_ball(t_end=2.0), Located(h=1e-2, order=4)),
+    (scenes.bouncing_ball(t_end=2.0), EventDriven()),
+    (scenes.double_pendulum(), EventDriven()),
+    (scenes.double_pendulum(), Moreau(h=1e-2)),
+    (scenes.stick_slip_belt(), EventDriven()),
+    (scenes.slider_crank(), Located(h=1e-3)),
+    (scenes.falling_rod(), EventDriven()),
+    (scenes.newtons_cradle(), Moreau(h=1e-3)),
+]
+
+
+@pytest.mark.parametrize("keep", [1, 3, "impacts"])
+@pytest.mark.parametrize(("scene", "method"), WAYS)
+def test_states_are_the_same_however_often_room_is_made(scene, method, keep, monkeypatch):
+    at_once = simulate(scene, method, keep=keep)
+    for name in ("FIRST", "EXPECTED", "UNKNOWN"):
+        monkeypatch.setattr(recording, name, 0)
+    little_by_little = simulate(scene, method, keep=keep)
+    for name in ("t", "q", "v", "impulse", "joint_impulse", "friction_impulse"):
+        mine, other = getattr(little_by_little, name), getattr(at_once, name)
+        size = np.max(np.abs(other), initial=0.0)  # where a frame is, is known up to a rounding of the time
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-14 * size, err_msg=name)
+    inside = np.linspace(*at_once.t[[0, -1]], 50) if keep == 1 else at_once.t
+    for mine, other in zip(little_by_little.at(inside), at_once.at(inside), strict=True):
+        np.testing.assert_allclose(mine, other, rtol=0.0, atol=1e-13)
+
+
+def test_a_short_run_of_unknown_length_holds_no_more_than_it_has_written():
+    m = simulate(scenes.bouncing_ball(t_end=0.1), EventDriven())
+    assert len(m.t) < 40
+    assert all(x.base is None or x.base.size < 100 for x in (m.t, m.q, m.v, m.impulse))

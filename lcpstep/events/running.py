@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.events.general.ends import NO_FORCES, STATUS
 from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
-from lcpstep.kernels.layout import TIME
 from lcpstep.kernels.tally import Tally
 from lcpstep.model import unrepeatable
 from lcpstep.recording import Kept, Recorder, States
@@ -24,7 +23,6 @@ from lcpstep.trajectory import Counts, Status
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within an interval that failed
-MOST_ROWS = 2**22  # numbers in a buffer of kept states
 QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
 FIRST_STEP = 0.1  # of the scan interval
 
@@ -67,27 +65,14 @@ class EventRun(Run):
         """Work done."""
         return Counts(self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events)
 
-    def empty(self) -> None:
-        """Move the buffers' contents to the recorder, but for the last row, whose step may still be to come."""
-        record = self.recorder.record
-        left, last = min(record.row, 1), max(record.row - 1, 0)
-        self.recorder.empty(last, record.event)
-        for kept in (
-            self.recorder.rows,
-            self.recorder.curves,
-        ):  # or has been made, where the run ends at an event
-            kept[:1] = kept[last : last + 1]
-        record.row, record.event = left, 0
-
     def states(self) -> States:
         """All states kept, and the last one where states are kept by steps or events."""
-        record = self.recorder.record
-        nothing = record.row == 0 or self.now > self.recorder.rows[record.row - 1, TIME]
-        if len(self.kept.times) == 0 and nothing and not self.closed:
+        s = super().states()
+        if not self.kept.given and not self.closed and not (len(s.t) > 0 and self.now <= s.t[-1]):
             self.course.keep_now()
+            s = super().states()
         self.closed = True
-        self.recorder.take()
-        return self.recorder.states()
+        return s
 
     def status(self, code: int) -> Status:
         """How the run ended, by what the kernel returned."""
@@ -190,9 +175,8 @@ def without_impulses(s: States) -> States:
 
 def recorder_for(scene: Scene, kept: Kept, columns: int, constant: bool) -> Recorder:
     """What is kept, with so many impulses, and the motion after each state: its acceleration, or dense output."""
-    width = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
-    rows = max(16, min(PORTION, MOST_ROWS // (width[0] * width[1]))) + len(kept.times) + 8
-    return Recorder(scene.n_q, columns, kept, rows, dense=kept.all, dense_shape=width)
+    shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
+    return Recorder(scene.n_q, columns, kept, shape if kept.all else None)
 
 
 @dataclass(eq=False)

@@ -1,7 +1,7 @@
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t BUFFER_FULL, DONE, TOO_MANY_EVENTS, DUE, AHEAD, ARRIVED, SLACK
+cdef Py_ssize_t BUFFER_FULL, DONE, TOO_MANY_EVENTS, DUE, AHEAD, ARRIVED
 
 
 cdef class Course:
@@ -22,5 +22,5 @@ cdef class Stepwise(Course):
 cdef class Events(Course):
     cdef Record record
     cdef Tally tally
-    cdef Py_ssize_t most_events, most_rows
+    cdef Py_ssize_t room
     cdef Py_ssize_t refusal(self) noexcept nogil

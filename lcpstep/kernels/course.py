@@ -11,7 +11,6 @@ if not cython.compiled:
     from lcpstep.kernels.tally import Tally
 
 DUE, AHEAD, ARRIVED = range(3)  # stages
-SLACK = 4  # rows that one round of the loop may need
 
 
 class Course:
@@ -70,20 +69,18 @@ class Events(Course):
     """The same from event to event, of what has a record and a tally.
 
     record, tally   what is kept, and counted
-    most_events     in the record, for the next round to begin
-    most_rows       the same
+    room            events that one round may note
 
     Parameters
     ----------
-    record, tally : as above;  room : events that one round may note
+    record, tally, room : as above
     """
 
     def __init__(self, record: Record, tally: Tally, room: int) -> None:
-        self.record, self.tally = record, tally
-        self.most_events, self.most_rows = record.event_capacity - room, record.row_capacity - SLACK
+        self.record, self.tally, self.room = record, tally, room
 
     def refusal(self) -> int:
         """Whether buffers are full, or there were too many events."""
-        if self.record.event > self.most_events or self.record.row > self.most_rows:
+        if self.record.full(self.room):
             return BUFFER_FULL
         return TOO_MANY_EVENTS if self.tally.too_many() else DONE

@@ -1,20 +1,22 @@
-"""Where kernels write what a run keeps: states that the caller has chosen, and every event; room is bounded."""
+"""Where kernels write what a run keeps: states that the caller has chosen, and every event; room is bounded.
+
+States are written where they stay: each quantity in an array of its own, which the trajectory hands out.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 import cython
-import numpy as np
 
-from lcpstep.kernels.layout import COLUMNS, LEAD, LENGTH, MODE, TIME
+from lcpstep.kernels.layout import COLUMNS
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.kernels.vectors import add, copy
+    from lcpstep.kernels.vectors import add, clear, copy
     from lcpstep.pointers import Doubles, after, inf, whole
 
-Columns = tuple[Any, Any, Any, Any, Any, Any]  # times, modes, durations, q, v and impulses of rows
+ROOM = 4  # rows that a step may write, besides states at given times
 
 
 class Record:
@@ -23,56 +25,58 @@ class Record:
     every        keep every so many steps; 0: none
     on_events    keep the states at events
     times        keep the states at these times
-    rows : (rows, LEAD + 2 n_q + n_c)   time, mode, duration, q, v, impulses since the row before
     events : (event_capacity, COLUMNS)
-    dense : (rows, dense_size)          dense output of the step after each row; nothing where dense_size is 0
-    row, event, next_time               rows and events written, times kept
+    row, event, next_time    rows and events written, times kept
+
+    Of each row:
+
+    t        its time
+    mode     whether the contact is closed (of `Located`: whether velocities may have jumped here)
+    length   duration of the step that follows, 0 where none has
+    q, v     the state
+    impulse  since the row before
+    dense : (row_capacity, dense_size)   dense output of the step that follows; nothing where dense_size is 0
+
+    Modes, durations and impulses are zero where nothing has been written: most of them are, and stay untouched.
 
     Parameters
     ----------
     n_q, n_c : int   coordinates, and impulses in a row
     every, on_events, times   as above
-    rows, events, dense : arrays   to write to
+    events : array   to write to; states: see `write_to`
     """
 
-    def __init__(
-        self, n_q: int, n_c: int, every: int, on_events: bool, times: Any, rows: Any, events: Any, dense: Any
-    ) -> None:
-        self.arrays = times, rows, events, dense
-        self.n_q, self.n_c, self.n_times = n_q, n_c, len(times)
-        self.row_size, self.row_capacity, self.event_capacity = rows.shape[1], len(rows), len(events)
+    def __init__(self, n_q: int, n_c: int, every: int, on_events: bool, times: Any, events: Any) -> None:
+        self.given, self.columns = (times, events), None
+        self.n_q, self.n_c, self.n_times, self.event_capacity = n_q, n_c, len(times), len(events)
+        self.every, self.on_events, self.row_size = every, on_events, 3 + 2 * n_q + n_c
+        self.row = self.event = self.next_time = self.row_capacity = self.dense_size = 0
+        self.times, self.events = doubles(times), doubles(events)
+
+    def write_to(self, columns: Any) -> None:
+        """Write to other arrays (t, mode, length, q, v, impulse, dense), which hold the rows so far."""
+        t, mode, length, q, v, impulse, dense = columns
+        self.columns, self.row_capacity = columns, len(t)
         self.dense_size = dense[0].size if len(dense) > 0 else 0
-        self.every, self.on_events = every, on_events
-        self.row = self.event = self.next_time = 0
-        self.times, self.rows = doubles(times), doubles(rows)
-        self.events, self.dense = doubles(events), doubles(dense)
+        self.t, self.mode, self.length, self.q = doubles(t), doubles(mode), doubles(length), doubles(q)
+        self.v, self.impulse, self.dense = doubles(v), doubles(impulse), doubles(dense)
 
-    def last_row(self) -> Doubles:
-        """The row written last."""
-        return after(self.rows, (self.row - 1) * self.row_size)
-
-    def dense_row(self, row: int) -> Doubles:
-        """Where the dense output of the step after a row goes."""
-        return after(self.dense, row * self.dense_size)
+    def last_time(self) -> float:
+        """The time of the row written last."""
+        return self.t[self.row - 1] if self.row > 0 else -inf
 
     def keep(self, t: float, mode: float, q: Doubles, v: Doubles, impulse: Doubles) -> None:
         """One kept state; the impulses summed up to it start anew."""
-        n = self.n_q
-        row = after(self.rows, self.row * self.row_size)
-        row[TIME], row[MODE], row[LENGTH] = t, mode, 0.0
-        for i in range(n):
-            row[LEAD + i], row[LEAD + n + i] = q[i], v[i]
-        for c in range(self.n_c):
-            row[LEAD + 2 * n + c] = impulse[c]
-            impulse[c] = 0.0
-        self.row += 1
-
-    def keep_one(self, t: float, length: float, q: float, v: float, impulse: Doubles) -> None:
-        """`keep` where there are one coordinate and one impulse, mode 0."""
-        row = after(self.rows, self.row * self.row_size)
-        row[TIME], row[MODE], row[LENGTH] = t, 0.0, length
-        row[LEAD], row[LEAD + 1], row[LEAD + 2] = q, v, impulse[0]
-        impulse[0] = 0.0
+        k, n, n_c = self.row, self.n_q, self.n_c
+        self.t[k] = t
+        if mode != 0.0:
+            self.mode[k] = mode
+        copy(after(self.q, k * n), q, n)
+        copy(after(self.v, k * n), v, n)
+        for c in range(n_c):
+            if impulse[c] != 0.0:
+                self.impulse[k * n_c + c] = impulse[c]
+                impulse[c] = 0.0
         self.row += 1
 
     def keep_awaited(self, q: Doubles, v: Doubles, impulse: Doubles) -> None:
@@ -83,8 +87,8 @@ class Record:
     def store(self, motion: Doubles, length: float) -> None:
         """Keep the motion from the last kept state on, if motions are kept, and how long it goes on so."""
         if self.dense_size > 0:
-            copy(self.dense_row(self.row - 1), motion, self.dense_size)
-            self.last_row()[LENGTH] = length
+            copy(after(self.dense, (self.row - 1) * self.dense_size), motion, self.dense_size)
+            self.length[self.row - 1] = length
 
     def note(self, t: float, contact: int, before: float, after_: float, p: float, kind: int) -> None:
         """One line of the impact log."""
@@ -94,8 +98,8 @@ class Record:
         self.event += 1
 
     def full(self, more: int) -> bool:
-        """Whether there is no room for so many events more."""
-        return self.event + more > self.event_capacity
+        """Whether there is no room for so many events more, or for the rows of a step."""
+        return self.event + more > self.event_capacity or self.row + ROOM > self.row_capacity
 
     def wants(self, stop: float, last: bool) -> bool:
         """Whether a state is asked for before the time `stop` (or at it, at the span's end), and there is room."""
@@ -105,60 +109,6 @@ class Record:
     def awaited(self) -> float:
         """The time at which a state is asked for next; infinite where none is."""
         return self.times[self.next_time] if self.next_time < self.n_times else inf
-
-    def split(
-        self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
-    ) -> None:
-        """The rows, each quantity into an array of its own; where zeros are most of it, the others alone."""
-        n, n_c = self.n_q, self.n_c
-        if n == 1 and n_c == 1:
-            self.split_one(t, mode, length, q, v, impulse)
-            return
-        for k in range(self.row):
-            row = after(self.rows, k * self.row_size)
-            t[k] = row[TIME]
-            if row[MODE] != 0.0:
-                mode[k] = row[MODE]
-            if row[LENGTH] != 0.0:
-                length[k] = row[LENGTH]
-            for i in range(n):
-                q[k * n + i], v[k * n + i] = row[LEAD + i], row[LEAD + n + i]
-            for i in range(n_c):
-                if row[LEAD + 2 * n + i] != 0.0:
-                    impulse[k * n_c + i] = row[LEAD + 2 * n + i]
-
-    def split_one(
-        self, t: Doubles, mode: Doubles, length: Doubles, q: Doubles, v: Doubles, impulse: Doubles
-    ) -> None:
-        """`split` where there are one coordinate and one impulse."""
-        for k in range(self.row):
-            row = after(self.rows, k * (LEAD + 3))
-            t[k], q[k], v[k] = row[TIME], row[LEAD], row[LEAD + 1]
-            if row[MODE] != 0.0:
-                mode[k] = row[MODE]
-            if row[LENGTH] != 0.0:
-                length[k] = row[LENGTH]
-            if row[LEAD + 2] != 0.0:
-                impulse[k] = row[LEAD + 2]
-
-    def room_for(self, rows: int) -> Columns:
-        """Arrays for times, modes, durations, positions, velocities and impulses of so many rows.
-
-        What is zero in most rows is zero from the start: the system has such memory ready, untouched.
-        """
-        n, n_c = self.n_q, self.n_c
-        t, mode, length = np.empty(rows), np.zeros(rows), np.zeros(rows)
-        return t, mode, length, np.empty((rows, n)), np.empty((rows, n)), np.zeros((rows, n_c))
-
-    def move(self, columns: Columns, k: int) -> None:
-        """Move the rows to such arrays, from place k on."""
-        t, mode, length, q, v, impulse = columns
-        n, n_c = self.n_q, self.n_c
-        self.split(
-            after(doubles(t), k), after(doubles(mode), k), after(doubles(length), k), after(doubles(q), k * n),
-            after(doubles(v), k * n), after(doubles(impulse), k * n_c),
-        )  # fmt: skip
-        self.row = 0
 
     def is_due(self, step: int) -> bool:
         """Whether the state after so many steps is to be kept."""
@@ -173,11 +123,44 @@ class Record:
 
         Its impulses count to those of the row that takes its place.
         """
-        if self.row == 0 or self.last_row()[TIME] != t:
+        if self.last_time() != t:
             return False
-        add(impulse, 1.0, after(self.last_row(), LEAD + 2 * self.n_q), self.n_c)
-        self.row -= 1
+        add(impulse, 1.0, after(self.impulse, (self.row - 1) * self.n_c), self.n_c)
+        self.back_to(self.row - 1)
         return True
+
+    def back_to(self, row: int) -> None:
+        """Take back the rows from this one on."""
+        n = self.row - row
+        clear(after(self.mode, row), n)
+        clear(after(self.length, row), n)
+        clear(after(self.impulse, row * self.n_c), n * self.n_c)
+        self.row = row
+
+    def read_last(self, row: Doubles) -> None:
+        """The numbers of the last row, if there is one, into an array of `row_size`."""
+        k, n = self.row - 1, self.n_q
+        if k >= 0:
+            row[0], row[1], row[2] = self.t[k], self.mode[k], self.length[k]
+            copy(after(row, 3), after(self.q, k * n), n)
+            copy(after(row, 3 + n), after(self.v, k * n), n)
+            copy(after(row, 3 + 2 * n), after(self.impulse, k * self.n_c), self.n_c)
+
+    def write_last(self, row: Doubles) -> None:
+        """Make the last row, if there is one, what it was when it was read."""
+        k, n = self.row - 1, self.n_q
+        if k >= 0:
+            self.t[k], self.mode[k], self.length[k] = row[0], row[1], row[2]
+            copy(after(self.q, k * n), after(row, 3), n)
+            copy(after(self.v, k * n), after(row, 3 + n), n)
+            copy(after(self.impulse, k * self.n_c), after(row, 3 + 2 * n), self.n_c)
+
+    def room_until(self, step: int, last: int) -> int:
+        """The step, at most `last`, up to which there is room for the states of steps, step `step` being reached."""
+        if self.every > 0:
+            end = step + self.every * (self.row_capacity - self.row - ROOM)
+            return end if end < last else last
+        return last
 
     def quiet_until(self, step: int, h: float, t0: float, first: int, last: int) -> int:
         """The step, at most `last`, up to which none keeps a state; step `first` begins at t0."""

@@ -13,7 +13,6 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.events import EventDriven
-from lcpstep.events.flight.contact import SLACK
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import bounds, flight_of
 from lcpstep.faults import cause
@@ -46,7 +45,7 @@ class Follower:
 
     def run(self, task: Task, strict: bool) -> None:
         """Fill in the answers of the task; unless strict, a start inside of the obstacle is taken as one on it."""
-        record = Recorder(1, self.scene.n_c, Kept(0, False, np.zeros(0)), 2 * SLACK).record
+        record = Recorder(1, self.scene.n_c, Kept(0, False, np.zeros(0))).record
         given = self.given()
         runs = Runs(
             self.flight(given, record, Tally(self.method.max_events)),

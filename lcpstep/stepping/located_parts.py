@@ -197,18 +197,14 @@ class Parts(Control):
         clear(self.w.pushed, self.w.n_c)
         copy_state(self.saved, self.w, self.n_numbers, self.n_marks, self.n_matrices)
         self.mark()
-        if self.record.row > 0:
-            copy(self.last_row, self.record.last_row(), self.record.row_size)
-        else:
-            clear(self.last_row, self.record.row_size)
+        self.record.read_last(self.last_row)
 
     def restore(self) -> None:
         """Go back to the start of the step; work that was done stays counted."""
         self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
         copy_state(self.w, self.saved, self.n_numbers, self.n_marks, self.n_matrices)
         self.wind_back()
-        if self.record.row > 0:
-            copy(self.record.last_row(), self.last_row, self.record.row_size)
+        self.record.write_last(self.last_row)
 
     def accept(self) -> None:
         """The step stands."""

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 PORTION = 65536  # steps between two looks at the outside world, at most
-STATES = 8192  # kept in these, at most: what a processor has at hand while it is written and read
 
 
 class MoreauRun(StepRun):
@@ -45,15 +44,12 @@ class MoreauRun(StepRun):
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         self.model, joints, tangents = models(scene)
         self.rows = rows(scene, joints, tangents, method.projected)
-        self.constant = all(m.flat for m in (self.model, joints, tangents)) and self.model.linear
-        self.constant = self.constant and not method.projected
+        flat = self.model.flat and joints.flat and tangents.flat
+        self.constant = flat and self.model.linear and not method.projected
         self.place = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
-        portion = min(PORTION, STATES * kept.every) if kept.every > 0 else PORTION
-        # A portion keeps at most its steps, the given times, and the first and last state.
-        room = (STATES if kept.every > 0 else PORTION) + len(kept.times) + 2
-        expected = 1 + kept.of_steps(number(scene.t_span, method.h)) + len(kept.times)
-        recorder = Recorder(scene.n_q, self.rows.n, kept, room, expected=expected)
-        super().__init__(method, scene, kept, recorder, portion)
+        expected = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
+        recorder = Recorder(scene.n_q, self.rows.n, kept, expected=expected)
+        super().__init__(method, scene, kept, recorder, PORTION)
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
         made, external = self.plan_for(self.stretches[0][0]), method.lcp != "lemke"
         self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record, external)
@@ -193,15 +189,18 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
 
     X and W are those of the contacts; with tangents or joints, or where they change, there is but room for them.
     """
-    M, C, K, G = (m.arrays[name] for name in ("M", "C", "K", "G"))
-    A_inverse: Any = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
-    A_q = A_v = np.zeros(M.shape)
+    M, C, K, G = m.arrays["M"], m.arrays["C"], m.arrays["K"], m.arrays["G"]
     if is_stiff(m):
         A_inverse = inverse(M + h * theta * C + (h * theta) ** 2 * K)
-        A_q, A_v = h * A_inverse @ K, A_inverse @ (h * C + h * h * theta * K)
-    X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
+        A_f: Any = h * A_inverse
+        A_q, A_v = A_f @ K, A_inverse @ (h * C + h * h * theta * K)
+    else:
+        A_inverse = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
+        A_f = h * A_inverse
+        A_q = A_v = np.zeros(M.shape)
     if c.n == m.n_c:
         A_g = A_inverse @ G.T
         X, W = A_g.T, G @ A_g
-    matrices = {"A_q": A_q, "A_v": A_v, "A_f": h * A_inverse, "X": X, "W": W}
-    return Plan(h, theta, slack, constant, matrices)
+    else:
+        X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
+    return Plan(h, theta, slack, constant, {"A_q": A_q, "A_v": A_v, "A_f": A_f, "X": X, "W": W})

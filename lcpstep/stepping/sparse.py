@@ -22,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lcpstep.kernels.layout import LEAD, LENGTH, MODE, TIME
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 LEFT_OVER = 1e-4  # of the largest rate in a step: what its first blows have left has the digits of that
-BUFFER = 1 << 20  # numbers in the buffer of kept states
 LOOKS = 50  # steps between two reports of progress
 FEW = 100  # coordinates and contacts up to which dense steps are faster, being compiled, and know more
 SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may ask for its own solver
@@ -51,7 +49,7 @@ class SparseRun(StepRun):
         n_q, n_c = scene.n_q, scene.n_c
         frictional = scene.contacts is not None and scene.contacts.friction is not None
         n = n_c * (2 if frictional else 1) + scene.n_j
-        recorder = Recorder(n_q, n, kept, max(1, BUFFER // (LEAD + 2 * n_q + n)))
+        recorder = Recorder(n_q, n, kept)
         super().__init__(method, scene, kept, recorder, LOOKS)
         self.equations = Equations(scene)
         size = largest(scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
@@ -59,7 +57,7 @@ class SparseRun(StepRun):
         self.q, self.v, self.t = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
         self.p, self.impulse = np.zeros(n_c), np.zeros(n)
         self.closed, self.active = np.zeros(n_c, dtype=np.int64), np.zeros(n_c, dtype=bool)
-        self.taken = self.problems = self.forces = self.next_time = 0
+        self.taken = self.problems = self.forces = 0
 
     @property
     def steps(self) -> int:
@@ -100,7 +98,7 @@ class SparseRun(StepRun):
         times = self.kept.times
         if len(times) == 0 or times[0] == self.t:
             self.keep(self.t, self.q, self.v)
-            self.next_time = min(1, len(times))
+            self.recorder.record.next_time = min(1, len(times))
         return Status.DONE
 
     def take(self, last: int) -> int:
@@ -217,25 +215,18 @@ class SparseRun(StepRun):
 
     def keep_times(self, h: float, t: float, t_next: float, q: Array, v: Array) -> None:
         """Keep the states asked for within the step, q and v interpolated linearly."""
-        times = self.kept.times
-        while self.next_time < len(times) and times[self.next_time] <= t_next + LATE * h:
-            at = times[self.next_time]
+        times, record = self.kept.times, self.recorder.record
+        while record.next_time < len(times) and times[record.next_time] <= t_next + LATE * h:
+            at = times[record.next_time]
             share = min(1.0, (at - t) / (t_next - t))
             between = (1.0 - share) * self.q + share * q, (1.0 - share) * self.v + share * v
             self.keep(at, *between)
-            self.next_time += 1
+            record.next_time += 1
 
     def keep(self, t: float, q: Array, v: Array) -> None:
         """Keep a state; the impulses summed up to it start anew."""
-        rows, record, n = self.recorder.rows, self.recorder.record, len(q)
-        if record.row == len(rows):
-            self.empty()
-        row = rows[record.row]
-        row[TIME], row[MODE], row[LENGTH] = t, 0.0, 0.0
-        row[LEAD : LEAD + n], row[LEAD + n : LEAD + 2 * n] = q, v
-        row[LEAD + 2 * n :] = self.impulse
+        self.recorder.keep(t, q, v, self.impulse)
         self.impulse[:] = 0.0
-        record.row += 1
 
     def with_last(self, s: States) -> States:
         """The states, and the one that has been reached."""

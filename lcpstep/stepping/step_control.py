@@ -31,7 +31,7 @@ if not cython.compiled:
 
     from lcpstep.arrays import indices
     from lcpstep.kernels.course import AHEAD, ARRIVED, Course
-    from lcpstep.kernels.record import COLUMNS, TIME, Record
+    from lcpstep.kernels.record import COLUMNS, Record
     from lcpstep.pointers import abs, inf, max, min
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
@@ -106,7 +106,8 @@ class Control(Course):
 
     def wind_back(self) -> None:
         """Back to there in the record."""
-        self.record.row, self.record.event, self.record.next_time = self.row, self.event, self.asked
+        self.record.back_to(self.row)
+        self.record.event, self.record.next_time = self.event, self.asked
 
     def accept(self) -> None:
         """Of a method: the step that has been taken stands."""
@@ -257,8 +258,8 @@ class Control(Course):
 def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
     """What a step has kept and noted at `late` or after, from a row and an event on, belongs to its end t."""
     for k in range(row, r.row):
-        if r.rows[k * r.row_size + TIME] >= late:
-            r.rows[k * r.row_size + TIME] = t
+        if r.t[k] >= late:
+            r.t[k] = t
     for k in range(event, r.event):
         if r.events[k * COLUMNS] >= late:
             r.events[k * COLUMNS] = t
@@ -267,6 +268,4 @@ def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
 def follow_on(r: Record, row: int) -> None:
     """Rows from this one on are not earlier than the one before, as the sum of two times may be by rounding."""
     for k in range(row if row > 0 else 1, r.row):
-        before = r.rows[(k - 1) * r.row_size + TIME]
-        if r.rows[k * r.row_size + TIME] < before:
-            r.rows[k * r.row_size + TIME] = before
+        r.t[k] = max(r.t[k], r.t[k - 1])

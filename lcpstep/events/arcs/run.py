@@ -14,8 +14,7 @@ from lagrangian import Scene
 from lcpstep.events.arcs.line import Line, line_of
 from lcpstep.events.arcs.loop import Course, evaluate, show
 from lcpstep.events.arcs.motion import Arc
-from lcpstep.events.flight.contact import SLACK
-from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
+from lcpstep.events.running import Between, EventRun, without_impulses
 from lcpstep.events.scan import PER_PERIOD
 from lcpstep.recording import Kept, Recorder, States
 
@@ -34,8 +33,7 @@ class ArcRun(EventRun):
     """A run in closed form."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, line: Line) -> None:
-        recorder = Recorder(2, 2, kept, PORTION + len(kept.times) + 2 * SLACK)
-        super().__init__(method, scene, kept, recorder)
+        super().__init__(method, scene, kept, Recorder(2, 2, kept))
         stride = longest_step(scene, line) if kept.every > 0 else math.inf
         record = self.recorder.record
         self.arc = Arc(line, scene.t_span, stride, method.rtol, method.atol, record, self.tally)

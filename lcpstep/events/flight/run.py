@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.flight.contact import SLACK, STRIDE
+from lcpstep.events.flight.contact import STRIDE
 from lcpstep.events.flight.keep import evaluate
 from lcpstep.events.flight.loop import Course
 from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import Oscillator, oscillator_of
 from lcpstep.events.flight.reach import reach
-from lcpstep.events.running import PORTION, Between, EventRun, without_impulses
+from lcpstep.events.running import Between, EventRun, without_impulses
 from lcpstep.events.scan import scan_interval, seen
 from lcpstep.kernels.model import Model
 from lcpstep.model import model
@@ -66,7 +66,7 @@ def flight_of(scene: Scene, m: Model, o: Any, given: dict[str, float], *counted:
 
 def recorder(scene: Scene, kept: Kept) -> Recorder:
     """What is kept of one contact or none."""
-    return Recorder(1, scene.n_c, kept, PORTION + len(kept.times) + 2 * SLACK)
+    return Recorder(1, scene.n_c, kept)
 
 
 class ClosedForm(EventRun):

@@ -70,7 +70,6 @@ class RunWithModes(General):
         entered = np.concatenate([[start], self.log[:, 2]]).astype(np.int64)
         mode = entered[np.searchsorted(self.log[:, 0], s.t, side="right")]
         dense = self.recorder.dense() if self.kept.all else np.zeros((0, 7, self.modes.n_x))
-        dense[s.length[: len(dense)] == 0.0] = 0.0
         pieces = Pieces(t=s.t, h=s.length, mode=mode, x=np.hstack([s.q, s.v]), dense=dense)
         return HybridTrajectory(
             scene=self.modes, method=self.method, t=pieces.t, x=pieces.x, mode=np.array(names)[mode],

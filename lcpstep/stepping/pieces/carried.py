@@ -10,23 +10,22 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, LENGTH, TIME, Record
+    from lcpstep.kernels.record import Record
     from lcpstep.pointers import after
 
 # In place of the duration, which rows of `Located` do not have: the row is in the scene's coordinates
 PUT_BACK = 1.0
 
 
-def put_kept_back(m: Model, record: Record) -> None:
-    """The kept states in the coordinates of the scene."""
+def put_kept_back(m: Model, record: Record, first: int, end: int) -> None:
+    """The kept states from the first on, up to before the end, in the coordinates of the scene."""
     n, c = m.n_q, m.frame_now
-    for k in range(record.row):
-        row = after(record.rows, k * record.row_size)
-        if row[LENGTH] == PUT_BACK:
-            row[LENGTH] = 0.0
+    for k in range(first, end):
+        if record.length[k] == PUT_BACK:
+            record.length[k] = 0.0
             continue
-        q, v = after(row, LEAD), after(row, LEAD + n)
-        m.frame.fill(row[TIME], q, v, c)
+        q, v = after(record.q, k * n), after(record.v, k * n)
+        m.frame.fill(record.t[k], q, v, c)
         for i in range(n):
             q[i] -= c[3 * i]
             v[i] -= c[3 * i + 1]

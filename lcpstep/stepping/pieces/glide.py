@@ -10,8 +10,9 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.one_row import keep_one
     from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import TIME, Record
+    from lcpstep.kernels.record import Record
     from lcpstep.pointers import abs, inf
     from lcpstep.stepping.pieces.carried import PUT_BACK
     from lcpstep.stepping.pieces.codes import SAME_TIME
@@ -35,12 +36,13 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         if moving:
             obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
-    kept = record.last_row()[TIME] if record.row > 0 else -inf
+    kept = record.last_time()
     k = start = w.steps
+    last = record.room_until(k, last)
     due = k + record.every - k % record.every if record.every > 0 else 0
     while k < last:
         t = t0 + h * (k - first) + h
-        if t > w.high or record.row + 4 > record.row_capacity:
+        if t > w.high:
             break
         inner = within(plan, w, t)
         external_force(m, inner, w.q, w.v, w.next_force)
@@ -79,9 +81,9 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
                 w.q[0], w.v[0] = q, v
                 keep(w, record, now, 0.0)
             elif m.carried:  # the obstacle has told where the frame is, at `now` up to a rounding of the time
-                record.keep_one(now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
+                keep_one(record, now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
             else:
-                record.keep_one(now, 0.0, q, v, w.impulse)
+                keep_one(record, now, 0.0, q, v, w.impulse)
             kept = now
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:

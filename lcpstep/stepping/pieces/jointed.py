@@ -17,7 +17,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import LEAD, TIME, Record
+    from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import add, clear, copy, distance, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
@@ -187,14 +187,12 @@ def share_out(w: Work, record: Record, first: int, now: float, tau: float) -> No
     """
     if tau <= 0.0:
         return
-    column = LEAD + 2 * w.n_q + w.n_c
     for k in range(w.n_j):
         load, given = w.joints.load[k], 0.0
         rest = w.joints.piece[k] - load * tau
         for r in range(first, record.row):
-            row = after(record.rows, r * record.row_size)
-            s = min(max(row[TIME] - now, 0.0), tau)
+            s = min(max(record.t[r] - now, 0.0), tau)
             total = load * s + rest * (s / tau) * (s / tau)
-            row[column + k] += total - given
+            record.impulse[r * record.n_c + w.n_c + k] += total - given
             given = total
         w.impulse[w.n_c + k] += w.joints.piece[k] - given

@@ -7,7 +7,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import MODE, TIME, Record
+    from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import max, min
     from lcpstep.stepping.pieces.smooth import refactor, settle_state
@@ -74,8 +74,8 @@ def keep(w: Work, record: Record, t: float, jump: float) -> None:
 
     An event at the very end of a step may round to a time after it, which is that of the step's end then.
     """
-    if record.row > 0:
-        t = max(t, record.last_row()[TIME])
-    if record.take_back(t, w.impulse):
-        jump = max(jump, record.rows[record.row * record.row_size + MODE])
+    t = max(t, record.last_time())
+    if t == record.last_time():
+        jump = max(jump, record.mode[record.row - 1])
+    record.take_back(t, w.impulse)
     record.keep(t, jump, w.q, w.v, w.impulse)

@@ -13,7 +13,7 @@ cdef class Steps(Stepwise):
     cdef bint gliding, ends
     cdef double tau
     cdef public double stop
-    cdef Py_ssize_t found
+    cdef Py_ssize_t found, own
     cdef Py_ssize_t start(self, double t) noexcept
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)

@@ -101,6 +101,7 @@ class Steps(Stepwise):
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
     stop     end of the span
+    own      kept states that are in the coordinates of the scene
 
     Parameters
     ----------
@@ -111,15 +112,17 @@ class Steps(Stepwise):
         super().__init__()
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
-        self.tau, self.found, self.stop = 0.0, NOBODY, inf
+        self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
         return self.start(t)
 
-    def put_back(self) -> None:
-        """Kept states, which are in the kernels' coordinates, in those of the scene."""
-        put_kept_back(self.m, self.record)
+    def put_back(self, end: int) -> None:
+        """Kept states up to before the end, which are in the kernels' coordinates, in those of the scene."""
+        if end > self.own:
+            put_kept_back(self.m, self.record, self.own, end)
+            self.own = end
 
     def start(self, t: float) -> int:
         """Kernel of `begin`."""
@@ -157,7 +160,7 @@ class Steps(Stepwise):
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""
         while True:
-            if self.record.full(4 * self.w.n_c + 4) or self.record.row + 4 > self.record.row_capacity:
+            if self.record.full(4 * self.w.n_c + 4):
                 return BUFFER_FULL
             if self.record.event + self.w.idle > self.w.events_left:
                 return TOO_MANY_EVENTS

@@ -14,7 +14,7 @@ from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
 from lcpstep.model import joint_model, model
-from lcpstep.recording import Kept, Recorder, States
+from lcpstep.recording import FIRST, Kept, Recorder, States
 from lcpstep.stepping import adaptive
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
@@ -44,9 +44,9 @@ class LocatedRun(StepRun):
         joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
-        steps = kept.of_steps(number(scene.t_span, method.h))
-        room, columns = PORTION + len(kept.times) + 8, scene.n_c + scene.n_j
-        recorder = Recorder(scene.n_q, columns, kept, room, expected=steps + steps // 16 + 64)  # and events
+        steps = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
+        expected = None if steps is None else steps + steps // 16 + FIRST  # and events
+        recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
@@ -131,10 +131,14 @@ class LocatedRun(StepRun):
         return Counts(w.steps, w.lcp_calls, w.force_evaluations, self.recorder.taken)
 
     def empty(self) -> None:
-        """Move what the kernel's buffers hold to the recorder's keeping."""
-        if self.model.carried:
-            self.loop.put_back()
+        """Take over what the kernel has written; an event may still change the last state."""
+        self.put_back(self.recorder.record.row - 1)
         super().empty()
+
+    def put_back(self, end: int) -> None:
+        """Kept states up to before the end in the coordinates of the scene."""
+        if self.model.carried:
+            self.loop.put_back(end)
 
     def with_last(self, s: States) -> States:
         """The states, and the one that has been reached."""
@@ -142,6 +146,7 @@ class LocatedRun(StepRun):
 
     def states(self) -> States:
         """All states kept; a step that failed may have left its numbers behind."""
+        self.put_back(self.recorder.record.row)
         s = super().states()
         if all(map(all_finite, (s.q, s.v, *self.state))):
             return s

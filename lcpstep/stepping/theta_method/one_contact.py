@@ -15,6 +15,7 @@ from lcpstep.stepping.theta_method.codes import IMPACT, NO_EVENT, RELEASE, STICK
 if not cython.compiled:
     from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.one_row import keep_one
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import finite
     from lcpstep.pointers import abs, max
@@ -47,6 +48,7 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
     G, offset = m.G[0], m.offset[0]
     q, v, g, u, f, k = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0], s.steps
     left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
+    last = record.room_until(k, last)
     driven, moving = varies(m), moves(m)
     while k < last and g + half * u > slack:
         t = t0 + h * (k + 1 - first)
@@ -66,7 +68,7 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
         left -= 1
         if left == 0 and g - g == 0.0 and u - u == 0.0:
             left = record.every
-            record.keep_one(t, 0.0, q, v, s.impulse)
+            keep_one(record, t, 0.0, q, v, s.impulse)
     s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
     s.forces += k - s.steps
     s.steps = k
@@ -97,7 +99,7 @@ def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, fi
         if not (finite(s.g, 1) and finite(s.u, 1)):
             break
         if record.is_due(s.steps) or (record.on_events and record.event > events):
-            record.keep_one(t, 0.0, s.q[0], s.v[0], s.impulse)
+            keep_one(record, t, 0.0, s.q[0], s.v[0], s.impulse)
 
 
 def met(
