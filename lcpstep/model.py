@@ -123,7 +123,7 @@ def coefficients(scene: Scene) -> Coefficients:
     """The coefficients of friction of a scene's contacts, zero where it has none."""
     friction = None if scene.contacts is None else scene.contacts.friction
     if friction is None:
-        return Coefficients(np.zeros(scene.n_c), None, np.array(scene.p), scene.n_q, scene.n_c, None)
+        return Coefficients(None, None, np.zeros(0), scene.n_q, scene.n_c, None)
     mu, called_back = friction.mu, None
     if callable(mu):
         made, called_back = c_functions(scene, friction={"mu": mu})

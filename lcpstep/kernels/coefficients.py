@@ -33,7 +33,7 @@ class Coefficients:
 
     Parameters
     ----------
-    mu : (n_c,), or the address of a C function that fills them;  mu_s : (n_c,) or None
+    mu : (n_c,), or the address of a C function that fills them, None without friction;  mu_s : (n_c,) or None
     p : (n_p,) parameters;  n_q, n_c : int;  kept : what must outlive this object
     """
 
@@ -45,8 +45,8 @@ class Coefficients:
         self.sticking, self.rest = after(self.sliding, n_c), after(self.sliding, 2 * n_c)
         self.wrong, self.slip = -1, 0.0
         self.function = Function(mu if self.varies else 0, p, n_q, n_c, (n_c,))
-        if not self.varies:
-            self.numbers[0] = self.numbers[1] = mu
+        if not self.varies and mu is not None:
+            self.numbers[:2] = mu
         if self.fixed:
             self.numbers[1] = mu_s
         self.marks = np.zeros(2 * n_c, dtype=np.intp)
