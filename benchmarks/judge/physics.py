@@ -42,7 +42,7 @@ def obstacles(d: Description, t: Any, order: int) -> Any:
 
 def jacobians(d: Description, q: Any) -> Any:
     """G (..., contacts, n)."""
-    rows = np.broadcast_to(np.array(d.G), (*q.shape[:-1], d.contacts, d.n))
+    rows = np.broadcast_to(np.reshape(d.G, (d.contacts, d.n)), (*q.shape[:-1], d.contacts, d.n))
     if not d.curved:
         return rows
     return rows + (d.row("bend", d.contacts) * _bent(d, q)[1])[..., None] * q[..., None, :]
