@@ -10,3 +10,4 @@ OPEN, STICKS, SLIDES, LEANS = range(4)
 BEGIN, MOVE, JUMP, SETTLE, OBEY = range(5)  # what comes next
 IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
 RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10
+EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike

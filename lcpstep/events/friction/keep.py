@@ -4,10 +4,24 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.friction.codes import (
+    LEANS,
+    OPEN,
+    RELEASE,
+    REVERSE,
+    SLIDES,
+    SLIP,
+    STAYS_CLOSED,
+    STICK_TANGENT,
+    STICKS,
+)
+
 if not cython.compiled:
+    from lcpstep.events.friction.equations import rubs
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import Doubles, abs, after
 
 
@@ -41,3 +55,27 @@ def keep_event(s: Rubbing, record: Record, t: float) -> None:
     if record.keeps_events():
         record.take_back(t, s.impulse)
         keep(s, record, t, s.y)
+
+
+def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
+    """Log the contacts whose mode is another than when last told."""
+    for c in range(s.n_c):
+        was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
+        now = STICKS if now == LEANS else now
+        slip = s.velocity[i + s.n_c]
+        if (was == OPEN) != (now == OPEN):
+            s.clock.log(
+                record, tally, t, c, RELEASE if now == OPEN else STAYS_CLOSED, 0.0, s.velocity[i], 0.0
+            )
+        elif was == SLIDES and now == STICKS:
+            s.clock.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
+        elif was == STICKS and now == SLIDES:
+            s.clock.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
+        elif was == SLIDES and now == SLIDES and turned(s, c):
+            s.clock.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
+        s.was_mode[c], s.was_direction[c] = now, s.direction[c]
+
+
+def turned(s: Rubbing, c: int) -> bool:
+    """Whether contact c slides the other way than when last told."""
+    return rubs(s, c) and s.direction[c] != s.was_direction[c]

@@ -3,7 +3,7 @@ from lcpstep.events.friction.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t STAYS_CLOSED, LEANS, NO_FORCES, OPEN, RELEASE, REVERSE, SLIDES, SLIP, STICK_TANGENT, STICKS
+cdef Py_ssize_t LEANS, NO_FORCES, OPEN, SLIDES, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 cdef double EDGE
 
@@ -23,6 +23,7 @@ cdef bint idles(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcep
 cdef bint is_nothing(Rubbing s, Py_ssize_t a, double alpha, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef bint opens(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef double size_of_terms(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
+cdef double size_of_coupled(Rubbing s, Py_ssize_t a, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef Py_ssize_t obey(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 @cython.locals(stands=bint)
 cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
@@ -32,5 +33,3 @@ cdef void stand_alone(Rubbing s) noexcept nogil
 cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil
-cdef void tell(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-cdef bint turned(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -14,14 +14,10 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.friction.codes import (
+    EDGE,
     LEANS,
     OPEN,
-    RELEASE,
-    REVERSE,
     SLIDES,
-    SLIP,
-    STAYS_CLOSED,
-    STICK_TANGENT,
     STICKS,
 )
 from lcpstep.events.general.ends import NO_FORCES
@@ -29,12 +25,13 @@ from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETER
 
 if not cython.compiled:
     from lcpstep.events.friction.bracing import braced
-    from lcpstep.events.friction.equations import force_noise, rubs
+    from lcpstep.events.friction.equations import force_noise
     from lcpstep.events.friction.held import (
         accelerate_as_held,
         accelerate_on_joints,
         hold_modes,
     )
+    from lcpstep.events.friction.keep import tell
     from lcpstep.events.friction.problem import fill, list_unknowns, row_of, solve_forces
     from lcpstep.events.friction.several import opened_or_closed
     from lcpstep.events.friction.state import Rubbing
@@ -47,9 +44,7 @@ if not cython.compiled:
     from lcpstep.kernels.repose import moves, stay
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, product
-    from lcpstep.pointers import abs, after
-
-EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike
+    from lcpstep.pointers import abs, after, max
 
 
 def decide(s: Rubbing) -> int:
@@ -144,7 +139,7 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_mode[c] = STICKS
         elif limit > 0.0:
             s.new_direction[c] = 1.0 if force < 0.0 else -1.0
-            if abs(rate) <= NOISE * size_of_terms(s, n_a + f, n_a, n_f):
+            if abs(rate) <= NOISE * size_of_coupled(s, n_a + f, n_a, n_f):
                 s.new_mode[c] = LEANS
             elif rate * s.new_direction[c] < 0.0:  # large forces have hidden that it does not slide
                 s.new_mode[c] = STICKS
@@ -203,6 +198,15 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
+    return size
+
+
+def size_of_coupled(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """The largest size of terms among the accelerations that one hangs together with: joints share their rounding."""
+    m, size = n_a + n_f, size_of_terms(s, a, n_a, n_f)
+    for b in range(m):
+        if s.problem.mobility[a * m + b] != 0.0:
+            size = max(size, size_of_terms(s, b, n_a, n_f))
     return size
 
 
@@ -274,27 +278,3 @@ def stand(s: Rubbing) -> bool:
     for c in range(s.n_c):
         s.mode[c] = s.mode[c] if stands else s.new_mode[c]
     return stands
-
-
-def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
-    """Log the contacts whose mode is another than when last told."""
-    for c in range(s.n_c):
-        was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
-        now = STICKS if now == LEANS else now
-        slip = s.velocity[i + s.n_c]
-        if (was == OPEN) != (now == OPEN):
-            s.clock.log(
-                record, tally, t, c, RELEASE if now == OPEN else STAYS_CLOSED, 0.0, s.velocity[i], 0.0
-            )
-        elif was == SLIDES and now == STICKS:
-            s.clock.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
-        elif was == STICKS and now == SLIDES:
-            s.clock.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
-        elif was == SLIDES and now == SLIDES and turned(s, c):
-            s.clock.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
-        s.was_mode[c], s.was_direction[c] = now, s.direction[c]
-
-
-def turned(s: Rubbing, c: int) -> bool:
-    """Whether contact c slides the other way than when last told."""
-    return rubs(s, c) and s.direction[c] != s.was_direction[c]

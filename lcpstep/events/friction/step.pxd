@@ -4,7 +4,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ALL, STAGES, SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
-cdef double LOOK_AHEAD, FURTHER, FARTHEST
+cdef double EDGE, LOOK_AHEAD, FURTHER, FARTHEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef void mark_resting(Rubbing s) noexcept nogil
@@ -16,6 +16,7 @@ cdef bint changes(Rubbing s) noexcept nogil
 cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil
 cdef void meet(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
+cdef void stop_with(Rubbing s, Py_ssize_t c) noexcept nogil
 @cython.locals(rests=bint)
 cdef void find_standing(Rubbing s) noexcept nogil
 cdef void take_over(Rubbing s, Record record, Tally tally, double t, double tau) noexcept nogil

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import JUMP, LEANS, OBEY, OPEN, SETTLE, STICKS
+from lcpstep.events.friction.codes import EDGE, JUMP, LEANS, OBEY, OPEN, SETTLE, STICKS
 from lcpstep.kernels.dop853 import ALL, STAGES
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 
@@ -21,12 +21,13 @@ if not cython.compiled:
     from lcpstep.events.friction.parting import part_before
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.friction.surfaces import find_touching, lift
+    from lcpstep.events.rows.held import constrain
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import abs, min
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import abs, after, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
 # far at most
@@ -149,7 +150,28 @@ def stop(s: Rubbing, c: int) -> None:
     """The sliding velocity of contact c is zero."""
     find_standing(s)
     s.free[c] = 1
+    stop_with(s, c)
     s.next = SETTLE
+
+
+def stop_with(s: Rubbing, c: int) -> None:
+    """Contacts that stop with contact c are those whose sliding velocity goes with what the step has left of its own.
+
+    Feet of one body stop together, and the ends of a rod: a step is only as exact as its order, and what of one
+    velocity it has left, it has of the others.
+    """
+    i, a = s.n_j + s.n_c + c, s.dv
+    copy(a, after(s.MR, i * s.n_q), s.n_q)
+    clear(s.shifted_rate, s.n_r)
+    constrain(s.rows, a, s.shifted_rate)
+    own = product(s.R, a, i, s.n_q)
+    if not own > EDGE * s.W[i * s.n_r + i]:
+        return
+    for d in range(s.n_c):
+        k = s.n_j + s.n_c + d
+        with_it = s.velocity[i] * product(s.R, a, k, s.n_q) / own
+        if abs(s.velocity[k] - with_it) <= still(s, k) + EDGE * abs(with_it):
+            s.free[d] = 1
 
 
 def find_standing(s: Rubbing) -> None:
