@@ -6,7 +6,9 @@ vanishes at t_r and the contact opens at t instead, the velocities of both runs 
     integral of lambda from t_r to t,       lambda linear between the start, the middle and the end of the step
 
 Friction that begins to slide is the same with mu lambda_N - |lambda_T| for lambda. Where sliding turns about within a
-step, friction has the wrong sign up to then: twice its impulse, times the part of the step before the turn.
+step, friction has the wrong sign up to then: twice its impulse, times the part of the step before the turn. A step
+may also end at rest what friction cannot hold there: what it lacks for that, times the part of the step after the
+turn.
 
 A contact that stays closed moves no coordinate: its force may have vanished between the times at which it was looked
 at. Where two runs differ about its impulse by more than a part of it, that counts as if it had.

@@ -21,6 +21,7 @@ cdef class Switches:
     cdef void note_friction(
         self, Py_ssize_t part, Plan plan, State s, Rows rows, double slow
     ) noexcept nogil
+    cdef double halted(self, Py_ssize_t k, double u, double W, double most, double h) noexcept nogil
     cdef double unseen(self, double h, bint even) noexcept nogil
     cdef double differ(self, Py_ssize_t k) noexcept nogil
     cdef double apart_by(self, Py_ssize_t k) noexcept nogil

@@ -100,6 +100,18 @@ class Switches:
                 self.force[first + k] = (mu * normal - abs(p - (end - u) / W)) / plan.h
             if part != ONE and min(u, end) < -slow and max(u, end) > slow:
                 self.turned[k] = max(self.turned[k], 2.0 * abs(p) * abs(u) / (abs(u) + abs(end)))
+            elif part != ONE and W > 0.0 and abs(u) > slow and self.holds[first + k] > 0:
+                self.turned[k] = max(self.turned[k], self.halted(first + k, u, W, mu * normal, plan.h))
+
+    def halted(self, k: int, u: float, W: float, most: float, h: float) -> float:
+        """Impulse missing where a step ends sliding, at u, that friction cannot hold at rest: it turns within it.
+
+        k : of the part and the row;  most : impulse of friction at its limit
+        """
+        lacking = -self.force[k] * h
+        if lacking <= 0.0:
+            return 0.0
+        return lacking * max(0.0, 1.0 - abs(u) / (W * (2.0 * most + lacking)))
 
     def unseen(self, h: float, even: bool) -> float:
         """Error of the velocities after two halves of h/2; `even` where impulses are means of both ends of a step."""

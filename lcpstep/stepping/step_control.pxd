@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.kernels.course cimport Course
 from lcpstep.kernels.record cimport Record
 
-cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP, STUBBORN
+cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
 cdef double NOISE, LATE, PLENTY, LEAST_SHARE, FLAT
 
 
@@ -11,7 +11,7 @@ cdef class Control(Course):
     cdef object make, matrices, own_made
     cdef Py_ssize_t n_times, row, event, asked
     cdef Py_ssize_t* made
-    cdef public long long position, until, end, tried, failures
+    cdef public long long position, until, end, tried
     cdef public int level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into
     cdef public double apart_q, apart_v, far_q, far_v, rate, cut
@@ -35,7 +35,7 @@ cdef class Control(Course):
     cdef double time_of(self, long long position) noexcept nogil
     cdef bint over(self) noexcept nogil
     cdef double resolved(self, double size) noexcept nogil
-    @cython.locals(at_the_end=bint)
+    @cython.locals(jumps=bint)
     cdef Py_ssize_t judge(self) noexcept nogil
     cdef bint pass_by(self, double time) noexcept nogil
 

@@ -4,8 +4,8 @@ A step is accepted where its error, relative to 1 + the size of the motion, take
 share of the span: h / span, and of a step that an event has cut the part that it covers, for there may be thousands
 of those in an h. So errors of the whole motion are proportional to the tolerance, up to what the motion itself
 magnifies. Steps with events, and those that hold a jump of the forces, are few, and their errors fall no faster than
-h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller; one at the
-very end of steps, which is in no first half of them, as steps that fail at one end whatever their length.
+h: they may take a share of their own. A jump shows as an error that halving the step hardly makes smaller, in the
+first half or, where that was accepted, in the second.
 
 Steps are h_max / 2^k at multiples of themselves: few sizes, whose matrices are made once, an end of the span that is
 met exactly, and a bisection for whatever asks for short steps. A method that stops at an event goes on from there to
@@ -38,7 +38,6 @@ ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 LATE = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
-STUBBORN = 4  # lengths of steps that fail at one end: a jump is there
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 
 
@@ -54,8 +53,7 @@ class Control(Course):
     h_max, tolerance     longest step [s]; error allowed over the span
     enough               share of the error allowed, below which twice the step is tried
     size_q, size_v       of the motion so far
-    last                 error of the attempt before, if that failed at the same place
-    until, failures      end of the last attempt that failed, in finest steps; how many lengths have failed at it
+    last, until          error of the last attempt that failed, and its end in finest steps
     into                 how far beyond `position` an event has cut the step [s]
     row, event, asked    rows and events written, and states asked for that were kept, where the step begins
 
@@ -85,7 +83,7 @@ class Control(Course):
         self.matrices: dict[str, Any] = {}
         self.own_made = np.zeros(LEVELS + 2, dtype=np.intp)
         self.made = indices(self.own_made)
-        self.position, self.until, self.failures, self.tried = 0, 0, 0, 0
+        self.position, self.until, self.tried = 0, 0, 0
         self.h_max, self.end, self.finest, self.level = sizes(span, h)
         self.start, self.stop, self.span = start, end, end - start
         self.tolerance, self.enough = tolerance, PLENTY * 0.5**order
@@ -196,23 +194,22 @@ class Control(Course):
         late = LATE * abs(self.now())
         wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.rate
         error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - noise
-        allowed, end = (min(self.cut, h) - self.into) / self.span, self.position + self.length(level)
-        at_the_end = self.failures >= STUBBORN and end == self.until
-        if self.happened or FLAT * error > self.last or at_the_end:
+        allowed = (min(self.cut, h) - self.into) / self.span
+        jumps = self.position < self.until and FLAT * error > self.last
+        if self.happened or jumps:
             allowed = max(allowed, LEAST_SHARE)
         allowed *= self.tolerance
         if self.tolerance < NOISE or self.hopeless:  # no step is that good
             return GIVEN_UP
         if self.failed or not error <= allowed:
             self.last = inf if self.failed else error
-            self.failures = self.failures + 1 if end == self.until else 1
-            self.until = end
+            self.until = self.position + self.length(level)
             if level >= self.finest:
                 return GIVEN_UP
             self.level = level + 1
             self.pass_by(0.0)
             return AGAIN
-        self.size_q, self.size_v, self.last = size_q, size_v, inf
+        self.size_q, self.size_v = size_q, size_v
         if self.pass_by(self.cut):
             return ACCEPTED
         if level > 0 and self.position % self.length(level - 1) == 0 and error <= self.enough * allowed:

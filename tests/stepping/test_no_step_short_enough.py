@@ -111,3 +111,22 @@ def test_a_late_impact_that_closes_and_throws_off_a_neighbour_is_not_counted_aga
         assert m.status == Status.DONE, (end, m.message)
         true = simulate(scene, EventDriven(), keep=m.t).q
         assert np.max(np.abs(m.q - true)) <= tolerance
+
+
+def thrown_back(t, q, v, p, out):
+    """A constant force that acts beyond a place only."""
+    out[0] = -p[1] if q[0] > p[0] else 0.0
+
+
+@pytest.mark.parametrize("tolerance", [1e-8, 1e-9])
+@pytest.mark.parametrize(
+    ("place", "push"), [(0.059457945379626315, 36.22662203461734), (0.3279264351147266, 49.37656532355835)]
+)
+def test_a_force_may_jump_anywhere_within_a_step(place, push, tolerance):
+    """The halves of a step that hold the jump, first or second in any order, are compared with the step itself."""
+    scene = Scene(System(1, 1.0, thrown_back), 0.0, 1.0, (0.0, 1.0), p=[place, push])
+    m = simulate(scene, Located(0.1, order=4, tolerance=tolerance))
+    assert m.status == Status.DONE, m.message
+    back = place + 2.0 / push  # it is there again, as fast as it came
+    assert m.q[-1, 0] == pytest.approx(place - (1.0 - back), abs=tolerance)
+    assert m.v[-1, 0] == pytest.approx(-1.0, abs=tolerance)
