@@ -11,7 +11,7 @@ cdef double SHARED, STICKS
 cdef class Switches:
     cdef object kept
     cdef readonly Py_ssize_t n_q, n_c, n
-    cdef Doubles force, impulse, mobility, response, turned, apart
+    cdef Doubles force, impulse, mobility, response, turned, apart, drop
     cdef Indices holds, held
     cdef void begin(self, State s, double slow) noexcept nogil
     cdef void note(
@@ -21,7 +21,9 @@ cdef class Switches:
     cdef void note_friction(
         self, Py_ssize_t part, Plan plan, State s, Rows rows, double slow
     ) noexcept nogil
-    cdef double halted(self, Py_ssize_t k, double u, double W, double most, double h) noexcept nogil
     cdef double unseen(self, double h, bint even) noexcept nogil
     cdef double differ(self, Py_ssize_t k) noexcept nogil
     cdef double apart_by(self, Py_ssize_t k) noexcept nogil
+
+
+cdef double turned_at_rest(double u, double W, double needed, double friction) noexcept nogil

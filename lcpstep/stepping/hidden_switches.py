@@ -14,7 +14,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.vectors import add, clear, largest, product
     from lcpstep.pointers import Doubles, abs, after, indices_after, max, min
-    from lcpstep.stepping.hidden_forces import hidden, late
+    from lcpstep.stepping.hidden_forces import gives_out, hidden, late
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
 
@@ -32,6 +32,7 @@ class Switches:
     mobility : (n,)            when last in contact
     response : (n,)            largest velocity that an impulse makes
     turned : (n,)              impulse of friction with the wrong sign
+    drop : (n_c,)              by which the force of friction falls where what sticks begins to slide
     apart : (n_q,)             what the impulses of all rows, joints too, make of the velocities in the step, less
                                what they make in its halves: nothing where rows that depend on each other share them
 
@@ -42,11 +43,11 @@ class Switches:
 
     def __init__(self, n_q: int, n_c: int, n: int) -> None:
         self.n_q, self.n_c, self.n = n_q, n_c, n
-        self.kept = np.zeros(9 * n + n_q), np.zeros(4 * n, dtype=np.intp)
+        self.kept = np.zeros(9 * n + n_q + n_c), np.zeros(4 * n, dtype=np.intp)
         self.force, self.holds = doubles(self.kept[0]), indices(self.kept[1])
         self.impulse, self.mobility = after(self.force, 3 * n), after(self.force, 6 * n)
         self.response, self.turned = after(self.force, 7 * n), after(self.force, 8 * n)
-        self.apart = after(self.force, 9 * n)
+        self.apart, self.drop = after(self.force, 9 * n), after(self.force, 9 * n + n_q)
         self.held = indices_after(self.holds, 3 * n)
 
     def begin(self, s: State, slow: float) -> None:
@@ -55,6 +56,7 @@ class Switches:
             self.held[i] = 1 if s.closed[i] > 0 and abs(s.u[i]) <= slow else 0
         clear(self.turned, self.n)
         clear(self.apart, self.n_q)
+        clear(self.drop, self.n_c)
 
     def note(self, part: int, plan: Plan, s: State, rows: Rows, before: Doubles, slow: float) -> None:
         """Rows of a part that has been taken; `before`: gap velocities at its start."""
@@ -96,22 +98,17 @@ class Switches:
                 self.held[k] = 1 if abs(u) <= slow and self.held[i] > 0 else 0
             self.impulse[first + k] = p
             self.holds[first + k] = 1 if abs(p) < STICKS * mu * normal else 0
+            kinetic = rows.coefficients.sliding[i]
+            if self.held[k] > 0:
+                mu = rows.coefficients.sticking[i]
+                self.drop[i] = (mu - kinetic) * normal / plan.h
+            needed = abs(p - (end - u) / W) if W > 0.0 else 0.0
             if W > 0.0:
-                self.force[first + k] = (mu * normal - abs(p - (end - u) / W)) / plan.h
+                self.force[first + k] = (mu * normal - needed) / plan.h
             if part != ONE and min(u, end) < -slow and max(u, end) > slow:
                 self.turned[k] = max(self.turned[k], 2.0 * abs(p) * abs(u) / (abs(u) + abs(end)))
-            elif part != ONE and W > 0.0 and abs(u) > slow and self.holds[first + k] > 0:
-                self.turned[k] = max(self.turned[k], self.halted(first + k, u, W, mu * normal, plan.h))
-
-    def halted(self, k: int, u: float, W: float, most: float, h: float) -> float:
-        """Impulse missing where a step ends sliding, at u, that friction cannot hold at rest: it turns within it.
-
-        k : of the part and the row;  most : impulse of friction at its limit
-        """
-        lacking = -self.force[k] * h
-        if lacking <= 0.0:
-            return 0.0
-        return lacking * max(0.0, 1.0 - abs(u) / (W * (2.0 * most + lacking)))
+            elif part != ONE and needed > mu * normal and abs(u) > slow and self.holds[first + k] > 0:
+                self.turned[k] = max(self.turned[k], turned_at_rest(abs(u), W, needed, kinetic * normal))
 
     def unseen(self, h: float, even: bool) -> float:
         """Error of the velocities after two halves of h/2; `even` where impulses are means of both ends of a step."""
@@ -130,6 +127,8 @@ class Switches:
                 if self.apart_by(k) * self.response[k] > apart:
                     continue  # what one row has less, others have more: forces that nothing tells apart
                 p = max(p, late(one, first, second, h, opened, h))
+                if k >= self.n_c and self.drop[k - self.n_c] > 0.0:
+                    p += self.drop[k - self.n_c] * abs(gives_out(one, first, second, h, h) - opened)
                 if self.holds[ONE * n + k] > 0 and opened == h:
                     p = max(p, self.differ(k))
             worst = max(worst, p * self.response[k])
@@ -143,3 +142,11 @@ class Switches:
     def apart_by(self, k: int) -> float:
         """By how much they disagree about it."""
         return abs(self.impulse[k] - (self.impulse[self.n + k] + self.impulse[2 * self.n + k]))
+
+
+def turned_at_rest(u: float, W: float, needed: float, friction: float) -> float:
+    """Impulse missing where a part ends sliding at rest, though it turned about within.
+
+    u : speed at its start;  needed, friction : impulses that would hold it at rest, and that it has while it slides
+    """
+    return (needed - friction) * max(0.0, 1.0 - u / (W * (needed + friction)))

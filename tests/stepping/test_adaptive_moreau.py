@@ -166,6 +166,14 @@ def test_sliding_that_stops_at_the_end_of_a_step_only_because_it_turns_within_is
         assert abs(simulate(scene, Moreau(h, tolerance=tolerance)).q[-1, 0] - true) <= tolerance
 
 
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+def test_friction_that_falls_when_sliding_begins_does_so_in_time(tolerance):
+    """Both runs let go at the same one of their ends, too early or too late: by 240 tolerances of 1e-6."""
+    scene = scenes.stick_slip_belt(t_end=30.0)
+    m = simulate(scene, Moreau(0.05, tolerance=tolerance), keep=np.linspace(0.0, 30.0, 61))
+    assert np.max(np.abs(m.q - scene.exact(m.t)[0])) <= tolerance
+
+
 def test_kept_states_are_a_choice():
     full = simulate(oscillator(), Moreau(0.5, tolerance=1e-3))
     third = simulate(oscillator(), Moreau(0.5, tolerance=1e-3), keep=3)
