@@ -13,13 +13,15 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.vectors import add, clear, largest, product
-    from lcpstep.pointers import Doubles, abs, after, indices_after, max, min
+    from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, max, min
     from lcpstep.stepping.hidden_forces import gives_out, hidden, late
     from lcpstep.stepping.theta_method.moving import Rows, State
     from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.row_impulses import NO_APPROACH, size_of_rate
 
 ONE, FIRST, SECOND = range(3)  # the step, its halves
 SHARED = 4.0  # rows that do not depend on each other make together a quarter of what the impulse of one makes
+SAME = 1e-10  # of a row's mobility: what is left of it while others are held, if these say the same
 STICKS = 1.0 - 1e-9  # of its limit: friction below it; its speed does not tell, for sliding begins slowly
 
 
@@ -31,23 +33,27 @@ class Switches:
     held : (n,)                1 where it was so at the start
     mobility : (n,)            when last in contact
     response : (n,)            largest velocity that an impulse makes
+    slack                      by which velocities of what sticks may differ: its rounding is taken for rest
     turned : (n,)              impulse of friction with the wrong sign
     drop : (n_c,)              by which the force of friction falls where what sticks begins to slide
     apart : (n_q,)             what the impulses of all rows, joints too, make of the velocities in the step, less
                                what they make in its halves: nothing where rows that depend on each other share them
 
+    held_W : (n_all, n_all)    see `shares`
+
     Parameters
     ----------
-    n_q, n_c, n : int   coordinates; contacts; rows
+    n_q, n_c, n, n_all : int   coordinates; contacts; rows; rows with those of joints
     """
 
-    def __init__(self, n_q: int, n_c: int, n: int) -> None:
-        self.n_q, self.n_c, self.n = n_q, n_c, n
-        self.kept = np.zeros(9 * n + n_q + n_c), np.zeros(4 * n, dtype=np.intp)
+    def __init__(self, n_q: int, n_c: int, n: int, n_all: int) -> None:
+        self.n_q, self.n_c, self.n, self.slack = n_q, n_c, n, 0.0
+        self.kept = np.zeros(9 * n + n_q + n_c + n_all * n_all), np.zeros(4 * n, dtype=np.intp)
         self.force, self.holds = doubles(self.kept[0]), indices(self.kept[1])
         self.impulse, self.mobility = after(self.force, 3 * n), after(self.force, 6 * n)
         self.response, self.turned = after(self.force, 7 * n), after(self.force, 8 * n)
         self.apart, self.drop = after(self.force, 9 * n), after(self.force, 9 * n + n_q)
+        self.held_W = after(self.drop, n_c)
         self.held = indices_after(self.holds, 3 * n)
 
     def begin(self, s: State, slow: float) -> None:
@@ -57,6 +63,7 @@ class Switches:
         clear(self.turned, self.n)
         clear(self.apart, self.n_q)
         clear(self.drop, self.n_c)
+        self.slack = 0.0
 
     def note(self, part: int, plan: Plan, s: State, rows: Rows, before: Doubles, slow: float) -> None:
         """Rows of a part that has been taken; `before`: gap velocities at its start."""
@@ -99,9 +106,13 @@ class Switches:
             self.impulse[first + k] = p
             self.holds[first + k] = 1 if abs(p) < STICKS * mu * normal else 0
             kinetic = rows.coefficients.sliding[i]
+            if W > 0.0 and self.holds[first + k] > 0 and self.holds[k] > 0:
+                rounding = NO_APPROACH * size_of_rate(rows, s.v, k, s.n_q)
+                self.slack = max(self.slack, 2.0 * rounding * self.response[k] / W)
             if self.held[k] > 0:
                 mu = rows.coefficients.sticking[i]
-                self.drop[i] = (mu - kinetic) * normal / plan.h
+                moves = self.holds[first + k] > 0 or abs(end) > slow  # at its limit others may hold it
+                self.drop[i] = (mu - kinetic) * normal / plan.h if moves else 0.0
             needed = abs(p - (end - u) / W) if W > 0.0 else 0.0
             if W > 0.0:
                 self.force[first + k] = (mu * normal - needed) / plan.h
@@ -110,29 +121,60 @@ class Switches:
             elif part != ONE and needed > mu * normal and abs(u) > slow and self.holds[first + k] > 0:
                 self.turned[k] = max(self.turned[k], turned_at_rest(abs(u), W, needed, kinetic * normal))
 
-    def unseen(self, h: float, even: bool) -> float:
-        """Error of the velocities after two halves of h/2; `even` where impulses are means of both ends of a step."""
+    def unseen(self, h: float, plan: Plan, s: State, rows: Rows) -> float:
+        """Error of the velocities after two halves of h/2."""
         worst, n, apart = 0.0, self.n, SHARED * largest(self.apart, 0.0, self.n_q)
         for k in range(n):
             p = self.turned[k]
             if self.held[k] > 0:
-                opened = h if self.holds[SECOND * n + k] > 0 else 0.5 * h
-                if self.holds[FIRST * n + k] == 0:
-                    opened = 0.0
-                one, first, second = self.force[k], self.force[n + k], self.force[2 * n + k]
-                if not even:  # forces at the ends of the parts: along a line
-                    one, first, second = first, 0.5 * (3.0 * first - one), 0.5 * (first + one)
-                if opened == 0.0 and k >= self.n_c and min(min(one, first), second) > 0.0:
-                    continue  # slower than is resolved, but it slid before, and has yet to come to rest
-                if self.apart_by(k) * self.response[k] > apart:
-                    continue  # what one row has less, others have more: forces that nothing tells apart
-                p = max(p, late(one, first, second, h, opened, h))
-                if k >= self.n_c and self.drop[k - self.n_c] > 0.0:
-                    p += self.drop[k - self.n_c] * abs(gives_out(one, first, second, h, h) - opened)
-                if self.holds[ONE * n + k] > 0 and opened == h:
-                    p = max(p, self.differ(k))
+                p = max(p, self.let_go(k, h, apart, plan, s, rows))
             worst = max(worst, p * self.response[k])
         return worst
+
+    def let_go(self, k: int, h: float, apart: float, plan: Plan, s: State, rows: Rows) -> float:
+        """Impulse by which a row is wrong that was held at the start, for it is held too long, or not long enough.
+
+        When friction falls within a part that begins to slide is not known: forces of what slides do not tell.
+        """
+        n, opened = self.n, h if self.holds[SECOND * self.n + k] > 0 else 0.5 * h
+        if self.holds[FIRST * n + k] == 0:
+            opened = 0.0
+        drop = self.drop[k - self.n_c] if k >= self.n_c else 0.0
+        early = 0.5 * h * drop if opened < h else 0.0
+        one, first, second = self.force[k], self.force[n + k], self.force[2 * n + k]
+        if plan.theta != 0.5:  # forces at the ends of the parts, not means of both ends: along a line
+            one, first, second = first, 0.5 * (3.0 * first - one), 0.5 * (first + one)
+        if opened == 0.0 and k >= self.n_c and min(min(one, first), second) > 0.0:
+            return early  # slower than is resolved, but it slid before, and has yet to come to rest
+        if self.apart_by(k) * self.response[k] > apart and self.shares(k, plan, s, rows):
+            return early  # what one row has less, others have more: forces that nothing tells apart
+        p = max(early, late(one, first, second, h, opened, h))
+        if opened == h:
+            p += drop * (h - gives_out(one, first, second, h, h))
+            if self.holds[ONE * n + k] > 0:
+                p = max(p, self.differ(k))
+        return p
+
+    def shares(self, k: int, plan: Plan, s: State, rows: Rows) -> bool:
+        """Whether other rows can do what row k does: its mobility while they are held, by elimination, is none."""
+        m, n, ids = s.active + rows.n_f + rows.n_j, rows.n, rows.problem.ids
+        last = m - 1
+        while last >= 0 and ids[last] != k:
+            last -= 1
+        if last < 0:
+            return True
+        for i in range(m):
+            for j in range(m):
+                self.held_W[i * m + j] = plan.W[moved(ids, i, last, m) * n + moved(ids, j, last, m)]
+        for d in range(m - 1):
+            pivot, own = self.held_W[d * m + d], moved(ids, d, last, m)
+            if not pivot > SAME * plan.W[own * n + own]:
+                continue
+            for i in range(d + 1, m):
+                share = self.held_W[i * m + d] / pivot
+                for j in range(d + 1 if share != 0.0 else m, m):
+                    self.held_W[i * m + j] -= share * self.held_W[d * m + j]
+        return self.held_W[m * m - 1] <= SAME * plan.W[k * n + k]
 
     def differ(self, k: int) -> float:
         """By how much the step and its halves disagree about an impulse, as an error."""
@@ -150,3 +192,10 @@ def turned_at_rest(u: float, W: float, needed: float, friction: float) -> float:
     u : speed at its start;  needed, friction : impulses that would hold it at rest, and that it has while it slides
     """
     return (needed - friction) * max(0.0, 1.0 - u / (W * (needed + friction)))
+
+
+def moved(ids: Indices, i: int, last: int, m: int) -> int:
+    """Row of place i of m, if that of place `last` changes places with the one at the end."""
+    if i == m - 1:
+        return ids[last]
+    return ids[m - 1] if i == last else ids[i]

@@ -83,7 +83,11 @@ class Attempts(Control):
         m, plan, s, rows = way.m, way.plan, way.s, way.rows
         self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
         self.times, self.record.n_times = self.record.times, 0
-        self.switches, self.struck, self.share = Switches(s.n_q, s.n_c, rows.n_c + rows.n_t), False, 1.0
+        self.switches, self.struck, self.share = (
+            Switches(s.n_q, s.n_c, rows.n_c + rows.n_t, rows.n),
+            False,
+            1.0,
+        )
         places = OWN + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
         self.own_made[:] = not m.linear
@@ -138,8 +142,9 @@ class Attempts(Control):
             self.happened = True
         self.apart_q = max(self.apart_q, distance(self.one_q, self.s.q, self.s.n_q))
         if not self.struck:
-            self.apart_v = max(self.apart_v, distance(self.one_v, self.s.v, self.s.n_q))
-            self.apart_v = max(self.apart_v, self.switches.unseen(h, self.plan.theta == 0.5))
+            apart = distance(self.one_v, self.s.v, self.s.n_q)
+            apart = max(apart, self.switches.unseen(h, self.plan, self.s, self.rows))
+            self.apart_v = max(self.apart_v, apart - self.switches.slack)
         return FINISHED
 
     def part(self, part: int, start: float, h: float, slow: float) -> int:

@@ -153,27 +153,6 @@ def test_friction_that_turns_or_gives_way_is_seen(h):
         assert abs(m.q[-1, 0] - true) <= 3.0 * tolerance
 
 
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
-def test_sliding_that_stops_at_the_end_of_a_step_only_because_it_turns_within_is_seen(tolerance):
-    """Both runs ended at rest on the table, which no friction could hold there: 6e-3 m by a tolerance of 1e-8."""
-    friction = Coulomb(mu=0.3, tangent=along, slip=shaken)
-    scene = Scene(
-        LinearSystem(np.eye(2), force=[0.0, -9.81]), [0.0, 0.0], [0.0, 0.0], (0.0, 3.0),
-        LinearContacts([[0.0, 1.0]], restitution=0.0, friction=friction), p=[0.02, 20.0],
-    )  # fmt: skip
-    true = simulate(scene, EventDriven(), keep=[3.0]).q[-1, 0]
-    for h in (0.01, 0.07):
-        assert abs(simulate(scene, Moreau(h, tolerance=tolerance)).q[-1, 0] - true) <= tolerance
-
-
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
-def test_friction_that_falls_when_sliding_begins_does_so_in_time(tolerance):
-    """Both runs let go at the same one of their ends, too early or too late: by 240 tolerances of 1e-6."""
-    scene = scenes.stick_slip_belt(t_end=30.0)
-    m = simulate(scene, Moreau(0.05, tolerance=tolerance), keep=np.linspace(0.0, 30.0, 61))
-    assert np.max(np.abs(m.q - scene.exact(m.t)[0])) <= tolerance
-
-
 def test_kept_states_are_a_choice():
     full = simulate(oscillator(), Moreau(0.5, tolerance=1e-3))
     third = simulate(oscillator(), Moreau(0.5, tolerance=1e-3), keep=3)
