@@ -22,7 +22,7 @@ if not cython.compiled:
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing
     from lcpstep.events.friction.surfaces import come_apart, contradict, find_touching
-    from lcpstep.events.rows.jumps import drive_joints
+    from lcpstep.events.rows.jumps import drive_joints, go_beyond
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -118,6 +118,7 @@ def turn_corner(s: Rubbing) -> int:
     As without friction: u- of a closed contact is that before the jump, and its obstacle takes the body along.
     """
     s.clock.find_corners(s.clock.t0)
+    go_beyond(s.rows, s.y, s.v)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     forget_terms(s)

@@ -16,8 +16,8 @@ if not cython.compiled:
     from lcpstep.events.general.impact import strike
     from lcpstep.events.general.modes import tell_impacts
     from lcpstep.events.general.state import JUMP, SETTLE, Mechanism
-    from lcpstep.events.rows.equations import JUMPS, measure_rates, size_of
-    from lcpstep.events.rows.jumps import drive_joints
+    from lcpstep.events.rows.equations import JUMPS, measure_rates, respond, size_of
+    from lcpstep.events.rows.jumps import drive_joints, go_beyond
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy, product
@@ -46,11 +46,18 @@ def throws(s: Mechanism) -> bool:
 
     A joint that is driven, and jumps, makes contacts of the bodies that it moves jump as their obstacles would.
     """
-    before = s.left.curve
+    before, along = s.left.curve, s.left.multiplier
     measure_rates(s, s.t0, s.q, s.v)  # as they are here, and not where gaps were last looked at
     copy(before, s.contact.rate, s.n_c)
+    for c in range(s.n_c):
+        along[c] = product(s.R, s.v, s.n_j + c, s.n_q)
     s.find_corners(s.t0)
+    found = go_beyond(s, s.q, s.v)
     measure_rates(s, s.t0, s.q, s.v)
+    if found:
+        respond(s)
+    for c in range(s.n_c):
+        along[c] = product(s.R, s.v, s.n_j + c, s.n_q) - along[c]
     copy(s.dy, s.v, s.n_q)
     some = driven = drive_joints(s, s.v)
     if driven:
@@ -59,7 +66,7 @@ def throws(s: Mechanism) -> bool:
         for j in range(s.n_q):
             s.dy[j] = s.v[j] - s.dy[j]
     for c in range(s.n_c):
-        jump = s.contact.rate[c] - before[c]
+        jump = s.contact.rate[c] - before[c] + along[c]
         if driven:
             jump += product(s.R, s.dy, s.n_j + c, s.n_q)
         size = size_of(s, s.n_j + c, abs(s.contact.rate[c]) + abs(before[c]), s.v)

@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.events.general.state cimport Mechanism
 
-cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, FAINT, STEADY
+cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, FAINT, STEADY, UNLIKE
 
 cdef void find_landings(Mechanism s, double h) noexcept nogil
 @cython.locals(low=bint)
@@ -11,6 +11,7 @@ cdef double hop_time(Mechanism s, Py_ssize_t c, double g, double u, double alpha
 cdef bint is_low(Mechanism s, Py_ssize_t c, double h) noexcept nogil
 @cython.locals(f=double, u=double, exact=bint)
 cdef double hop_end(Mechanism s, Py_ssize_t c, double guess, double longest) noexcept nogil
+cdef bint ends_so(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 @cython.locals(exact=bint)
 cdef (double, double, bint) follow(Mechanism s, Py_ssize_t c, double tau) noexcept nogil
 cdef double speed_at(Mechanism s, Py_ssize_t c, double tau) noexcept nogil

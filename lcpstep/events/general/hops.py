@@ -16,7 +16,7 @@ import cython
 if not cython.compiled:
     from math import pow, sqrt
 
-    from lcpstep.events.general.earliest import NEVER, NONE, observe
+    from lcpstep.events.general.earliest import NEVER, NONE, gap_noise, observe
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.parabolas import hop
     from lcpstep.events.general.state import Mechanism
@@ -39,6 +39,7 @@ LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
 FAINT = 1e-12  # the same where no corner is: of lower ones it tells no more than four digits
+UNLIKE = 0.25  # of a gap shortly before it lands: more is an edge of the obstacle
 STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
 
 
@@ -56,7 +57,9 @@ def landing(s: Mechanism, c: int, h: float) -> float:
         return NONE
     longest = min(LONGER * guess, h)
     tau = hop_end(s, c, guess, longest)
-    return NEVER if low and tau == NONE else tau
+    if low:
+        return NEVER if tau == NONE else tau
+    return tau if tau == NONE or ends_so(s, c, tau) else NONE
 
 
 def shortest_hop(s: Mechanism) -> float:
@@ -104,6 +107,16 @@ def hop_end(s: Mechanism, c: int, guess: float, longest: float) -> float:
         f += g0 / x
         s.bracket.newton(f, (u - f) / x)
     return s.bracket.x
+
+
+def ends_so(s: Mechanism, c: int, tau: float) -> bool:
+    """Whether the gap itself, where it was last observed, is that of a hop that lands at tau.
+
+    It is another one where the obstacle has an edge or a valley, at which the gap velocity jumps.
+    """
+    d = (1.0 - NODE_3) * tau
+    expected = -d * (s.contact.speed[c] + 0.5 * d * s.contact.curve[c])
+    return abs(s.contact.gap[c] - expected) <= UNLIKE * abs(expected) + gap_noise(s, c)
 
 
 def follow(s: Mechanism, c: int, tau: float) -> tuple[float, float, bool]:

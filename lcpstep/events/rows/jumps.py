@@ -13,7 +13,7 @@ if not cython.compiled:
     from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
     from lcpstep.events.rows.held import constrain, hold_joints
     from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.clock import NUDGE, RESOLUTION
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
@@ -102,6 +102,19 @@ def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
     return False
 
 
+def go_beyond(s: Rows, q: Doubles, v: Doubles) -> bool:
+    """At a corner that was found, move coordinates to its far side, as rows may jump by the place; whether it was.
+
+    They go what they go in the time to which the time of a jump is known.
+    """
+    if s.low != s.jump:
+        return False
+    margin = 2.0 * NUDGE * max(abs(s.t0), s.scale)
+    for j in range(s.n_q):
+        q[j] = q[j] + margin * v[j]
+    return True
+
+
 def unseen(s: Rows, i: int, v: Doubles) -> float:
     """What steps may leave of the velocity of row i, which is no jump."""
     return max(error(s, i, v), s.drift)
@@ -139,8 +152,8 @@ def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
             high, later = tau, u
         else:
             low, before = tau, u
-    begins = abs(later - before) < SHARE * off and low > 0.0
-    t = t0 + low if begins else t0 + high
+    # where rows are still those before it, onto which the motion is put, however the sum is rounded
+    t = t0 + low - 2.0 * RESOLUTION * (abs(t0) + low)
     if high - low < SUDDEN * h and s.lies_apart(t):
         s.break_at(t)
         return True

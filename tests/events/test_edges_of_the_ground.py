@@ -1,0 +1,87 @@
+"""Ground with edges and valleys, where the row of a contact jumps with the place: nobody names a time for that."""
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene
+from lcpstep import EventDriven, Located, simulate
+
+FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
+
+
+def gap(t, q, v, p, out):
+    """Slopes p[0] on the left of the edge and p[1] on its right."""
+    out[0] = q[1] - (p[0] if q[0] < 0.0 else p[1]) * q[0]
+
+
+def normal(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -(p[0] if q[0] < 0.0 else p[1]), 1.0
+
+
+def tangent(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, p[0] if q[0] < 0.0 else p[1]
+
+
+def at_rest(t, q, v, p, out):
+    out[0] = 0.0
+
+
+def sliding(slopes, speed, friction=None):
+    """A particle that slides up to the edge from 0.3 m on its left."""
+    ground = Contacts(1, gap, normal, bias=at_rest, restitution=0.3, friction=friction)
+    return Scene(FALLS, [-0.3, -0.3 * slopes[0]], [speed, speed * slopes[0]], (0.0, 0.3), ground, p=slopes)
+
+
+def at_the_edge(slopes, speed):
+    """When it is there, and how fast along x."""
+    pull = -9.81 * slopes[0] / (1.0 + slopes[0] ** 2)
+    reached = np.sqrt(speed**2 + 0.6 * pull)
+    return 0.6 / (speed + reached), reached
+
+
+METHODS = [(EventDriven(), None), (EventDriven(), 1e-14), (Located(1e-3), 1e-14), (Located(1e-3, 4), 1e-14)]
+
+
+@pytest.mark.parametrize(("method", "mu"), METHODS)
+@pytest.mark.parametrize("slopes", [(0.5, -0.5), (0.22, -0.37), (-0.2, -0.9)])
+def test_what_slides_over_a_ridge_flies_off(method, mu, slopes):
+    """It was held to the other slope, as if glued to it."""
+    friction = None if mu is None else Coulomb(mu, tangent, slip=at_rest)
+    for speed in (3.0, 3.3, 3.7):
+        m = simulate(sliding(slopes, speed, friction), method, keep=[0.15])
+        time, reached = at_the_edge(slopes, speed)
+        later = 0.15 - time
+        true = [reached * later, slopes[0] * reached * later - 0.5 * 9.81 * later**2]
+        assert m.q[-1] == pytest.approx(true, abs=1e-8)
+
+
+@pytest.mark.parametrize("slopes", [(-0.4, 0.3), (0.1, 0.8), (-0.9, -0.1)])
+def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes):
+    """Its gap velocity before is zero, and does not rebound: what is left is the velocity along the other slope."""
+    for speed in (3.0, 3.3, 3.7):
+        m = simulate(sliding(slopes, speed), EventDriven(), keep=[0.15])
+        time, reached = at_the_edge(slopes, speed)
+        onward = reached * (1.0 + slopes[0] * slopes[1]) / (1.0 + slopes[1] ** 2)
+        later, pull = 0.15 - time, -9.81 * slopes[1] / (1.0 + slopes[1] ** 2)
+        assert m.q[-1, 0] == pytest.approx(onward * later + 0.5 * pull * later**2, abs=1e-10)
+
+
+HOPS = [
+    (0.8814671487857262, 0.8212232385192159, 0.6594251159345395, 0.5941594508599993, -0.10039945465653566)
+]
+HOPS += [
+    (0.36432712811972556, 0.7151897662822347, 0.7476208357792027, 0.30602428704577783, -0.6699650970111957)
+]
+HOPS += [(0.7222556724119291, 0.640834184011673, 0.5461876620485476, 0.4177680734751351, -0.5866269753789466)]
+
+
+@pytest.mark.parametrize(("slope", "restitution", "x", "y", "speed"), HOPS)
+def test_a_hop_may_end_on_the_other_side_of_a_valley(slope, restitution, x, y, speed):
+    """Its landing was put where the acceleration above the first slope would have it, below the second."""
+    planes = LinearContacts([[-slope, 1.0], [slope, 1.0]], restitution=restitution)
+    flat = simulate(Scene(FALLS, [x, y], [speed, 0.0], (0.0, 0.8), planes), EventDriven())
+    end = flat.impacts.time[flat.impacts.contact == 1][0] + 0.005
+    valley = Contacts(1, gap, normal, bias=at_rest, restitution=restitution)
+    scene = Scene(FALLS, [x, y], [speed, 0.0], (0.0, end), valley, p=[-slope, slope])
+    m = simulate(scene, EventDriven(), keep=[end])
+    assert m.q == pytest.approx(flat.at(m.t)[0], abs=1e-9)
