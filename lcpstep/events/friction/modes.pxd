@@ -5,7 +5,7 @@ from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t LEANS, NO_FORCES, OPEN, SLIDES, STICKS
 cdef Py_ssize_t DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
-cdef double EDGE
+cdef double EDGE, LEANING
 
 @cython.locals(begins=bint)
 cdef Py_ssize_t decide(Rubbing s) noexcept nogil

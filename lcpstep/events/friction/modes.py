@@ -46,6 +46,10 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, after, max
 
+LEANING = (
+    1e-12  # of accelerations that hang together: as much solving for the forces leaves of one that is none
+)
+
 
 def decide(s: Rubbing) -> int:
     """New modes of the closed contacts at the state just measured, in `new_mode` and `new_direction`; a status.
@@ -139,7 +143,7 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_mode[c] = STICKS
         elif limit > 0.0:
             s.new_direction[c] = 1.0 if force < 0.0 else -1.0
-            if abs(rate) <= NOISE * size_of_coupled(s, n_a + f, n_a, n_f):
+            if abs(rate) <= LEANING * size_of_coupled(s, n_a + f, n_a, n_f):
                 s.new_mode[c] = LEANS
             elif rate * s.new_direction[c] < 0.0:  # large forces have hidden that it does not slide
                 s.new_mode[c] = STICKS
