@@ -1,8 +1,9 @@
 cimport cython
 from lcpstep.events.rows.state cimport Rows
 from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.sudden cimport MORE, SUDDEN
 
-cdef double TOLERANCES, MORE, SHARE, SUDDEN
+cdef double TOLERANCES
 
 cdef bint breaks(Rows s, RungeKutta motion, double h, bint measured) noexcept nogil
 @cython.locals(found=Py_ssize_t)

@@ -15,14 +15,11 @@ if not cython.compiled:
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.clock import NUDGE, RESOLUTION
     from lcpstep.kernels.rungekutta import RungeKutta
+    from lcpstep.kernels.sudden import MORE, SUDDEN
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
 
 TOLERANCES = 8.0  # of a velocity: what a step leaves of a row held
-MORE = 4.0  # times what steps have left of one so far
-SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as can be, and not of drift
-# Of a step: what changes within less than this is none, but a jump, or turns too fast to be seen
-SUDDEN = 1.0 / 64.0
 
 
 def breaks(s: Rows, motion: RungeKutta, h: float, measured: bool) -> bool:
@@ -42,7 +39,7 @@ def breaks(s: Rows, motion: RungeKutta, h: float, measured: bool) -> bool:
     if find_jump(s, motion, i, h):
         return True
     begins = velocity(s, i, s.t0, motion.y)
-    s.drift = max(s.drift, MORE * abs(velocity(s, i, s.t0 + h, motion.y_new) - begins))
+    s.sudden.excuse(velocity(s, i, s.t0 + h, motion.y_new) - begins)
     return False
 
 
@@ -51,7 +48,7 @@ def farthest_off(s: Rows, motion: RungeKutta) -> int:
     v, found, most = after(motion.y_new, s.n_q), -1, 1.0
     for i in range(s.n_r):
         u = abs(product(s.R, v, i, s.n_q) + s.rate[i]) if s.rests[i] == 1 else 0.0
-        if u > most * s.drift:
+        if u > most * s.sudden.drift:
             off = u / unseen(s, i, v)
             if off > most:
                 found, most = i, off
@@ -117,7 +114,7 @@ def go_beyond(s: Rows, q: Doubles, v: Doubles) -> bool:
 
 def unseen(s: Rows, i: int, v: Doubles) -> float:
     """What steps may leave of the velocity of row i, which is no jump."""
-    return max(error(s, i, v), s.drift)
+    return max(error(s, i, v), s.sudden.drift)
 
 
 def error(s: Rows, i: int, v: Doubles) -> float:
@@ -135,26 +132,19 @@ def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
 def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
     """Whether what the velocity of row i changes by within the step of size h comes by a jump; at a corner then.
 
-    Of what is no jump, but was too fast for the step, that is where it begins, or a part of it. What sticks may begin
-    the step with a velocity, next to none, that the end of it no longer has.
+    What sticks may begin the step with a velocity, next to none, that the end of it no longer has.
     """
-    t0, low, high = s.t0, 0.0, h
-    before, later = velocity(s, i, t0, motion.y), velocity(s, i, t0 + h, motion.y_new)
-    middle, off = 0.5 * (before + later), abs(later - before)
-    if off <= unseen(s, i, after(motion.y_new, s.n_q)):
+    t0, before, later = s.t0, velocity(s, i, s.t0, motion.y), velocity(s, i, s.t0 + h, motion.y_new)
+    if abs(later - before) <= unseen(s, i, after(motion.y_new, s.n_q)):
         return False
-    while abs(later - before) >= SHARE * off and high - low > 2.0 * RESOLUTION * (abs(t0) + high):
-        tau = 0.5 * (low + high)
-        if not motion.step(t0, tau):
+    s.sudden.begin(h, before, later)
+    while s.sudden.seek(t0):
+        if not motion.step(t0, s.sudden.x):
             break
-        u = velocity(s, i, t0 + tau, motion.y_new)
-        if (u - middle) * (later - middle) > 0.0:
-            high, later = tau, u
-        else:
-            low, before = tau, u
+        s.sudden.take(velocity(s, i, t0 + s.sudden.x, motion.y_new))
     # where rows are still those before it, onto which the motion is put, however the sum is rounded
-    t = t0 + low - 2.0 * RESOLUTION * (abs(t0) + low)
-    if high - low < SUDDEN * h and s.lies_apart(t):
+    t = t0 + s.sudden.low - 2.0 * RESOLUTION * (abs(t0) + s.sudden.low)
+    if s.sudden.is_jump() and s.lies_apart(t):
         s.break_at(t)
         return True
     motion.step(t0, h)

@@ -1,5 +1,6 @@
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.sudden cimport Sudden
 from lcpstep.pointers cimport Doubles, Indices
 
 
@@ -10,7 +11,8 @@ cdef class Rows(Clock):
     cdef readonly bint fixed, moving
     cdef bint on_joints, known
     cdef readonly double rtol, atol
-    cdef double drift, slack
+    cdef Sudden sudden
+    cdef double slack
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
     cdef Doubles held, change, share, doubt, L, bent, P, MP, S
     cdef Indices row, either, rests

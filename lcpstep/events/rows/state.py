@@ -11,6 +11,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.clock import Clock
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.sudden import Sudden
     from lcpstep.pointers import after, indices_after
 
 
@@ -20,7 +21,7 @@ class Rows(Clock):
     model, joints, tangents   the same system with its contacts, its joints and its tangents as rows
     n_q, n_c, n_j, n_t, n_r   coordinates, contacts, joints, tangents; rows in all
     rtol, atol                tolerances
-    drift, slack              velocity and gap of a row at rest that a step may leave, as steps so far have shown
+    sudden, slack             of velocities that jump; gap of a row at rest that a step may leave, as steps have shown
     a_free, force : (n_q,)    acceleration M^-1 f without contacts and joints, f
     M                         factor of the mass matrix, where that changes
     R, MR : (n_r, n_q)        rows, and rows M^-1 R^T
@@ -64,7 +65,7 @@ class Rows(Clock):
         self.moving = model.motion.given or joints.motion.given or tangents.motion.given
         self.known = False
         self.rtol, self.atol = tolerances
-        self.drift = self.slack = 0.0
+        self.sudden, self.slack = Sudden(), 0.0
         self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r)
         self.a_free = doubles(self.row_numbers)
         self.force = after(self.a_free, n)

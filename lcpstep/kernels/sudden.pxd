@@ -1,0 +1,16 @@
+cimport cython
+
+cdef double MORE, SHARE, SUDDEN
+
+
+@cython.final
+cdef class Sudden:
+    cdef double h, low, high, before, later, middle, whole, x, drift
+    cdef void begin(self, double h, double before, double later) noexcept nogil
+    @cython.locals(narrow=bint)
+    cdef bint seek(self, double t) noexcept nogil
+    cdef void take(self, double f) noexcept nogil
+    cdef double place(self) noexcept nogil
+    cdef bint is_turn(self) noexcept nogil
+    cdef bint is_jump(self) noexcept nogil
+    cdef void excuse(self, double u) noexcept nogil

@@ -1,0 +1,75 @@
+"""Where what a function changes by within a step comes by a jump, by halving, for whoever can evaluate it.
+
+    sudden.begin(h, before, later)     the function where the step begins, and h after that
+    while sudden.seek(t):              t: the time at which it begins
+        sudden.take(f)                 of the function at sudden.x, counted from there
+    sudden.place()                     is where it jumps, if `is_jump`
+
+Of what is no jump, but too fast for the step, the place is where it begins, or a part of it. What a step leaves of a
+velocity that is to be zero is no jump: steps so far have shown how much that is.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.pointers import abs, max
+
+MORE = 4.0  # times what steps have left of a velocity so far
+SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as can be, and not of drift
+# Of a step: what changes within less than this is none, but a jump, or turns too fast to be seen
+SUDDEN = 1.0 / 64.0
+
+
+class Sudden:
+    """Two places between which a function jumps, and the place to look at.
+
+    h, whole        the step, and what the function changes by in it
+    low, high       the places;  before, later   the function there
+    middle          between what it has been and what it becomes
+    x               the place to look at
+    drift           what steps so far have left of a velocity, and more
+    """
+
+    def __init__(self) -> None:
+        self.drift = self.x = 0.0
+        self.begin(0.0, 0.0, 0.0)
+
+    def begin(self, h: float, before: float, later: float) -> None:
+        """Seek in a step of size h, from whose begin to whose end the function changes so."""
+        self.h, self.low, self.high = h, 0.0, h
+        self.before, self.later = before, later
+        self.middle, self.whole = 0.5 * (before + later), abs(later - before)
+
+    def seek(self, t: float) -> bool:
+        """Move x to the next place to look at; False where it is found, or none can be told from its neighbours."""
+        narrow = self.high - self.low <= 2.0 * RESOLUTION * (abs(t) + self.high)
+        if narrow or self.is_turn():
+            return False
+        self.x = 0.5 * (self.low + self.high)
+        return True
+
+    def take(self, f: float) -> None:
+        """The function at x."""
+        if (f - self.middle) * (self.later - self.middle) > 0.0:
+            self.high, self.later = self.x, f
+        else:
+            self.low, self.before = self.x, f
+
+    def place(self) -> float:
+        """The place: just after a jump."""
+        return self.low if self.is_turn() and self.low > 0.0 else self.high
+
+    def is_turn(self) -> bool:
+        """Whether the places still have something of the change between them that halving takes apart."""
+        return abs(self.later - self.before) < SHARE * self.whole
+
+    def is_jump(self) -> bool:
+        """Whether what changes does so at once, as the step sees it."""
+        return self.high - self.low < SUDDEN * self.h
+
+    def excuse(self, u: float) -> None:
+        """What a step has left of a velocity is no jump, but its error."""
+        self.drift = max(self.drift, MORE * abs(u))
