@@ -44,7 +44,13 @@ class Attempts(Parts):
         start, end, until = self.into, self.ends(), inf
         entire, agreed = end == self.h, False
         for trial in range(TRIALS):
+            before = self.w.jump
             self.compare(start, end, entire, until)
+            if self.w.jump != before:  # a velocity jumps within the step, which ends there then
+                self.restore()
+                end, until = self.ends(), inf
+                entire = end == self.h
+                continue
             agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
             if agreed:
                 break

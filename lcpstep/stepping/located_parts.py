@@ -107,9 +107,7 @@ class Parts(Control):
 
     def ends(self) -> float:
         """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
-        if self.plan.n_corners == 0:
-            return self.h
-        _low, corner = find_corners(self.plan, self.now())
+        _low, corner = find_corners(self.plan, self.w, self.now())
         return corner - self.from_time if corner < self.to_time - self.plan.margin else self.h
 
     def part(self, start: float, end: float, last: float, even: bool, until: float, halved: int) -> int:
@@ -203,6 +201,8 @@ class Parts(Control):
         """Go back to the start of the step; work that was done stays counted."""
         self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
         copy_state(self.w, self.saved, self.n_numbers, self.n_marks, self.n_matrices)
+        if self.w.low < self.w.jump < self.w.high:  # a jump that has been found since then
+            self.w.high = self.w.jump
         self.wind_back()
         self.record.write_last(self.last_row)
 

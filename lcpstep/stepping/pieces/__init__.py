@@ -1,10 +1,10 @@
 """Steps with located impacts, as kernels: pieces of smooth motion between events, each at its own time in a step.
 
 run, prepare, state      a run; what it starts from: constants of steps, the piece at hand and work space
-loop, keep               the loop over steps and pieces, which all orders share, and the states kept
+begin, loop, keep        the start, the loop over steps and pieces, which all orders share, and the states kept
 quadratic_steps          order 2: `piece`, its motion (`smooth`) and its gaps (`quadratic`)
 polynomial_steps         order 4 and "exact": `polynomial`, `scan` for events, `polynomial_forces`
-event, impulses, refine  an impact, the impulses of those that fire together, to the last digit; `corners`
+event, impulses, refine  an impact, the impulses of those that fire together, to the last digit; `corners`; `jumps`
 contact_forces           of the contacts that rest; `switches` closes and opens them, `magnitudes` tells rounding
 settle, race, glide      events without end; impacts of many bodies in free flight; steps without events
 joints, jointed          what joints do to a state, and to a step

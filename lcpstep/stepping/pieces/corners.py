@@ -28,9 +28,13 @@ if not cython.compiled:
 JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does so by rounding
 
 
-def find_corners(plan: Plan, t: float) -> tuple[float, float]:
-    """The smooth interval that begins at t or holds it."""
+def find_corners(plan: Plan, w: Work, t: float) -> tuple[float, float]:
+    """The smooth interval that begins at t or holds it; the jump that has been found last is a corner, too."""
     low, high = -inf, inf
+    if w.jump <= t + plan.margin:
+        low = w.jump
+    else:
+        high = w.jump
     if plan.n_corners == 0:
         return low, high
     turn = 0.0 if plan.period == inf else floor(t / plan.period) * plan.period
@@ -62,7 +66,7 @@ def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:
             size += abs(w.G[c * w.n_q + i] * w.v[i])
         if abs(later - before) > JUMP * (size + abs(before)):
             w.rate[c] = later
-            near = plan.slack + 4.0 * plan.margin * (abs(before) + abs(later))
+            near = plan.slack + 4.0 * w.margin * (abs(before) + abs(later))
             if w.status[c] == CLOSED or (w.gap[c] <= near and min(before, later) < 0.0):
                 w.chosen[n_s] = c
                 w.gap[c], w.grounded[c] = 0.0, GROUND

@@ -90,5 +90,6 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         w.gap[0], w.rate[0], w.half[0] = g, u, bent
         if k > start:
             w.turned[0], w.sigma = -h, 0.0
+            w.end_u[0], w.end_s[0] = G * v - u, s
     w.steps = k
     w.force_evaluations += k - start

@@ -9,7 +9,8 @@ cdef Py_ssize_t PROJECTIONS, VECTORS
 
 @cython.final
 cdef class Joints:
-    cdef Model system, rows
+    cdef Model system
+    cdef readonly Model rows
     cdef Elimination elimination
     cdef readonly object numbers
     cdef readonly Py_ssize_t n_j, n_q

@@ -12,20 +12,17 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-    from lcpstep.kernels.dynamics import external_force
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, finite, product
-    from lcpstep.pointers import abs, inf, max
+    from lcpstep.kernels.vectors import copy, finite
+    from lcpstep.pointers import inf, max
+    from lcpstep.stepping.pieces.begin import begin_motion
     from lcpstep.stepping.pieces.carried import put_kept_back
     from lcpstep.stepping.pieces.codes import (
         AGAIN,
         BUFFER_FULL,
-        CLOSED,
         CORNER,
-        EPS,
         FINISHED,
-        GROUND,
         NOBODY,
         NOT_FINITE,
         OPEN,
@@ -36,61 +33,10 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.event import remeasure, struck_at_start
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.impulses import zero_speeds
-    from lcpstep.stepping.pieces.jointed import turn_onto_joints
     from lcpstep.stepping.pieces.keep import keep, keep_now
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.settle import endless, settle
-    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, refactor, respond
     from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import just_after, rounded_by, within
-
-
-def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
-    """Forces, gaps and status of the initial state, which is kept where states are."""
-    w.low, w.high = find_corners(plan, t)
-    w.fresh = True
-    if w.joined:  # what rounding has put speeds as small off them by would let no impulse do
-        if not refactor(m, w, within(plan, w, t)):
-            return NOT_FINITE
-        turn_onto_joints(w, w.v)
-    if plan.trapezoidal:
-        external_force(m, within(plan, w, t), w.q, w.v, w.force)
-    elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
-        return NOT_FINITE
-    w.force_evaluations += 1
-    if plan.steady:
-        for i in range(w.n_q):
-            w.free[i] = product(plan.A_inverse, w.force, i, w.n_q)
-    measure(m, plan, w, t)
-    if plan.constant:
-        respond(m, w)
-        for c in range(w.n_c):
-            w.alpha[c] = product(m.G, w.free, c, w.n_q)
-    if not plan.plain and touching(plan, w):
-        gap_bias(m, w, within(plan, w, t), w.q, w.v)
-    for c in range(w.n_c):
-        if w.gap[c] <= plan.slack:
-            w.gap[c], w.grounded[c] = 0.0, GROUND
-            size = abs(w.gap_t[c]) + plan.h * acceleration_terms(m, w, c)
-            for i in range(w.n_q):
-                size += abs(w.G[c * w.n_q + i] * w.v[i])
-            if abs(w.rate[c]) <= 64 * EPS * size + rounded_by(plan, w, c, t):
-                w.rate[c], w.status[c] = 0.0, CLOSED
-                w.closed_now += 1
-    if record.n_times == 0:
-        keep(w, record, t, 0.0)
-    elif record.times[0] == t:
-        keep(w, record, t, 0.0)
-        record.next_time = 1
-    return FINISHED
-
-
-def touching(plan: Plan, w: Work) -> bool:
-    """Whether some contact touches."""
-    some = False
-    for c in range(w.n_c):
-        some = some or w.gap[c] <= plan.slack
-    return some
+    from lcpstep.stepping.pieces.times import just_after
 
 
 class Steps(Stepwise):
@@ -100,6 +46,10 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
+    watched  whether obstacles or joints have a velocity of their own, which may jump (`jumps`),
+    asking   and pieces are looked at for that whatever `next_forces` tells
+    n_rows   contacts, and joints that are driven
+    told     whether open contacts have nothing but what jumps in the velocities of `measure_at` either
     stop     end of the span
     own      kept states that are in the coordinates of the scene
 
@@ -113,6 +63,9 @@ class Steps(Stepwise):
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
         self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
+        driven = w.joined and obstacles_move(w.joints.rows)
+        self.watched, self.n_rows = driven or obstacles_move(m), w.n_c + (w.n_j if driven else 0)
+        self.asking, self.told = self.watched, False
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
@@ -206,21 +159,33 @@ class Steps(Stepwise):
         `found` is CORNER if it begins at one at which velocities of gaps may jump, a contact if the start strikes it.
         """
         now, self.found = t + self.w.sigma, NOBODY
-        if now >= self.w.high - self.plan.margin:
-            self.w.low, self.w.high = find_corners(self.plan, now)
+        if now >= self.w.high - self.w.margin:
+            self.w.low, self.w.high = find_corners(self.plan, self.w, now)
+            if self.w.jump not in (self.w.low, self.w.high):
+                self.w.margin = self.plan.margin
             if obstacles_move(self.m) or self.plan.joined:
                 self.found = CORNER
             if not self.pass_corner(now):
                 return NOT_FINITE
-        self.w.end = self.plan.h
-        if t + self.plan.h > self.w.high + self.plan.margin:
-            self.w.end = max(self.w.high - t, self.w.sigma)
-        self.next_forces(t + self.w.end)
+        self.end_interval(t)
         if self.w.fresh:
             self.w.fresh = False
             if self.found == NOBODY:
                 self.found = struck_at_start(self.w)
         return FINISHED
+
+    def end_interval(self, t: float) -> None:
+        """Where the smooth interval at hand ends within the step that began at t."""
+        self.w.end = self.plan.h
+        if t + self.plan.h > self.w.high + self.w.margin:
+            self.w.end = max(self.w.high - t, self.w.sigma)
+        self.w.doubtful = self.asking
+        self.next_forces(t + self.w.end)
+
+    def cut(self, t: float) -> int:
+        """A velocity jumps within the piece, where the interval ends now; steps by a tolerance are made again."""
+        self.end_interval(t)
+        return STOPPED if self.w.pausing else AGAIN
 
     # --- what the orders differ in -----------------------------------------------------------------------------
 
@@ -238,6 +203,9 @@ class Steps(Stepwise):
     def find(self, t: float) -> int:
         """How far the piece goes that begins at w.sigma: `tau`, `found` and `ends`."""
         return NOT_FINITE
+
+    def measure_at(self, at: float, tau: float) -> None:
+        """State, Jacobian and rates of gaps at tau after the base, into w.q_try and others; `at` is that time."""
 
     def follow(self, t: float) -> int:
         """Go on by `tau`."""

@@ -16,11 +16,14 @@ cdef class PolynomialSteps(Steps):
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     @cython.locals(landing=Py_ssize_t)
     cdef Py_ssize_t find(self, double t) noexcept nogil
+    cdef void measure_at(self, double at, double tau) noexcept nogil
     cdef Py_ssize_t follow(self, double t) noexcept nogil
     cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
 
 
 cdef bint too_short(Plan plan, Work w, double now) noexcept nogil
+@cython.locals(doubtful=bint)
+cdef bint is_off(Plan plan, Work w, Polynomial z) noexcept nogil
 cdef void lose_force(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t follow(
     Model m, Plan plan, Work w, Polynomial z, Record record, double t, double tau, bint ends

@@ -28,6 +28,7 @@ if not cython.compiled:
         SAME_TIME,
     )
     from lcpstep.stepping.pieces.impulses import strike
+    from lcpstep.stepping.pieces.jumps import breaks
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.loop import Steps, is_finite
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -92,6 +93,9 @@ class PolynomialSteps(Steps):
         self.found, self.opens, self.tau = NOBODY, False, length
         if not expand(self.m, self.plan, self.w, self.z, now, length):
             return NOT_FINITE
+        if self.watched and is_off(self.plan, self.w, self.z) and breaks(self, self.w, now, length):
+            self.w.ahead = UNDECIDED if self.w.ahead > 0.0 else 0.0
+            return self.cut(t)
         if self.w.blind > 0.0:
             self.tau = min(length, self.w.blind)
         else:
@@ -108,6 +112,13 @@ class PolynomialSteps(Steps):
         self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - EPS)
         return FINISHED
 
+    def measure_at(self, at: float, tau: float) -> None:
+        """State and gaps at tau after the base, on the polynomial."""
+        state_at(self.m, self.plan, self.w, self.z, at - tau, tau)
+        copy(self.w.q_try, self.z.q, self.w.n_q)
+        copy(self.w.v_try, self.z.v, self.w.n_q)
+        gap_rates(self.m, at, self.w.q_try, self.w.v_try, self.w.G_try, self.w.gap_t_try)
+
     def follow(self, t: float) -> int:
         """Go on along the polynomial."""
         return follow(self.m, self.plan, self.w, self.z, self.record, t, self.tau, self.ends)
@@ -123,6 +134,16 @@ class PolynomialSteps(Steps):
 def too_short(plan: Plan, w: Work, now: float) -> bool:
     """Whether the rest of a smooth interval is so short that positions cannot tell its ends apart."""
     return w.end - w.sigma <= SAME_TIME * (abs(now) + plan.h)
+
+
+def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:
+    """Whether a closed contact has a velocity at the end of a Runge-Kutta step, of which Jacobian and rates are."""
+    doubtful = False
+    for c in range(0 if plan.exact else w.n_c):
+        if w.status[c] == CLOSED:
+            u = product(w.G, z.v_stage, c, w.n_q) + w.gap_t[c]
+            doubtful = doubtful or abs(u) > w.sudden.drift
+    return doubtful
 
 
 def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> None:

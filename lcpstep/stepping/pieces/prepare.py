@@ -70,7 +70,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
         "corners": np.array(stops, dtype=np.float64), "period": scene.period,
-        "margin": MARGIN * t_scale if len(stops) else 0.0,
+        "margin": MARGIN * t_scale,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip
 

@@ -11,10 +11,12 @@ cdef class QuadraticSteps(Steps):
     cdef void next_forces(self, double t) noexcept nogil
     cdef Py_ssize_t begin_piece(self, double t) noexcept nogil
     cdef Py_ssize_t find(self, double t) noexcept nogil
+    cdef void measure_at(self, double at, double tau) noexcept nogil
     cdef Py_ssize_t follow(self, double t) noexcept nogil
     cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
 
 
+cdef void measure_at(Model m, Work w, double at, double tau) noexcept nogil
 @cython.locals(found=Py_ssize_t, but=Py_ssize_t, searching=bint)
 cdef (Py_ssize_t, double) closing(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
 cdef bint stays(Model m, Plan plan, Work w, Py_ssize_t c, double t, double rest) noexcept nogil

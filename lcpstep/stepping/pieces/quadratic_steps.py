@@ -9,13 +9,15 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, moves, obstacle
+    from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.pointers import min
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs, min
     from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
     from lcpstep.stepping.pieces.event import event
     from lcpstep.stepping.pieces.jointed import left_of, stay_at_base, turn_with_joints
+    from lcpstep.stepping.pieces.jumps import breaks
     from lcpstep.stepping.pieces.loop import Steps, is_finite
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, look, move, polish
     from lcpstep.stepping.pieces.race import race
@@ -35,6 +37,7 @@ class QuadraticSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
+        self.told, self.asking = m.flat, self.watched and (not m.flat or self.n_rows > w.n_c)
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
     def pass_corner(self, t: float) -> bool:
@@ -57,6 +60,8 @@ class QuadraticSteps(Steps):
         """The first gap that closes; AGAIN after impacts of many bodies."""
         rest = self.w.end - self.w.sigma
         self.found, self.tau = NOBODY, rest
+        if self.w.doubtful and breaks(self, self.w, t + self.w.sigma, rest):
+            return self.cut(t)
         if self.w.blind > 0.0:
             self.tau = min(rest, self.w.blind)
         else:
@@ -66,6 +71,10 @@ class QuadraticSteps(Steps):
         self.ends = self.found == NOBODY and self.tau == rest
         return FINISHED
 
+    def measure_at(self, at: float, tau: float) -> None:
+        """State, Jacobian and rates of gaps at tau after the base, along the quadratics."""
+        measure_at(self.m, self.w, at, tau)
+
     def follow(self, t: float) -> int:
         """Go on along the quadratics."""
         return move(self.m, self.plan, self.w, self.record, t, self.tau, self.ends)
@@ -73,6 +82,18 @@ class QuadraticSteps(Steps):
     def strike(self, t: float, c: int) -> int:
         """The impact of contact c, or that of a corner."""
         return event(self.m, self.plan, self.w, self.record, t, c)
+
+
+def measure_at(m: Model, w: Work, at: float, tau: float) -> None:
+    """The same; of flat contacts what obstacles alone make, beside accelerations that are linear over the piece."""
+    for i in range(w.n_q):
+        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+        w.v_try[i] = w.v[i] + tau * w.a[i]
+    gap_rates(m, at, w.q_try, w.v_try, w.G_try, w.gap_t_try)
+    for c in range(w.n_c if m.flat and moves(m) else 0):
+        begins = -2.0 * w.bias[c] - w.end_s[c]
+        mean = begins + 0.5 * tau / (w.end - w.sigma) * (w.end_s[c] - begins)
+        w.gap_t_try[c] += tau * (mean - product(m.G, w.a, c, w.n_q))
 
 
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
@@ -144,11 +165,18 @@ def racing(w: Work, record: Record, t: float) -> bool:
 
 
 def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:
-    """Forces and accelerations of obstacles at the end t of a smooth interval."""
+    """Forces, and what moves obstacles, at the end t of a smooth interval.
+
+    Since the end of the one before, where this one begins, an obstacle's velocity may have jumped where it is another
+    than the accelerations make it.
+    """
     if plan.trapezoidal and not plan.steady:
         external_force(m, t, w.q, w.v, w.next_force)
         w.force_evaluations += 1
     if m.flat and moves(m):
         obstacle(m, t, w.q, w.v)
         for c in range(w.n_c):
-            w.end_s[c] = m.motion_now[c * 3 + 2]
+            u, s = m.motion_now[c * 3 + 1], m.motion_now[c * 3 + 2]
+            change = 0.5 * (w.end - w.sigma) * (w.end_s[c] + s)
+            w.doubtful = w.doubtful or abs(u - w.end_u[c] - change) > w.sudden.drift
+            w.end_u[c], w.end_s[c] = u, s

@@ -1,7 +1,8 @@
 cimport cython
 from lcpstep.kernels.bracket cimport Bracket
+from lcpstep.kernels.sudden cimport Sudden
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices
+from lcpstep.pointers cimport Doubles, Indices, inf
 from lcpstep.stepping.pieces.joints cimport Joints
 
 
@@ -35,6 +36,10 @@ cdef class Work:
     cdef public bint under_way, unchanged, touching, pausing, fresh
     cdef public Py_ssize_t events, closed_now, made_with
     cdef public Py_ssize_t steps, lcp_calls, force_evaluations, events_left, cut, members, idle
+    cdef Sudden sudden
+    cdef Doubles end_u, begins
+    cdef public double jump, margin
+    cdef public bint doubtful
     cdef void place_vectors(self, double* x)
     cdef void place_numbers(self, double* x)
     cdef void place_marks(self, Py_ssize_t* x)

@@ -10,8 +10,9 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.bracket import Bracket
+    from lcpstep.kernels.sudden import Sudden
     from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, Indices, after, indices_after
+    from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
 
 VECTORS = [
     "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
@@ -20,7 +21,7 @@ VECTORS = [
 NUMBERS = [
     "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
     "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
-    "since", "next_zero", "turned", "turns", "hops", "fall", "pushed",
+    "since", "next_zero", "turned", "turns", "hops", "fall", "pushed", "end_u",
 ]  # fmt: skip
 MARKS = [
     "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
@@ -46,7 +47,7 @@ class Plan:
     exact           pieces are Taylor polynomials; else, where pieces are polynomials, Runge-Kutta
     longest         piece of motion
     corners, n_corners, period    (m,) in [0, period)
-    margin          by which times are moved off a corner
+    margin          by which times are moved off a corner of the scene
     A_inverse : (2, n_q, n_q)     (M + h/2 C + h^2/4 K)^-1, for WHOLE and REST
     AG : (2, n_c, n_q)            (A^-1 G^T)^T
     WA : (2, n_c, n_c)            G A^-1 G^T
@@ -98,12 +99,13 @@ class Work:
     bend            what the mean acceleration lacks for the position, of moving flat obstacles
     bias            gap acceleration at v' = 0
     gap_try, gap_t, gap_t_try
-    end_s           s'' of the obstacles at the end of the smooth interval
+    end_u, end_s    s' and s'' of the obstacles at the end of the smooth interval
     last            time of the last impact since the start of the step
     force_now       contact force
     older, older_time    the last positive contact force, and when
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
     impulse         since the last kept state; those of the n_j joints follow
+    begins          velocity at the base of the piece at hand, where that may jump in it; those of the joints follow
     p               impulses of the event at hand, or forces of closed contacts, by contact; in
                     `sequences.choose_connected` 1 for contacts still to be looked at
     b, z            of the complementarity problem at hand, and its solution
@@ -133,18 +135,21 @@ class Work:
     M : (n_q, n_q)              factor of a mass matrix that changes
     problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
     joints          those of the scene, where `joined`
-    bracket         in which a root is sought
+    bracket         in which a root is sought;  sudden   in which a jump is
 
     The loop's numbers:
     sigma           time since the start of the step
     end             of the smooth interval in the step
     low, high       the interval of time without corners
+    jump            the corner found last that the scene does not name
+    margin          by which times are moved off a corner: the plan's, or more where a jump takes some time
     events          in this step
     under_way       whether a step is
     closed_now      how many contacts are closed
     unchanged       whether the gaps have the accelerations of the piece before
     made_with       the place of the matrices that the piece was made with
     touching        whether an open contact may touch at rest
+    doubtful        whether the velocity of a flat obstacle may jump within the smooth interval
     stalled         the stretch of time that events without end are settled over (0: there are none),
     settled         and how often that has been done in this step
     ahead           the time from the base of a piece at which its contact forces were decided
@@ -172,11 +177,12 @@ class Work:
     def __init__(self, n_q: int, n_c: int, joints: Any) -> None:
         n_j = 0 if joints is None else joints.n_j
         self.n_q, self.n_c, self.n_j, self.joints, self.joined = n_q, n_c, n_j, joints, joints is not None
-        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 1) * n_c + n_j)
+        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 2) * n_c + 2 * n_j)
         self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_c + 1, dtype=np.intp)
         self.lcp, self.pivots, self.bracket = Workspace(n_c), indices(self.places), Bracket()
+        self.sudden, self.jump, self.margin, self.doubtful = Sudden(), -inf, 0.0, False
         self.place_vectors(doubles(self.numbers))
         self.place_numbers(after(doubles(self.numbers), len(VECTORS) * n_q))
         self.place_marks(indices(self.marks))
@@ -204,7 +210,7 @@ class Work:
             return self.numbers[VECTORS.index(name) * self.n_q :][: self.n_q]
         n = len(VECTORS) * self.n_q
         if name == "impulse":
-            return self.numbers[n + len(NUMBERS) * self.n_c :]
+            return self.numbers[n + len(NUMBERS) * self.n_c :][: self.n_c + self.n_j]
         return self.numbers[n + NUMBERS.index(name) * self.n_c :][: self.n_c]
 
     def place_vectors(self, x: Doubles) -> None:
@@ -237,7 +243,8 @@ class Work:
         self.since, self.next_zero = after(x, 22 * n), after(x, 23 * n)
         self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
         self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
-        self.pushed, self.impulse = after(x, 28 * n), after(x, 29 * n)
+        self.pushed, self.end_u = after(x, 28 * n), after(x, 29 * n)
+        self.impulse, self.begins = after(x, 30 * n), after(x, 31 * n + self.n_j)
 
     def place_marks(self, x: Indices) -> None:
         """Whole numbers per contact, in the order of MARKS."""

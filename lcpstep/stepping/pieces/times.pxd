@@ -4,11 +4,11 @@ from lcpstep.stepping.pieces.state cimport Plan, Work
 
 
 cdef inline double within(Plan plan, Work w, double t) noexcept nogil:
-    return min(max(t, w.low + plan.margin), w.high - plan.margin)
+    return min(max(t, w.low + w.margin), w.high - w.margin)
 
 
 cdef inline bint at_corner(Plan plan, Work w, double t) noexcept nogil:
-    return not plan.plain and t >= w.high - 2.0 * plan.margin
+    return not plan.plain and t >= w.high - 2.0 * w.margin
 
 
 cdef inline double driven_by(Work w, Py_ssize_t c, double t) noexcept nogil:

@@ -9,12 +9,12 @@ from lcpstep.stepping.pieces.state import Plan, Work
 
 def within(plan: Plan, w: Work, t: float) -> float:
     """A time moved off the corners, where forces jump, into the smooth interval at hand."""
-    return float(min(max(t, w.low + plan.margin), w.high - plan.margin))
+    return float(min(max(t, w.low + w.margin), w.high - w.margin))
 
 
 def at_corner(plan: Plan, w: Work, t: float) -> bool:
     """Whether a time is that of the next corner, to rounding; then its impacts are those of the corner."""
-    return bool(not plan.plain and t >= w.high - 2.0 * plan.margin)
+    return bool(not plan.plain and t >= w.high - 2.0 * w.margin)
 
 
 def driven_by(w: Work, c: int, t: float) -> float:

@@ -1,0 +1,69 @@
+"""The state of `Located` where a span begins, as a kernel: its forces and gaps, and which contacts are closed."""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.dynamics import external_force
+    from lcpstep.kernels.model import Model
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs
+    from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
+    from lcpstep.stepping.pieces.corners import find_corners
+    from lcpstep.stepping.pieces.jointed import turn_onto_joints
+    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.magnitudes import acceleration_terms
+    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, refactor, respond
+    from lcpstep.stepping.pieces.state import Plan, Work
+    from lcpstep.stepping.pieces.times import rounded_by, within
+
+
+def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+    """Forces, gaps and status of the initial state, which is kept where states are."""
+    w.low, w.high = find_corners(plan, w, t)
+    w.margin = plan.margin
+    w.fresh = True
+    if w.joined:  # what rounding has put speeds as small off them by would let no impulse do
+        if not refactor(m, w, within(plan, w, t)):
+            return NOT_FINITE
+        turn_onto_joints(w, w.v)
+    if plan.trapezoidal:
+        external_force(m, within(plan, w, t), w.q, w.v, w.force)
+    elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+        return NOT_FINITE
+    w.force_evaluations += 1
+    if plan.steady:
+        for i in range(w.n_q):
+            w.free[i] = product(plan.A_inverse, w.force, i, w.n_q)
+    measure(m, plan, w, t)
+    if plan.constant:
+        respond(m, w)
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.free, c, w.n_q)
+    if not plan.plain and touching(plan, w):
+        gap_bias(m, w, within(plan, w, t), w.q, w.v)
+    for c in range(w.n_c):
+        if w.gap[c] <= plan.slack:
+            w.gap[c], w.grounded[c] = 0.0, GROUND
+            size = abs(w.gap_t[c]) + plan.h * acceleration_terms(m, w, c)
+            for i in range(w.n_q):
+                size += abs(w.G[c * w.n_q + i] * w.v[i])
+            if abs(w.rate[c]) <= 64 * EPS * size + rounded_by(plan, w, c, t):
+                w.rate[c], w.status[c] = 0.0, CLOSED
+                w.closed_now += 1
+    if record.n_times == 0:
+        keep(w, record, t, 0.0)
+    elif record.times[0] == t:
+        keep(w, record, t, 0.0)
+        record.next_time = 1
+    return FINISHED
+
+
+def touching(plan: Plan, w: Work) -> bool:
+    """Whether some contact touches."""
+    some = False
+    for c in range(w.n_c):
+        some = some or w.gap[c] <= plan.slack
+    return some

@@ -1,0 +1,15 @@
+cimport cython
+from lcpstep.stepping.pieces.loop cimport Steps
+from lcpstep.stepping.pieces.state cimport Plan, Work
+
+cdef double BRIEF, SIDES
+
+cdef bint breaks(Steps way, Work w, double t, double length) noexcept nogil
+@cython.locals(found=Py_ssize_t)
+cdef Py_ssize_t farthest_off(Steps way, Work w, double t, double length) noexcept nogil
+cdef void measure_rows(Steps way, Work w, double t, double tau) noexcept nogil
+cdef double* row(Work w, Py_ssize_t i) noexcept nogil
+cdef double rate(Work w, Py_ssize_t i) noexcept nogil
+cdef double velocity(Work w, Py_ssize_t i) noexcept nogil
+cdef double size_of(Plan plan, Work w, Py_ssize_t i) noexcept nogil
+cdef bint lies_apart(Work w, double t, double margin) noexcept nogil
