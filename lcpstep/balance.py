@@ -65,9 +65,9 @@ def _surplus(run: Trajectory, m: Model, h: float, looks: int) -> tuple[float, fl
 
 def driven(rows: Any) -> bool:
     """Whether contacts or joints move by themselves."""
-    if rows is None or isinstance(rows, LinearJoints):
+    if rows is None:
         return False
-    return (rows.motion if isinstance(rows, LinearContacts) else rows.gap_t) is not None
+    return (rows.motion if isinstance(rows, (LinearContacts, LinearJoints)) else rows.gap_t) is not None
 
 
 def _smooth(run: Trajectory, h: float, looks: int) -> Any:
