@@ -46,6 +46,7 @@ class Sudden:
     def seek(self, t: float) -> bool:
         """Move x to the next place to look at; False where it is found, or none can be told from its neighbours."""
         narrow = self.high - self.low <= 2.0 * RESOLUTION * (abs(t) + self.high)
+        narrow = narrow or self.high <= RESOLUTION * self.h  # at time zero nothing else ends it
         if narrow or self.is_turn():
             return False
         self.x = 0.5 * (self.low + self.high)

@@ -25,7 +25,10 @@ DEEPEST = 28  # halvings of the whole
 MOST = 4096  # windows of one size
 MUCH, FAST = 0.25, 1 / 32  # share of the time that turns fast, and how fast: then all of it does
 ROOTS = 4  # between two ends
+MUST = 2.0  # times what samples of the curve tell: what speeds may differ by
 JUMP = 1e-6  # of the speed: what changes by more within a window of the last size jumps
+HALVINGS = 40  # of the shortest windows, down to roundings of the whole
+LITTLE = 1e-9  # of the largest speed: no jump
 APART = 1e-13  # of the times: so far windows stay off their ends, where a corner belongs to none
 
 
@@ -55,7 +58,7 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
     b = np.append(a[1:], ends[-1])
     near, kept = np.zeros((len(a), 0, source.rows, 2)), []
     least, most = np.full(source.rows, np.inf), np.full(source.rows, -np.inf)
-    whole = ends[-1] - ends[0]
+    whole, fastest = ends[-1] - ends[0], 0.0
     while len(a):
         shrink = APART * np.maximum(whole, np.abs(b)) * (b - a > 1e-11 * whole)
         seen = source.bounds(a + shrink, b - shrink)
@@ -63,12 +66,15 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
         looks = source.values(times.ravel()).reshape(len(a), 3, source.rows, 3)
         least = np.minimum(least, looks[..., 0].min(axis=(0, 1)))
         most = np.maximum(most, looks[..., 0].max(axis=(0, 1)))
+        fastest = max(fastest, float(np.abs(looks[..., 1]).max()))
         range_ = np.maximum(most - least, _extent(seen.lo[..., 0], seen.hi[..., 0]))
         if source.steady:
             range_ *= whole * NOTHING_STEADY / NOTHING
         near, size = _nearby(source, near, looks[..., 2])
         lo, hi = seen.lo[..., 2], seen.hi[..., 2]
         even = alike(lo, hi, size, b - a, source.order, range_)
+        if source.sampled:
+            even &= ~_unaccounted(seen.lo, seen.hi, b - a)
         done = even & ~seen.branched
         last = b - a <= whole * 2.0**-DEEPEST
         jumps = last & (~even | _jumps(seen.lo[..., 1], seen.hi[..., 1]))
@@ -80,7 +86,8 @@ def leaves(source: Source, ends: Array, base: float) -> Leaves | None:
         middle = 0.5 * (a + b)
         a, b, near = np.concatenate([a, middle]), np.concatenate([middle, b]), np.vstack([near, near])
     joined = Leaves(*[np.concatenate(x) for x in zip(*kept, strict=True)])
-    return together(joined.chosen(np.argsort(joined.a)), ends, source.order, range_)
+    found = with_jumps_between(joined.chosen(np.argsort(joined.a)), source, ends, LITTLE / JUMP * fastest)
+    return together(found, ends, source.order, range_)
 
 
 def _nearby(source: Source, before: Array, curve: Array) -> tuple[Array, Array]:
@@ -104,6 +111,61 @@ def _extent(lo: Array, hi: Array) -> Array:
 def _jumps(lo: Array, hi: Array) -> NDArray[np.bool_]:
     """Whether a speed jumps, in windows of the last size."""
     return np.asarray((hi - lo > JUMP * np.maximum(np.abs(lo), np.abs(hi))).any(axis=1))
+
+
+def _unaccounted(lo: Array, hi: Array, h: Array) -> NDArray[np.bool_]:
+    """Whether speeds of samples differ by more than the curves of these make of them in windows of the lengths h.
+
+    Enclosures tell of a jump themselves.
+    """
+    most = np.maximum(np.abs(lo), np.abs(hi))
+    told = MUST * h[:, None] * most[..., 2] + JUMP * most[..., 1]
+    return np.asarray((hi[..., 1] - lo[..., 1] > told).any(axis=1))
+
+
+def jump_times(source: Source, a: Array, b: Array, least: float = 0.0) -> tuple[NDArray[np.bool_], Array]:
+    """In which windows [a, b] a speed jumps, and the times just after, which halving finds to rounding.
+
+    least : speed beside which what one changes by is nothing
+    """
+    if not len(a):
+        return np.zeros(0, dtype=bool), np.zeros(0)
+    first, last = source.values(a)[..., 1], source.values(b)[..., 1]
+    row = np.argmax(np.abs(last - first), axis=1)
+    first, last = first[np.arange(len(a)), row], last[np.arange(len(a)), row]
+    whole, size = np.abs(last - first), np.maximum(np.abs(first), np.abs(last))
+    jumps = whole > JUMP * np.maximum(size, least)
+    a, b, row, first, last, whole = (x[jumps] for x in (a, b, row, first, last, whole))
+    start, end, between = first, last, np.ones(len(a), dtype=bool)
+    for _ in range(HALVINGS if len(a) else 0):
+        middle = 0.5 * (a + b)
+        at = source.values(middle)[np.arange(len(a)), row, 1]
+        between &= np.maximum(np.abs(at - start), np.abs(at - end)) <= 1.5 * whole  # or it is a pulse
+        early = np.abs(at - first) < np.abs(at - last)
+        a, first = np.where(early, middle, a), np.where(early, at, first)
+        b, last = np.where(early, b, middle), np.where(early, last, at)
+    at_once = between & (np.abs(last - first) >= 0.5 * whole)
+    jumps[jumps] = at_once
+    return jumps, b[at_once]
+
+
+def with_jumps_between(found: Leaves, source: Source, ends: Array, least: float) -> Leaves:
+    """The leaves, in order, with one of its own for each border of two, but for `ends`, at which a speed jumps.
+
+    There none of the two shows it, as windows stay off their ends.
+    """
+    whole, border = ends[-1] - ends[0], found.b[:-1]
+    beside = 2.0 * APART * np.maximum(whole, np.abs(border))
+    jumps, _ = jump_times(source, border - beside, border + beside, least)
+    k = np.flatnonzero(jumps & ~np.isin(border, ends))
+    if not len(k):
+        return found
+    parts: list[Any] = [np.insert(x, k + 1, x[k], axis=0) for x in found]
+    made = Leaves(*parts)
+    own = k + 1 + np.arange(len(k))
+    made.a[own], made.b[own], made.jumps[own] = (border - beside)[k], (border + beside)[k], True
+    made.b[own - 1], made.a[own + 1] = made.a[own], made.b[own]
+    return made
 
 
 def alike(lo: Array, hi: Array, near: Array, h: Array, order: int, range_: Array) -> NDArray[np.bool_]:

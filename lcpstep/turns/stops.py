@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
-from lcpstep.turns.refine import JUMP, MUCH, Leaves, leaves
+from lcpstep.turns.refine import JUMP, MUCH, Leaves, jump_times, leaves
 from lcpstep.turns.source import Source, belts, sources
 
 Array = NDArray[np.float64]
@@ -95,24 +95,29 @@ def _remembered(
     base = (span[1] - span[0]) / per
     own = np.array([x for x in corners if span[0] < x < span[1]])
     ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
-    stops, stretches, words = [np.array(corners)], [np.zeros((0, 2))], []
+    stops, exact, stretches, words = [np.array(corners)], [own], [np.zeros((0, 2))], []
     for key in keys:
         source, found = _divided(key.source, ends, base)
         if found is None:  # all of it turns fast, as samples show as well
             continue
         short = fast(found, SHORT * usual(found, base), ends, source.steady)
-        stops.append(np.concatenate([found.a[short], found.b[short], corners_between(source, found)]))
+        stops.append(corners_between(source, found))
+        jumps, times = jump_times(source, found.a[found.jumps], found.b[found.jumps])
+        turned = short.copy()
+        turned[found.jumps] = ~jumps
+        stops.append(np.concatenate([found.a[turned], found.b[turned]]))
+        exact.append(times)
         stretches.append(np.column_stack([found.a[short], found.b[short]]))
-        if source.sampled and np.any(short):
-            shortest = np.min((found.b - found.a)[short])
+        if source.sampled and np.any(turned):
+            shortest = np.min((found.b - found.a)[turned])
             words.append(
                 f"{source.name} turns within {shortest:.3g} s, as samples show, which need not show everything: it "
                 f"cannot be evaluated on intervals ({source.sampled}); give the times at which it turns as `corners`"
             )
     if math.isfinite(period):  # the ends of a period are one time
-        stops = [x[x < period] for x in stops]
+        stops, exact = [x[x < period] for x in stops], [x[x < period] for x in exact]
     return Turns(
-        _apart(np.unique(np.concatenate(stops)), span[1] - span[0], own),
+        _apart(np.unique(np.concatenate(stops)), span[1] - span[0], np.unique(np.concatenate(exact))),
         _widened(np.concatenate(stretches)),
         "; ".join(words),
     )
@@ -166,10 +171,14 @@ def usual(found: Leaves, base: float) -> float:
     return float(min(base, length[order[k]]))
 
 
-def _apart(stops: Array, whole: float, corners: Array) -> Array:
-    """The stops without those that only rounding tells from the one before; the scene's corners stay."""
-    near = np.diff(stops, prepend=-np.inf) < NEAR * whole
-    return np.asarray(stops[~near | np.isin(stops, corners)])
+def _apart(stops: Array, whole: float, exact: Array) -> Array:
+    """The stops without those that only rounding tells from others; the scene's corners stay, and times of jumps."""
+    stops = stops[np.diff(stops, prepend=-np.inf) >= NEAR * whole]
+    if len(exact):
+        k = np.clip(np.searchsorted(exact, stops), 1, len(exact)) - 1
+        after = exact[np.minimum(k + 1, len(exact) - 1)]
+        stops = stops[np.minimum(np.abs(stops - exact[k]), np.abs(after - stops)) >= NEAR * whole]
+    return np.union1d(stops, exact)
 
 
 def fast(found: Leaves, least: float, borders: Array, steady: bool) -> NDArray[np.bool_]:

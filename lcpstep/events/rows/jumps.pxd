@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.events.rows.state cimport Rows
 from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.sudden cimport MORE, SUDDEN
 
 cdef double TOLERANCES
 

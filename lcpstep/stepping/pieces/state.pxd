@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.sudden cimport Sudden
 from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices, inf
+from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.pieces.joints cimport Joints
 
 
