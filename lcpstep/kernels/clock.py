@@ -81,12 +81,14 @@ class Clock:
         return min(max(t, self.low + margin), self.high - margin)
 
     def lies_apart(self, t: float) -> bool:
-        """Whether a time can be told from the base, and from the end of its smooth interval: see `inside`."""
+        """Whether a time can be told from the ends of its smooth interval: see `inside`; it may be the base."""
         margin = NUDGE * max(abs(t), self.scale)
-        return self.t0 + margin < t < self.high - margin
+        return self.low + margin < t < self.high - margin
 
     def break_at(self, t: float) -> None:
-        """The smooth interval at hand ends at t, as has been found."""
+        """The smooth interval at hand ends at t, as has been found; at the base where that cannot be told from it."""
+        if t <= self.t0 + NUDGE * max(abs(t), self.scale):
+            t = self.t0
         self.high = self.jump = t
 
     def find_corners(self, t: float) -> None:

@@ -97,6 +97,22 @@ def test_one_of_three_walls_of_which_two_would_hold_throws_a_particle_out(rough)
     ends_at(scene, [0.3 * 0.7, 0.4 * 0.7], [0.3, 0.4])
 
 
+def leaves(t, q, v, p, out):
+    """The table is at rest at time zero, and has the velocity p[0] after it."""
+    out[0, 0], out[0, 1], out[0, 2] = p[0] * t, p[0] if t > 0.0 else 0.0, 0.0
+
+
+@pytest.mark.parametrize("rough", [False, True])
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2, 4), Located(1e-2, tolerance=1e-6)])
+def test_a_table_that_drops_at_the_very_start_lets_go_what_lies_on_it(method, rough):
+    """Halving had no end at time zero, below which there is always half of it."""
+    friction = Coulomb(MU, [[1.0, 0.0]]) if rough else None
+    table = LinearContacts([[0.0, 1.0]], 0.0, 0.5, motion=leaves, friction=friction)
+    block = LinearSystem(np.eye(2), force=[0.0, -G])
+    scene = Scene(block, [0.0, 0.0], [0.0, 0.0], (0.0, 0.5), table, p=[-4.5])
+    ends_at(scene, [0.0, -0.125 * G], [0.0, -0.5 * G], method)
+
+
 def jolts(t, q, v, p, out):
     """The table has the velocity p[1] for a while of p[2] from t = p[0] on, less than a step."""
     out[0, 0] = p[1] * min(max(t - p[0], 0.0), p[2])
