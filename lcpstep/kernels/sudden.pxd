@@ -10,7 +10,6 @@ cdef class Sudden:
     @cython.locals(narrow=bint)
     cdef bint seek(self, double t) noexcept nogil
     cdef void take(self, double f) noexcept nogil
-    cdef double place(self) noexcept nogil
     cdef bint is_turn(self) noexcept nogil
     cdef bint is_jump(self) noexcept nogil
     cdef void excuse(self, double u) noexcept nogil

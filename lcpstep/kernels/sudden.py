@@ -3,9 +3,9 @@
     sudden.begin(h, before, later)     the function where the step begins, and h after that
     while sudden.seek(t):              t: the time at which it begins
         sudden.take(f)                 of the function at sudden.x, counted from there
-    sudden.place()                     is where it jumps, if `is_jump`
+    sudden.low, sudden.high            if `is_jump`, it jumps between these
 
-Of what is no jump, but too fast for the step, the place is where it begins, or a part of it. What a step leaves of a
+Of what is no jump, but too fast for the step, that is where it begins, or a part of it. What a step leaves of a
 velocity that is to be zero is no jump: steps so far have shown how much that is.
 """
 
@@ -58,10 +58,6 @@ class Sudden:
             self.high, self.later = self.x, f
         else:
             self.low, self.before = self.x, f
-
-    def place(self) -> float:
-        """The place: just after a jump."""
-        return self.low if self.is_turn() and self.low > 0.0 else self.high
 
     def is_turn(self) -> bool:
         """Whether the places still have something of the change between them that halving takes apart."""
