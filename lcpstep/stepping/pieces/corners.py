@@ -19,7 +19,7 @@ if not cython.compiled:
 
     from lcpstep.kernels.dynamics import gap_rates, moves
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import product
+    from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs, inf, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -52,6 +52,26 @@ def find_corners(plan: Plan, w: Work, t: float) -> tuple[float, float]:
 def obstacles_move(m: Model) -> bool:
     """Whether a gap has a velocity of its own, which may jump at a corner."""
     return (m.flat and moves(m)) or (not m.flat and m.gap_t.given)
+
+
+def go_beyond(m: Model, plan: Plan, w: Work, t: float) -> None:
+    """At a corner that was found, move coordinates to its far side where rows jump by the place.
+
+    They go what they go in the time to which the time of a jump is known.
+    """
+    at, some = within(plan, w, t), False
+    for i in range(w.n_q):
+        w.q_try[i] = w.q[i] + 4.0 * w.margin * w.v[i]
+    gap_rates(m, at, w.q, w.v, w.G, w.gap_t)
+    gap_rates(m, at, w.q_try, w.v, w.G_try, w.gap_t_try)
+    for c in range(w.n_c):
+        jump, size = w.gap_t_try[c] - w.gap_t[c], abs(w.gap_t[c])
+        for i in range(c * w.n_q, (c + 1) * w.n_q):
+            jump += (w.G_try[i] - w.G[i]) * w.v[i - c * w.n_q]
+            size += abs(w.G[i] * w.v[i - c * w.n_q])
+        some = some or abs(jump) > JUMP * size
+    if some:
+        copy(w.q, w.q_try, w.n_q)
 
 
 def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:

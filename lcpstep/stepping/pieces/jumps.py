@@ -10,6 +10,7 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
@@ -36,6 +37,10 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
         measure_rows(way, w, t, w.sudden.x)
         w.sudden.take(velocity(w, i))
     place, margin = t + w.sudden.high, way.plan.margin
+    if (
+        not way.m.flat
+    ):  # where rows are still those before it, onto which the motion is put, however the sum is rounded
+        place = t + w.sudden.low - 2.0 * RESOLUTION * (abs(t) + w.sudden.low)
     if w.sudden.is_turn():
         place, margin = t + 0.5 * (w.sudden.low + w.sudden.high), SIDES * (w.sudden.high - w.sudden.low)
     if w.sudden.is_jump() and margin <= BRIEF * length and lies_apart(w, place, margin):
@@ -100,5 +105,8 @@ def size_of(plan: Plan, w: Work, i: int) -> float:
 
 
 def lies_apart(w: Work, t: float, margin: float) -> bool:
-    """Whether a time can be told from the ends of the smooth interval; it may be the base of the piece."""
-    return w.low + 2.0 * margin < t < w.high - 2.0 * margin
+    """Whether a time can be told from the ends of the smooth interval; it may be the base of the piece.
+
+    The end may be where this jump was looked for before, on a polynomial that knew of it.
+    """
+    return w.low + 2.0 * margin < t < (w.high if w.high == w.jump else w.high - 2.0 * margin)

@@ -29,7 +29,7 @@ if not cython.compiled:
         STOPPED,
         TOO_MANY_EVENTS,
     )
-    from lcpstep.stepping.pieces.corners import find_corners, obstacles_move
+    from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
     from lcpstep.stepping.pieces.event import remeasure, struck_at_start
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.impulses import zero_speeds
@@ -163,8 +163,10 @@ class Steps(Stepwise):
             self.w.low, self.w.high = find_corners(self.plan, self.w, now)
             if self.w.jump not in (self.w.low, self.w.high):
                 self.w.margin = self.plan.margin
-            if obstacles_move(self.m) or self.plan.joined:
+            if obstacles_move(self.m) or self.plan.joined or self.w.low == self.w.jump:
                 self.found = CORNER
+            if self.w.low == self.w.jump and not self.m.flat:
+                go_beyond(self.m, self.plan, self.w, now)
             if not self.pass_corner(now):
                 return NOT_FINITE
         self.end_interval(t)

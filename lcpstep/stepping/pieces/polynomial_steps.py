@@ -75,6 +75,7 @@ class PolynomialSteps(Steps):
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
         self.z, self.opens = Polynomial(m.n_q, m.n_c), False
+        self.watched = self.watched or not m.flat  # rows may jump by the place
 
     def begin_piece(self, t: float) -> int:
         """Accelerations, and which contacts are closed."""
